@@ -1,0 +1,36 @@
+// view/map.glsl -- the land from above: any texture as a flat picture, north on top.
+//
+//   gives    frame, display-encoded
+//   needs    colour/encode.glsl, colour/ramp.glsl
+//   units    texture values as they are; lowest and highest are in the same
+//   source   none: a picture of numbers
+//   tested   tests/glsl/test_view.py, against the texture's own values
+#include "colour/encode.glsl"
+#include "colour/ramp.glsl"
+#pragma kernel(output = "frame:rgba8")
+
+uniform sampler2D shown;              //! input
+uniform int channel = 0;              //! menu("colour", "red", "green", "blue", "alpha") What is shown: all channels as a colour, or one as a number
+uniform int ramp = 0;                 //! menu("grey", "false colour") How a number is shown
+uniform float lowest = 0.0;           //! slider(-2, 2) step(0.01) group("Range") The number shown darkest
+uniform float highest = 1.0;          //! slider(-2, 2) step(0.01) group("Range") The number shown brightest
+
+// A texel that is not a number is shown in a colour that no ramp has.
+const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
+
+vec4 kernel(ivec2 texel) {
+    ivec2 shown_size = textureSize(shown, 0);
+    // The picture keeps the texture's proportions, in the middle.
+    vec2 scale = vec2(shown_size) / vec2(size);
+    float worst = max(scale.x, scale.y);
+    vec2 place = (vec2(texel) + 0.5 - 0.5 * vec2(size)) * worst + 0.5 * vec2(shown_size);
+    if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, vec2(shown_size)))) return vec4(0.0, 0.0, 0.0, 1.0);
+    vec4 value = texelFetch(shown, ivec2(place), 0);
+    if (any(isnan(value)) || any(isinf(value))) return vec4(NOT_A_NUMBER, 1.0);
+    float span = highest - lowest;
+    vec4 share = (value - lowest) / (abs(span) < 1e-20 ? 1e-20 : span);
+    if (channel == 0) return vec4(srgb_from_linear(share.rgb), 1.0);
+    float number = channel == 1 ? share.r : channel == 2 ? share.g : channel == 3 ? share.b : share.a;
+    if (ramp == 1) return vec4(ramp_blue_yellow(number), 1.0);
+    return vec4(vec3(clamp(number, 0.0, 1.0)), 1.0);
+}

@@ -1,0 +1,46 @@
+"""The few functions that most programs need: a headless engine, a picture, a sketch's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.gpu.context import open_context
+from playground.sketch.assign import shown_parameters, value_of, values_of
+from playground.sketch.load import load
+from playground.sketch.model import Parameter, Sketch, Value
+
+
+def headless(*, software: bool = False, device: int | None = None, driver: str = "auto") -> Engine:
+    """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
+
+    ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
+    ``driver`` is "auto", "fragment" or "compute". Raises ``ContextError`` in a sentence.
+    """
+    return Engine(open_context(software=software, device=device), driver=driver, owns_context=True)
+
+
+def render(
+    sketch: Sketch | str | Path = "",
+    *,
+    size: tuple[int, int] = (1280, 720),
+    time: float = 0.0,
+    values: Mapping[str, object] | None = None,
+) -> Frame:
+    """Render one picture with a context of its own: ``size`` in pixels, ``time`` in seconds, ``values`` by path.
+
+    For more than one picture, keep an engine from ``headless()``.
+    """
+    found = sketch if isinstance(sketch, Sketch) else load(sketch)
+    with headless() as engine:
+        return engine.render(found.with_values(values or {}), size=size, time=time)
+
+
+def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:
+    """Return every parameter of a sketch with its value, by path."""
+    leaves = values_of(sketch)
+    return {
+        shown.path: (shown.parameter, value_of(sketch, shown.path, leaves)) for shown in shown_parameters(sketch)
+    }

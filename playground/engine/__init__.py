@@ -1,0 +1,4 @@
+"""Plan and run a sketch on a context: passes, loops, staleness, iterations, the trial child.
+
+Knows no technique by name: the terrain lives in ``glsl/``.
+"""

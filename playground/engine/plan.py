@@ -1,0 +1,270 @@
+"""Make a sketch concrete: sizes, counts, files, the land's metres. Still no OpenGL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from playground.engine.files import find_file
+from playground.errors import PlaygroundError, SketchError
+from playground.sketch import expressions
+from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.flatten import Flat, Leaf, Loop, Node, Ref, Source, flatten, leaves_of
+from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.terrain.camera import Eye, look
+from playground.terrain.sources import Land, source_kind
+
+DEFAULT_SIZE = (513, 513)
+DEFAULT_EXTENT = 10_240.0
+DEFAULT_RELIEF = 1_800.0
+MAX_REPEAT = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A leaf pass made concrete."""
+
+    path: str
+    kernel: Kernel
+    values: Mapping[str, Value]  # files as absolute paths
+    inputs: tuple[tuple[str, Source | None], ...]
+    size: tuple[int, int]
+    repeat: int
+    spec: PassSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """A loop made concrete."""
+
+    path: str
+    repeat: int
+    body: tuple[Step | Turns, ...]
+    feedback: tuple[tuple[str, Source | None, Ref], ...]
+    spec: PassSpec
+
+
+PlanNode = Step | Turns
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to run for one frame."""
+
+    sketch: Sketch
+    nodes: tuple[PlanNode, ...]
+    flat: Flat
+    land: Land  # every field known
+    eye: Eye
+    frame_size: tuple[int, int]
+    time: float
+    steps: Mapping[str, int] = field(default_factory=dict)
+
+    def walk(self) -> Iterator[Step]:
+        """Yield every step, those inside loops included."""
+        return walk(self.nodes)
+
+    def step(self, path: str) -> Step | None:
+        """Return the step of that path, if there is one."""
+        return next((s for s in self.walk() if s.path == path), None)
+
+
+def walk(nodes: tuple[PlanNode, ...]) -> Iterator[Step]:
+    """Yield every step of some nodes, those inside loops included."""
+    for node in nodes:
+        if isinstance(node, Turns):
+            yield from walk(node.body)
+        else:
+            yield node
+
+
+def make_plan(
+    sketch: Sketch,
+    *,
+    frame_size: tuple[int, int],
+    time: float = 0.0,
+    compute: bool = False,
+    steps: Mapping[str, int] | None = None,
+) -> Plan:
+    """Make a sketch concrete for one frame.
+
+    ``compute`` lets companions stand for whole techniques; ``steps`` stops repeated
+    passes early, by path. Raises ``SketchError`` or ``DataError`` at the pass that is wrong.
+    """
+    if not (1 <= frame_size[0] <= 16384 and 1 <= frame_size[1] <= 16384):
+        raise SketchError(f"a picture of {frame_size[0]} x {frame_size[1]} pixels; 1 to 16384 a side were expected")
+    flat = flatten(sketch, compute=compute)
+    return _Planner(sketch, flat, frame_size, time, dict(steps or {})).plan()
+
+
+class _Planner:
+    def __init__(
+        self, sketch: Sketch, flat: Flat, frame_size: tuple[int, int], time: float, steps: dict[str, int]
+    ) -> None:
+        self.sketch = sketch
+        self.flat = flat
+        self.frame_size = frame_size
+        self.time = time
+        self.steps = steps
+        self._sizes: dict[str, tuple[int, int]] = {}
+        self._open: list[str] = []
+        self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
+        self.land = self._land()
+
+    def plan(self) -> Plan:
+        nodes = tuple(self._node(node) for node in self.flat.nodes)
+        for path in self.steps:
+            if not any(path in (n.path, *(s.path for s in walk((n,)))) for n in nodes):
+                raise SketchError(f"steps: no repeated pass '{path}' in sketch {self.sketch.name}")
+        extent, relief = self.land.extent, self.land.relief
+        assert extent is not None and relief is not None
+        eye = look(self.sketch.camera, extent, relief, self.frame_size)
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, self.frame_size, self.time, self.steps)
+
+    def _node(self, node: Node) -> PlanNode:
+        if isinstance(node, Loop):
+            prefix = node.path.rpartition(".")[0]
+            count = self._count(node.repeat, node.spec, self._names(prefix, node.spec), node.path)
+            return Turns(node.path, count, tuple(self._node(n) for n in node.body), node.feedback, node.spec)
+        kernel = node.kernel
+        size = self._size_of_leaf(node)
+        values = self._values[node.path]
+        if kernel.accepts and not expressions.is_accepted(kernel.accepts, size):
+            raise self._refused(node, size)
+        names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
+        repeat = self._count(kernel.repeat, node.spec, names, node.path)
+        return Step(node.path, kernel, values, node.inputs, size, repeat, node.spec)
+
+    def _count(
+        self, text: str, spec: PassSpec, names: Mapping[str, Number] | object, path: str
+    ) -> int:
+        if text == "1" and path not in self.steps:
+            return 1
+        try:
+            count = expressions.evaluate(text, names)  # type: ignore[arg-type]
+        except ExpressionError as error:
+            raise spec.error(f"pass '{spec.name}': repeat {error}") from None
+        if not 0 <= count <= MAX_REPEAT:
+            raise spec.error(f"pass '{spec.name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected")
+        return min(count, self.steps.get(path, count))
+
+    def _refused(self, leaf: Leaf, size: tuple[int, int]) -> SketchError:
+        near = expressions.nearest_accepted(leaf.kernel.accepts, size)
+        listed = " or ".join(f"{x} x {y}" for x, y in near)
+        return leaf.spec.error(
+            f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
+            f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
+        )
+
+    def _land(self) -> Land:
+        known = Land()
+        for leaf in leaves_of(self.flat.nodes):
+            if leaf.kernel.kind == "source":
+                self._check_source(leaf)
+                known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
+                break
+        size = self.sketch.size or self._accepted(known.size or DEFAULT_SIZE)
+        extent = self.sketch.extent or known.extent
+        if extent is None:
+            shape = known.size or size
+            ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
+            extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
+        relief = self.sketch.relief if self.sketch.relief is not None else known.relief
+        base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
+        return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
+
+    def _accepted(self, size: tuple[int, int]) -> tuple[int, int]:
+        """Return the land's size that every kernel of the land takes, from ``size`` up."""
+        for leaf in leaves_of(self.flat.nodes):
+            at_land_size = leaf.spec.size is None and not leaf.path.startswith("view")
+            if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
+                size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
+        return size
+
+    def _check_source(self, leaf: Leaf) -> None:
+        try:
+            kind = source_kind(leaf.kernel.registry)
+        except PlaygroundError as error:
+            raise leaf.spec.error(str(error)) from None
+        missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
+        if missing:
+            raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
+
+    def _with_files(self, leaf: Leaf) -> dict[str, Value]:
+        values = dict(leaf.values)
+        for parameter in leaf.kernel.parameters:
+            if parameter.widget.kind == "file":
+                text = str(values[parameter.name])
+                path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+                values[parameter.name] = str(path)
+        return values
+
+    def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
+        return self.size_of(leaf.path)
+
+    def size_of(self, path: str) -> tuple[int, int]:
+        """Return the size in texels of a pass at any level."""
+        if path in self._sizes:
+            return self._sizes[path]
+        spec = self.flat.specs[path]
+        prefix = path.rpartition(".")[0]
+        if path in self._open:
+            raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
+        self._open.append(path)
+        base = self._base(path, prefix)
+        size = base
+        if spec.size is not None:
+            try:
+                names = self._names(prefix, spec)
+                size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
+            except ExpressionError as error:
+                raise spec.error(f"pass '{spec.name}': size {error}") from None
+            if not all(1 <= side <= 16384 for side in size):
+                raise spec.error(f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to 16384 a side were expected")
+        self._open.pop()
+        self._sizes[path] = size
+        return size
+
+    def _base(self, path: str, prefix: str) -> tuple[int, int]:
+        if prefix:
+            return self.size_of(prefix)
+        assert self.land.size is not None
+        return self.frame_size if path == "view" else self.land.size
+
+    def _names(self, prefix: str, spec: PassSpec) -> Names:
+        return Names(self, prefix, spec)
+
+
+class Names:
+    """What names stand for in an expression of a pass: sizes, and the parameters around it."""
+
+    def __init__(self, planner: _Planner, prefix: str, spec: PassSpec) -> None:
+        self.planner = planner
+        self.prefix = prefix
+        self.spec = spec
+
+    def __call__(self, name: str) -> Number:
+        """Return the number of a name, or raise ``KeyError``."""
+        from playground.sketch.assign import resolve
+
+        planner = self.planner
+        if name == "time":
+            return planner.time
+        axes = {"x": 0, "y": 1}
+        head, _, axis = name.rpartition(".")
+        if axis in axes and head == "size":
+            path = f"{self.prefix}.{self.spec.name}" if self.prefix else self.spec.name
+            return planner._base(path, self.prefix)[axes[axis]]
+        if axis in axes and head.endswith(".size"):
+            path = head.removesuffix(".size")
+            return planner.size_of(f"{self.prefix}.{path}" if self.prefix else path)[axes[axis]]
+        graph = planner.flat.graphs[self.prefix]
+        try:
+            target = resolve(graph, name)[0].path
+        except PlaygroundError:
+            raise KeyError(name) from None
+        value = planner.flat.values[f"{self.prefix}.{target}" if self.prefix else target]
+        if not isinstance(value, int | float):
+            raise KeyError(name)
+        return value

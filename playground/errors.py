@@ -1,0 +1,139 @@
+"""Give every mistake one family of errors, each with the place it was made.
+
+    PlaygroundError                a mistake that a sentence can explain
+    ├── SketchError                a sketch or a technique's TOML is wrong
+    │   └── ParameterError         a value or a parameter's name is wrong
+    ├── ShaderError                a GLSL text is wrong; one diagnostic a mistake
+    ├── DataError                  an image or elevation file cannot be used
+    ├── ContextError               no OpenGL context, or one that cannot do what is asked
+    └── TrialError                 the trial child was stopped
+        ├── TrialTimeout           … it took too long
+        └── TrialCrash             … it died
+
+A message is one sentence: what was found, what was expected, the nearest valid
+choice. The command line prints it and leaves with status 2; it never shows a
+traceback for one of these.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One mistake, and where it is."""
+
+    message: str
+    file: str = ""  # as the user would name it; empty when there is none
+    line: int = 0  # from 1; 0 when unknown
+    column: int = 0  # from 1; 0 when unknown
+    severity: str = "error"  # "error" or "warning"
+    excerpt: str = ""  # the offending line, as written
+    chain: tuple[str, ...] = ()  # "file:line" of each #include that led here, outermost first
+
+    @property
+    def place(self) -> str:
+        """Return "file:line:column", as much of it as is known."""
+        parts = [self.file] if self.file else []
+        if self.file and self.line:
+            parts.append(str(self.line))
+            if self.column:
+                parts.append(str(self.column))
+        return ":".join(parts)
+
+    def __str__(self) -> str:
+        head = f"{self.place}: {self.message}" if self.place else self.message
+        lines = [head]
+        if self.excerpt.strip():
+            lines.append(f"    {self.excerpt.rstrip()}")
+            if self.column:
+                indent = "".join("\t" if c == "\t" else " " for c in self.excerpt[: self.column - 1])
+                lines.append(f"    {indent}^")
+        lines += [f"    included from {place}" for place in reversed(self.chain)]
+        return "\n".join(lines)
+
+
+class PlaygroundError(Exception):
+    """A mistake that a sentence can explain.
+
+    ``diagnostics`` holds each mistake with its place; ``str(error)`` is all of
+    them, one below the other.
+    """
+
+    exit_status = 2
+
+    def __init__(
+        self,
+        message: str = "",
+        *,
+        file: str | Path = "",
+        line: int = 0,
+        column: int = 0,
+        excerpt: str = "",
+        diagnostics: Iterable[Diagnostic] = (),
+    ) -> None:
+        found = tuple(diagnostics)
+        if not found:
+            found = (Diagnostic(message, str(file), line, column, excerpt=excerpt),)
+        self.diagnostics: tuple[Diagnostic, ...] = found
+        super().__init__("\n".join(map(str, found)))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Cross a process border whole (the trial child sends its errors back)."""
+        return _rebuild, (type(self), self.diagnostics)
+
+
+class SketchError(PlaygroundError):
+    """A sketch or a technique's TOML is wrong."""
+
+
+class ParameterError(SketchError):
+    """A parameter's name or its value is wrong."""
+
+
+class ShaderError(PlaygroundError):
+    """A GLSL text is wrong."""
+
+
+class DataError(PlaygroundError):
+    """An image or elevation file cannot be used."""
+
+
+class ContextError(PlaygroundError):
+    """There is no OpenGL context, or it cannot do what is asked."""
+
+
+class TrialError(PlaygroundError):
+    """The trial child was stopped before it could answer."""
+
+
+class TrialTimeout(TrialError):
+    """The trial child took too long and was killed."""
+
+
+class TrialCrash(TrialError):
+    """The trial child died: the driver or its compiler crashed, or memory ran out."""
+
+
+def nearest(name: str, valid: Iterable[str]) -> str:
+    """Say which valid name was probably meant, as the tail of a sentence.
+
+    Returns ``""`` when nothing is near and there is nothing to list, else
+    ``"; did you mean 'x'?"`` or ``"; there are: a, b, c"``.
+    """
+    names = sorted(set(valid))
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.55)
+    if close:
+        return f"; did you mean '{close[0]}'?"
+    if not names:
+        return ""
+    shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+    return f"; there are: {shown}"
+
+
+def _rebuild(kind: type[PlaygroundError], diagnostics: tuple[Diagnostic, ...]) -> PlaygroundError:
+    return kind(diagnostics=diagnostics)

@@ -1,0 +1,271 @@
+"""Wrap a kernel's text for a driver: the fragment driver (GL 3.3 up) or the compute driver (GL 4.3 up).
+
+Both drivers get the same lines; only what stands before and after them differs. Each
+wrapped stage remembers where the kernel's own lines begin, so that a driver's log can be
+given back its file and line.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from playground.errors import ShaderError
+from playground.sketch.model import Kernel, Output
+from playground.sketch.source import Line, SourceText
+from playground.sketch.words import GIVEN
+
+FRAGMENT, COMPUTE = "fragment", "compute"
+LOCAL = 8
+"""Side of a compute driver's work group, in texels."""
+
+_QUAD = """#version 330
+void main() {
+    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+"""
+_SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The text of one shader stage."""
+
+    text: str
+    first: int  # line of the text, from 1, on which the kernel's first line stands; 0: none of it is in here
+    source: SourceText
+    expected: str  # the signatures that the kernel's file should have, for errors outside its lines
+
+    def locate(self, line: int) -> Line | None:
+        """Return the kernel's line that a line of the text came from, if it did."""
+        index = line - self.first
+        return self.source.lines[index] if self.first and 0 <= index < len(self.source.lines) else None
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """What a driver compiles."""
+
+    kernel: Kernel
+    driver: str  # fragment | compute | draw
+    stages: dict[str, Stage]  # vertex and fragment, or compute
+
+
+def wrap(kernel: Kernel, driver: str) -> Wrapped:
+    """Wrap a kernel, a draw, a companion or a plain shader.
+
+    Raises ``ShaderError`` where the file's functions do not have the signatures its header asks for.
+    """
+    if kernel.kind == "draw":
+        return _wrap_draw(kernel)
+    if kernel.kind == "compute":
+        return _wrap_companion(kernel)
+    if kernel.kind == "plain_fragment":
+        stage = Stage(kernel.source.code, 1, kernel.source, "void main()")
+        return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": stage})
+    if kernel.kind == "plain_compute":
+        return Wrapped(kernel, COMPUTE, {"compute": Stage(kernel.source.code, 1, kernel.source, "void main()")})
+    _check_signature(kernel)
+    return _wrap_compute(kernel) if driver == COMPUTE else _wrap_fragment(kernel)
+
+
+def signature(kernel: Kernel) -> str:
+    """Return the signature that a kernel's function must have."""
+    if len(kernel.outputs) == 1:
+        return f"{kernel.outputs[0].glsl} kernel(ivec2 texel)"
+    return f"void kernel(ivec2 texel, {', '.join(f'out {o.glsl} {o.name}' for o in kernel.outputs)})"
+
+
+def previous_name(kernel: Kernel, output: Output) -> str:
+    """Return the name of the function that reads an output's texel of the turn before."""
+    return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
+
+
+def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
+    return Stage(_QUAD.replace("#version 330", version), 0, kernel.source, "")
+
+
+def _version(kernel: Kernel) -> str:
+    return next(line.code.strip() for line in kernel.source.lines if "#" in line.code and "version" in line.code)
+
+
+def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
+    text = "\n".join(before) + "\n" + code + "\n".join(after) + "\n"
+    return Stage(text, len(before) + 1, kernel.source, expected)
+
+
+def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
+    return [f"uniform {kind} {name};" for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
+
+
+def _wrap_fragment(kernel: Kernel) -> Wrapped:
+    before = ["#version 330", *_given(kernel)]
+    for output in kernel.outputs:
+        name = previous_name(kernel, output)
+        if kernel.reads(name):
+            sampler = f"k_previous_{output.name}"
+            swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
+            before.append(f"uniform sampler2D {sampler};")
+            edge = f"clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1)"
+            before.append(f"{output.glsl} {name}(ivec2 k_texel) {{ return texelFetch({sampler}, {edge}, 0){swizzle}; }}")
+    after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
+    texel = "ivec2(gl_FragCoord.xy)"
+    names = [f"k_out_{o.name}" for o in kernel.outputs]
+    call = f"{names[0]} = kernel({texel});" if len(names) == 1 else f"kernel({texel}, {', '.join(names)});"
+    after.append(f"void main() {{ {call} }}")
+    stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
+    return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+
+
+def _wrap_compute(kernel: Kernel) -> Wrapped:
+    before = ["#version 430", f"layout(local_size_x = {LOCAL}, local_size_y = {LOCAL}) in;"]
+    before += _given(kernel, ("size",))
+    in_place = bool(kernel.visits)
+    if in_place:
+        before.append("uniform ivec2 k_cells;")
+    for unit, output in enumerate(kernel.outputs):
+        name = previous_name(kernel, output)
+        swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
+        access = "" if in_place and kernel.reads(name) else "writeonly "
+        before.append(f"layout({output.format}, binding = {unit}) uniform {access}image2D k_image_{output.name};")
+        if not kernel.reads(name):
+            continue
+        if in_place:
+            fetch = f"imageLoad(k_image_{output.name}, clamp(k_texel, ivec2(0), size - 1)){swizzle}"
+        else:
+            sampler = f"k_previous_{output.name}"
+            before.append(f"uniform sampler2D {sampler};")
+            fetch = f"texelFetch({sampler}, clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1), 0){swizzle}"
+        before.append(f"{output.glsl} {name}(ivec2 k_texel) {{ return {fetch}; }}")
+    cells = "k_cells" if in_place else "size"
+    after = [
+        "void main() {",
+        "    ivec2 k_cell = ivec2(gl_GlobalInvocationID.xy);",
+        f"    if (k_cell.x >= {cells}.x || k_cell.y >= {cells}.y) return;",
+    ]
+    if in_place:
+        after.append("    ivec2 k_texel = visit(k_cell);")
+        after.append("    if (any(lessThan(k_texel, ivec2(0))) || any(greaterThanEqual(k_texel, size))) return;")
+    else:
+        after.append("    ivec2 k_texel = k_cell;")
+    after += [f"    {o.glsl} k_out_{o.name};" for o in kernel.outputs]
+    names = [f"k_out_{o.name}" for o in kernel.outputs]
+    call = f"{names[0]} = kernel(k_texel);" if len(names) == 1 else f"kernel(k_texel, {', '.join(names)});"
+    after.append(f"    {call}")
+    for output in kernel.outputs:
+        after.append(f"    imageStore(k_image_{output.name}, k_texel, {_texel(output)});")
+    after.append("}")
+    stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
+    return Wrapped(kernel, COMPUTE, {"compute": stage})
+
+
+def _texel(output: Output) -> str:
+    return {1: "vec4({0}, 0.0, 0.0, 1.0)", 2: "vec4({0}, 0.0, 1.0)", 4: "{0}"}[output.components].format(
+        f"k_out_{output.name}"
+    )
+
+
+def _wrap_companion(kernel: Kernel) -> Wrapped:
+    before = ["#version 430", f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;"]
+    before += _given(kernel)
+    for unit, output in enumerate(kernel.outputs):
+        before.append(f"layout({output.format}, binding = {unit}) uniform image2D out_{output.name};")
+    for unit, buffer in enumerate(kernel.buffers):
+        block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
+        before.append(f"layout(std430, binding = {unit}) {block}")
+    stage = _stage(kernel, before, kernel.source.code, [], "void main()")
+    return Wrapped(kernel, COMPUTE, {"compute": stage})
+
+
+def _wrap_draw(kernel: Kernel) -> Wrapped:
+    code = kernel.source.code
+    vertex = _function(kernel, "vertex", "vec4 vertex(vec3 corner, out vec3 position)")
+    fragment = _function(kernel, "fragment", "vec4 fragment(vec3 position)")
+    varyings = {name: kind for way, kind, name in vertex if way == "out"}
+    attributes = [(kind, name) for way, kind, name in vertex if way != "out"]
+    for _, kind, name in fragment:
+        if varyings.get(name) != kind:
+            line = _line_of(kernel, "fragment")
+            given = ", ".join(f"{k} {n}" for n, k in varyings.items()) or "nothing"
+            raise line.error(f"fragment takes {kind} {name}, which vertex does not give; it gives {given}")
+    expected = "vec4 vertex(…) and vec4 fragment(…)"
+    before = ["#version 330", "#define VERTEX_STAGE", *_given(kernel)]
+    after = [f"in {kind} k_in_{name};" for kind, name in attributes]
+    after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
+    arguments = [f"k_to_{name}" if way == "out" else f"k_in_{name}" for way, _, name in vertex]
+    after.append(f"void main() {{ gl_Position = vertex({', '.join(arguments)}); }}")
+    first = _stage(kernel, before, _without(code, "fragment"), after, expected)
+    before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
+    after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]
+    after.append("layout(location = 0) out vec4 k_out;")
+    after.append(f"void main() {{ k_out = fragment({', '.join(f'k_to_{name}' for _, _, name in fragment)}); }}")
+    second = _stage(kernel, before, _without(code, "vertex"), after, expected)
+    return Wrapped(kernel, "draw", {"vertex": first, "fragment": second})
+
+
+def _flat(kind: str) -> str:
+    return "flat " if kind in ("int", "uint") or kind.startswith(("ivec", "uvec")) else ""
+
+
+def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, str]]:
+    """Return (in | out, type, name) of each argument of a draw's function."""
+    match = re.search(_SIGNATURE.format(name=name), kernel.source.code)
+    if not match or match.group(1) != "vec4":
+        raise kernel.source.lines[0].error(f"a draw needs a function {example}")
+    found = []
+    for part in filter(None, (p.strip() for p in match.group(2).split(","))):
+        words = [w for w in part.split() if w not in ("const", "highp", "mediump", "lowp")]
+        way = words.pop(0) if words[0] in ("in", "out", "inout") else "in"
+        if len(words) != 2 or way == "inout":
+            raise _line_of(kernel, name).error(f"cannot read the argument '{part}' of {name}; expected {example}")
+        found.append((way, words[0], words[1]))
+    return found
+
+
+def _line_of(kernel: Kernel, name: str) -> Line:
+    pattern = re.compile(rf"\b{name}\s*\(")
+    return next((line for line in kernel.source.lines if pattern.search(line.code)), kernel.source.lines[0])
+
+
+def _without(code: str, name: str) -> str:
+    """Blank a function's definition, keeping lines: what one stage calls may not exist in the other."""
+    match = re.search(_SIGNATURE.format(name=name), code)
+    if not match:
+        return code
+    depth, end = 0, match.end() - 1
+    for end in range(match.end() - 1, len(code)):
+        depth += {"{": 1, "}": -1}.get(code[end], 0)
+        if depth == 0:
+            break
+    blank = re.sub(r"[^\n]", " ", code[match.start() : end + 1])
+    return code[: match.start()] + blank + code[end + 1 :]
+
+
+def _check_signature(kernel: Kernel) -> None:
+    code = kernel.source.code
+    match = re.search(_SIGNATURE.format(name="kernel"), code)
+    if not match:
+        raise _unsigned(kernel, f"there is no function {signature(kernel)}")
+    single = len(kernel.outputs) == 1
+    parts = [part.split() for part in match.group(2).split(",")]
+    found = [([*p[:-1]][-1] if len(p) > 1 else p[0] if p else "", p[0] if p else "") for p in parts]
+    wanted = ["ivec2"] if single else ["ivec2", *(o.glsl for o in kernel.outputs)]
+    result = kernel.outputs[0].glsl if single else "void"
+    types = [kind for kind, _ in found]
+    ways = [way for _, way in found[1:]]
+    if match.group(1) != result or types != wanted or any(way != "out" for way in ways):
+        raise _unsigned(kernel, f"kernel must be {signature(kernel)}", match.start(1))
+    names = [p[-1] for p in parts[1:]]
+    if not single and names != [o.name for o in kernel.outputs]:
+        raise _unsigned(kernel, f"kernel must be {signature(kernel)}: its outputs in the order of the pragma", match.start(1))
+    if kernel.visits and not re.search(r"\bivec2\s+visit\s*\(\s*ivec2\b", code):
+        raise _unsigned(kernel, "a kernel with visits needs a function ivec2 visit(ivec2 cell)")
+
+
+def _unsigned(kernel: Kernel, message: str, position: int = -1) -> ShaderError:
+    if position < 0:
+        pragma = next((line for line in kernel.source.lines if "#pragma" in line.text), kernel.source.lines[0])
+        return pragma.error(message)
+    code = kernel.source.code
+    number = code.count("\n", 0, position)
+    return kernel.source.lines[number].error(message, position - (code.rfind("\n", 0, position) + 1) + 1)

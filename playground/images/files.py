@@ -1,0 +1,402 @@
+"""Move pictures and grids of values between files and NumPy arrays.
+
+Pictures have their top (north) row first, in the file and in the array; grids
+of values have row 0 in the south, as in the engine, and are turned over where
+a format is an image. A file is written whole or not at all: a temporary file
+in the same folder takes the name only when it is complete.
+
+It does not decode sRGB (`playground.images.colour` does), does not apply ICC
+profiles, and knows nothing of metres (`playground.terrain.elevation` does).
+
+16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour
+therefore asks Pillow's decoder for the high bytes and for the low bytes in
+turn; writing is done here, since a PNG without adaptive filters is four chunks
+(W3C PNG specification, third edition, 2025, clauses 5, 9 and 11).
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import secrets
+import struct
+import warnings
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError, nearest
+
+if TYPE_CHECKING:
+    import PIL.Image
+
+    _Picture = PIL.Image.Image
+
+MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
+
+_PNG_START = b"\x89PNG\r\n\x1a\n"
+_VALUE_ENDINGS = (".npy", ".png", ".tif", ".tiff")
+_NO_TEXT: Mapping[str, str] = MappingProxyType({})
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A picture as the file holds it: sRGB-encoded, straight alpha."""
+
+    pixels: NDArray[np.uint8] | NDArray[np.float32]  # (rows, cols, 4), top row first; uint8 0..255
+    # from 8-bit files, float32 0..1 from 16-bit ones; alpha is full where the file has none
+    name: str  # the file's name, for messages
+    transparent: bool  # whether any pixel is not opaque
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Return (width, height) in pixels."""
+        rows, cols = self.pixels.shape[:2]
+        return cols, rows
+
+
+# Reading
+
+
+def read_image(path: str | Path) -> Image:
+    """Read a PNG, JPEG or WebP picture (told by content, not by the file's name).
+
+    Palettes, grey and CMYK become RGBA; a camera's orientation mark is obeyed;
+    of an animation, the first picture counts. Alpha is straight, not premultiplied.
+
+    Raises:
+        DataError: missing, not a picture, damaged or too large.
+    """
+    path = checked_file(path)
+    with _reading(path) as handle:
+        depth, _ = _png_header(handle)
+        if depth == 16:
+            samples = _png_samples(handle, path)
+            pixels: NDArray[np.uint8] | NDArray[np.float32]
+            pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
+            opaque = bool((pixels[..., 3] == 1.0).all())
+        else:
+            pixels = _eight_bit(_open(handle, path))
+            opaque = bool((pixels[..., 3] == 255).all())
+    return Image(pixels, path.name, not opaque)
+
+
+def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
+    """Read a PNG as uint8 (rows, cols, 4), top row first, and the texts it carries.
+
+    Of 16-bit files only the high bytes are kept; `read_image` keeps all.
+
+    Raises:
+        DataError: missing, not a PNG, damaged or too large.
+    """
+    path = checked_file(path)
+    with _reading(path) as handle:
+        depth, _ = _png_header(handle)
+        if not depth:
+            raise DataError("not a PNG file; expected one, as write_png makes them", file=path)
+        picture = _open(handle, path)
+        picture.load()
+        text = {str(k): str(v) for k, v in getattr(picture, "text", {}).items()}
+        if depth == 16:
+            handle.seek(0)
+            return (_four_channels(_png_samples(handle, path)) >> 8).astype(np.uint8), text
+        return _eight_bit(picture), text
+
+
+def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    """Read the numbers a PNG stores: (rows, cols, 1 to 4), top row first.
+
+    uint8, or uint16 from 16-bit files; a palette is replaced by its colours.
+
+    Raises:
+        DataError: missing, not a PNG, damaged or too large.
+    """
+    path = checked_file(path)
+    with _reading(path) as handle:
+        if not _png_header(handle)[0]:
+            raise DataError("not a PNG file, whatever its name says; expected one", file=path)
+        return _png_samples(handle, path)
+
+
+def checked_file(path: str | Path) -> Path:
+    """Return the path if a file that is not empty lies there.
+
+    Raises:
+        DataError: nothing there (with the nearest name in that folder), a folder,
+            an empty file, or no permission.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise DataError("is a folder; expected a file", file=path)
+        if path.stat().st_size == 0:
+            raise DataError("the file is empty", file=path)
+    except (FileNotFoundError, NotADirectoryError) as error:
+        if not path.parent.is_dir():
+            raise DataError(f"there is no folder {str(path.parent)!r}", file=path) from error
+        near = nearest(path.name, (p.name for p in path.parent.iterdir() if p.suffix == path.suffix))
+        raise DataError(f"there is no such file{near}", file=path) from error
+    except (OSError, ValueError) as error:
+        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
+    return path
+
+
+def reason(error: BaseException) -> str:
+    """Say in a few words of one line what an error of a library means."""
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(text.split()).rstrip(".") or type(error).__name__
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[BinaryIO]:
+    # Pillow's decoders raise half a dozen kinds of exception on damaged files (OSError,
+    # SyntaxError, ValueError, struct.error, zlib.error …), and warn about odd metadata.
+    try:
+        with warnings.catch_warnings(), path.open("rb") as handle:
+            warnings.simplefilter("ignore")
+            yield handle
+    except DataError:
+        raise
+    except PermissionError as error:
+        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
+    except Exception as error:
+        raise DataError(f"the file is damaged or cut short: {reason(error)}", file=path) from error
+
+
+def _png_header(handle: BinaryIO) -> tuple[int, int]:
+    # (bit depth, colour type), (0, 0) for what is not a PNG; leaves the handle at the start.
+    start = handle.read(26)
+    handle.seek(0)
+    return (start[24], start[25]) if start.startswith(_PNG_START) and len(start) == 26 else (0, 0)
+
+
+def _open(handle: BinaryIO, path: Path) -> _Picture:
+    import PIL.Image
+
+    try:
+        picture: _Picture = PIL.Image.open(handle, formats=("PNG", "JPEG", "WEBP"))
+    except PIL.Image.DecompressionBombError as error:
+        raise DataError(f"too large a picture to open: {reason(error)}", file=path) from error
+    except PIL.UnidentifiedImageError as error:
+        raise DataError("not a picture that can be read; expected PNG, JPEG or WebP", file=path) from error
+    width, height = picture.size
+    if width * height > MAX_TEXELS:
+        raise DataError(f"{width} x {height} pixels are too many; the limit is 2**28", file=path)
+    return picture
+
+
+def _eight_bit(picture: _Picture) -> NDArray[np.uint8]:
+    from PIL import ImageOps
+
+    return np.array(ImageOps.exif_transpose(picture).convert("RGBA"), dtype=np.uint8)
+
+
+def _png_samples(handle: BinaryIO, path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    depth, kind = _png_header(handle)
+    picture = _open(handle, path)
+    if depth == 16:
+        return _sixteen_bit(handle, path, picture, kind)
+    if picture.mode == "P":
+        picture = picture.convert("RGBA" if "transparency" in picture.info else "RGB")
+    elif picture.mode == "1":
+        picture = picture.convert("L")
+    samples = np.array(picture, dtype=np.uint8)
+    return samples.reshape(*samples.shape[:2], -1)
+
+
+def _sixteen_bit(handle: BinaryIO, path: Path, picture: _Picture, kind: int) -> NDArray[np.uint16]:
+    if kind == 0:
+        return np.array(picture, dtype=np.uint16)[..., None]
+    if kind == 4:  # grey and alpha: the four bytes of a pixel pass for RGBA
+        pairs = np.ascontiguousarray(_decoded(picture, "RGBA", "RGBA")).view(">u2")
+        return pairs.astype(np.uint16)
+    mode = "RGB" if kind == 2 else "RGBA"
+    # Unpackers made for the two byte orders: on the same file they give either byte.
+    high = _decoded(picture, mode, f"{mode};16B").astype(np.uint16)
+    handle.seek(0)
+    low = _decoded(_open(handle, path), mode, f"{mode};16L")
+    return np.asarray((high << 8) | low, dtype=np.uint16)
+
+
+def _decoded(picture: _Picture, mode: str, raw_mode: str) -> NDArray[np.uint8]:
+    from PIL import ImageFile
+
+    assert isinstance(picture, ImageFile.ImageFile)
+    if picture.mode != mode:
+        raise ValueError(f"Pillow opens this PNG as {picture.mode}, expected {mode}")
+    picture.tile = [tile._replace(args=raw_mode) for tile in picture.tile]
+    return np.array(picture, dtype=np.uint8)
+
+
+def _four_channels(
+    samples: NDArray[np.uint8] | NDArray[np.uint16],
+) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    channels = samples.shape[-1]
+    colours = samples if channels > 2 else samples[..., [0, 0, 0, *range(1, channels)]]
+    if colours.shape[-1] == 4:
+        return colours
+    opaque = np.full((*samples.shape[:2], 1), np.iinfo(samples.dtype).max, dtype=samples.dtype)
+    return np.concatenate([colours, opaque], axis=-1)
+
+
+# Writing
+
+
+def encode_png(array: NDArray[np.uint8], text: Mapping[str, str] = _NO_TEXT) -> bytes:
+    """Return the bytes of a PNG: `array` is uint8 (rows, cols, 3 or 4), top row first.
+
+    `text` becomes text chunks (the keys 1 to 79 Latin-1 characters, the values any
+    text). The same array and text give the same bytes, on the same Pillow.
+
+    Raises:
+        DataError: another dtype or shape, or a key that PNG cannot hold.
+    """
+    import PIL.Image
+    from PIL.PngImagePlugin import PngInfo
+
+    array = np.asarray(array)
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
+        raise DataError(f"a picture is a uint8 array (rows, cols, 3 or 4); found {array.dtype} {array.shape}")
+    chunks = PngInfo()
+    for key, value in text.items():
+        if not re.fullmatch(r"[!-~¡-ÿ](?:[ -~¡-ÿ]{0,77}[!-~¡-ÿ])?", key) or "  " in key:
+            raise DataError(f"{key!r} cannot name a text in a PNG; expected 1 to 79 Latin-1 characters")
+        if "\0" in value:
+            raise DataError(f"the text {key!r} has a zero character in it, which PNG cannot hold")
+        chunks.add_text(key, value)
+    stream = io.BytesIO()
+    PIL.Image.fromarray(np.ascontiguousarray(array)).save(stream, "PNG", pnginfo=chunks)
+    return stream.getvalue()
+
+
+def write_png(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, str] = _NO_TEXT) -> None:
+    """Write a PNG, whole or not at all; `array` and `text` as in `encode_png`.
+
+    Raises:
+        DataError: what `encode_png` refuses, a missing folder, no permission, a full disk.
+    """
+    data = encode_png(array, text)
+    with replacing(path) as handle:
+        handle.write(data)
+
+
+def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
+    """Write a grid of values, whole or not at all, in the format the name's ending says.
+
+    `array` is (ny, nx) or (ny, nx, 1 to 4), **row 0 in the south** as in the engine.
+
+    * `.npy`: float32, exactly these values in this order, so row 0 stays in the south;
+    * `.png`: 16 bits, 0..1 as 0..65535 rounded to nearest and clamped, north row on top;
+      1, 3 or 4 channels (grey, RGB, RGBA), no transfer curve;
+    * `.tif`, `.tiff`: float32, uncompressed, exactly these values, north row on top.
+
+    Returns a sentence on what was clamped, or `""`.
+
+    Raises:
+        DataError: another ending or shape, a value that is not finite (PNG only),
+            a missing folder, no permission, a full disk.
+    """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in _VALUE_ENDINGS:
+        raise DataError(f"values cannot be written as {ending!r}{nearest(ending, _VALUE_ENDINGS)}", file=path)
+    values = np.asarray(array)
+    if values.dtype.kind not in "fiu" or values.ndim not in (2, 3) or 0 in values.shape:
+        raise DataError(
+            f"values are numbers (ny, nx) or (ny, nx, channels); found {values.dtype} {values.shape}",
+            file=path,
+        )
+    if values.ndim == 3 and values.shape[2] > 4:
+        raise DataError(f"{values.shape[2]} channels are too many; the most is 4", file=path)
+    with np.errstate(all="ignore"):
+        values = values.astype(np.float32)
+    if ending == ".npy":
+        with replacing(path) as handle:
+            np.lib.format.write_array(handle, values, allow_pickle=False)
+        return ""
+    image = np.ascontiguousarray(values[::-1])  # north on top
+    if image.ndim == 3 and image.shape[2] == 1:
+        image = image[..., 0]
+    if ending != ".png":
+        import tifffile
+
+        with replacing(path) as handle:
+            tifffile.imwrite(handle, image, photometric="minisblack", metadata=None, software=False)
+        return ""
+    data, clamped = _values_as_png(image, path)
+    with replacing(path) as handle:
+        handle.write(data)
+    return clamped
+
+
+def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
+    kinds = {1: 0, 3: 2, 4: 6}
+    channels = 1 if image.ndim == 2 else image.shape[2]
+    if channels not in kinds:
+        raise DataError(
+            f"a PNG holds 1, 3 or 4 channels; found {channels}, which .npy and .tif can hold", file=path
+        )
+    unusable = int(np.count_nonzero(~np.isfinite(image)))
+    if unusable:
+        raise DataError(
+            f"{unusable} of {image.size} values are not finite, which a PNG cannot hold; .npy and .tif can",
+            file=path,
+        )
+    low, high = float(image.min()), float(image.max())
+    outside = int(np.count_nonzero((image < 0.0) | (image > 1.0)))
+    said = ""
+    if outside:
+        said = f"{outside} of {image.size} values lay outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
+    with np.errstate(all="ignore"):
+        scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
+    rows, cols = image.shape[:2]
+    stored = scaled.astype(">u2").reshape(rows, -1).view(np.uint8)
+    # Filter 2, "Up": each byte less the one above it; smooth land packs well that way.
+    lines = np.empty((rows, stored.shape[1] + 1), dtype=np.uint8)
+    lines[:, 0] = 2
+    lines[0, 1:] = stored[0]
+    np.subtract(stored[1:], stored[:-1], out=lines[1:, 1:])
+    header = struct.pack(">IIBBBBB", cols, rows, 16, kinds[channels], 0, 0, 0)
+    body = zlib.compress(lines.tobytes(), 6)
+    chunks = [_chunk(b"IHDR", header), _chunk(b"IDAT", body), _chunk(b"IEND", b"")]
+    return _PNG_START + b"".join(chunks), said
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[BinaryIO]:
+    """Open a new file that takes the name `path` when the block ends well.
+
+    It is written in the same folder. When the block fails, the temporary file is
+    removed and whatever had the name stays as it was.
+
+    Raises:
+        DataError: a missing folder, a folder of that name, no permission, a full disk.
+    """
+    path = Path(path)
+    if "\0" in str(path):
+        raise DataError("a file's name cannot hold a zero character", file=repr(str(path)))
+    try:
+        if not path.parent.is_dir():
+            raise DataError(f"there is no folder {str(path.parent)!r} to write into", file=path)
+        if path.is_dir():
+            raise DataError("is a folder; expected the name of a file to write", file=path)
+        temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(6)}.part")
+        try:
+            with temporary.open("xb") as handle:
+                yield handle
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise DataError(f"cannot be written: {reason(error)}", file=path) from error

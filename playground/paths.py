@@ -1,0 +1,32 @@
+"""Know where the GLSL library is: beside the package in a checkout, inside it in a wheel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+_CANDIDATES = (_PACKAGE / "glsl", _PACKAGE.parent / "glsl")
+
+GLSL: Path = next((folder for folder in _CANDIDATES if folder.is_dir()), _CANDIDATES[0])
+"""The library's folder: kernels, techniques, pure functions, the sketches that ship."""
+
+SKETCHES: Path = GLSL / "sketches"
+"""The sketches that ship."""
+
+CHECKOUT: Path | None = _PACKAGE.parent if (_PACKAGE.parent / "pyproject.toml").is_file() and GLSL == _PACKAGE.parent / "glsl" else None
+"""The repository's root where the package runs from one (so that its own shots are found), else None."""
+
+
+def shown(path: str | Path) -> str:
+    """Name a file as its user would: from the current folder, from ``glsl/``, else whole."""
+    full = Path(path)
+    if not full.is_absolute():
+        return full.as_posix()
+    for base, prefix in ((Path.cwd(), ""), (GLSL, "glsl/")):
+        if full.is_relative_to(base):
+            return prefix + full.relative_to(base).as_posix()
+    return str(full)
+
+
+DEFAULT_SKETCH = "jacksboro"
+"""What opens when no sketch is named."""

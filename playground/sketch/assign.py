@@ -1,0 +1,198 @@
+"""Find parameters by path and set them.
+
+A path is ``pass[.inner…].parameter``. A name that a technique exports stands for its
+targets inside; every inner parameter can be reached as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from playground.errors import ParameterError, nearest
+from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, Value
+from playground.sketch.values import coerce
+
+LAND = ("size", "extent", "relief", "base_elevation")
+"""What belongs to the sketch itself, and may be set like a parameter."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A leaf parameter that a path stands for."""
+
+    path: str  # "height.detail.frequency"
+    parameter: Parameter
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A parameter as a person meets it."""
+
+    path: str  # as ``--set`` takes it
+    parameter: Parameter  # of the first target
+    exported: bool  # by its pass's technique, or the pass is a single kernel
+
+
+def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
+    """Return the leaf parameters that a path stands for, at least one.
+
+    Raises ``ParameterError`` that names the nearest path.
+    """
+    found = _resolve(technique, path)
+    if not found:
+        raise ParameterError(f"no parameter '{path}'{nearest(path, all_paths(technique))}")
+    return found
+
+
+def all_paths(technique: Technique) -> list[str]:
+    """List every path that ``resolve`` takes: exported names, then inner ones."""
+    if isinstance(technique, Kernel):
+        return [p.name for p in technique.parameters]
+    exported = [e.name for e in technique.parameters]
+    inner = [f"{s.name}.{p}" for s in technique.passes for p in all_paths(s.technique)]
+    return exported + inner
+
+
+def shown_parameters(sketch: Sketch) -> Iterator[Shown]:
+    """Yield every parameter of a sketch, pass by pass, exported ones before inner ones.
+
+    An inner parameter that an export stands for is not yielded a second time.
+    """
+    for spec in sketch.graph.passes:
+        technique = spec.technique
+        if isinstance(technique, Kernel):
+            for parameter in technique.parameters:
+                yield Shown(f"{spec.name}.{parameter.name}", parameter, True)
+            continue
+        covered: set[str] = set()
+        for export in technique.parameters:
+            targets = resolve(technique, export.name)
+            covered |= {t.path for t in targets}
+            parameter = replace(targets[0].parameter, name=export.name)
+            yield Shown(f"{spec.name}.{export.name}", parameter, True)
+        for path, parameter in _leaves(technique):
+            if path not in covered:
+                yield Shown(f"{spec.name}.{path}", parameter, False)
+
+
+def check_values(technique: Technique, given: Mapping[str, object]) -> tuple[tuple[str, Value], ...]:
+    """Return values checked against the parameters their paths stand for; raise ``ParameterError``."""
+    return tuple((path, coerce(resolve(technique, path)[0].parameter, value, path)) for path, value in given.items())
+
+
+def flat_values(technique: Technique, given: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    """Join the nested tables that TOML makes of dotted keys, but for a value that is itself a table."""
+    found: dict[str, object] = {}
+    for key, value in given.items():
+        path = f"{prefix}{key}"
+        if isinstance(value, Mapping) and not _resolve(technique, path):
+            found |= flat_values(technique, value, f"{path}.")
+        else:
+            found[path] = value
+    return found
+
+
+def assign(sketch: Sketch, given: Mapping[str, object]) -> Sketch:
+    """Return the sketch with values set over its own; raise ``ParameterError``."""
+    overrides = dict(sketch.overrides)
+    for path, value in given.items():
+        if path in LAND:
+            sketch = _set_land(sketch, path, value)
+            continue
+        try:
+            target = resolve(sketch.graph, path)[0]
+        except ParameterError:
+            valid = [*LAND, *all_paths(sketch.graph)]
+            raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}") from None
+        overrides.pop(path, None)
+        overrides[path] = coerce(target.parameter, value, path)
+    return replace(sketch, overrides=tuple(overrides.items()))
+
+
+def effective_values(technique: Technique) -> dict[str, Value]:
+    """Return the value of every leaf parameter, by its path inside the technique.
+
+    A pass's own ``set`` wins over what its technique sets inside, and that over the
+    kernels' defaults; the targets of one export share the first target's value.
+    """
+    if isinstance(technique, Kernel):
+        return {p.name: p.default for p in technique.parameters}
+    found: dict[str, Value] = {}
+    for spec in technique.passes:
+        inner = effective_values(spec.technique)
+        apply(spec.technique, inner, spec.values)
+        found |= {f"{spec.name}.{path}": value for path, value in inner.items()}
+    for export in technique.parameters:
+        targets = resolve(technique, export.name)
+        for target in targets[1:]:
+            found[target.path] = found[targets[0].path]
+    return found
+
+
+def apply(technique: Technique, found: dict[str, Value], values: Iterable[tuple[str, Value]]) -> None:
+    """Put values, by path, over those of ``effective_values``, in place."""
+    for path, value in values:
+        for target in resolve(technique, path):
+            found[target.path] = value
+
+
+def value_of(sketch: Sketch, path: str, found: Mapping[str, Value]) -> Value:
+    """Return the value that a path has, given the sketch's leaf values."""
+    return found[resolve(sketch.graph, path)[0].path]
+
+
+def values_of(sketch: Sketch) -> dict[str, Value]:
+    """Return the value of every leaf parameter of a sketch, overrides included, by its path."""
+    found = effective_values(sketch.graph)
+    apply(sketch.graph, found, sketch.overrides)
+    return found
+
+
+def _resolve(technique: Technique, path: str) -> tuple[Target, ...]:
+    if isinstance(technique, Kernel):
+        parameter = technique.parameter(path)
+        return (Target(path, parameter),) if parameter else ()
+    head, _, rest = path.partition(".")
+    if not rest:
+        export = next((e for e in technique.parameters if e.name == head), None)
+        if export is None:
+            return ()
+        return tuple(t for target in export.targets for t in _resolve(technique, target) if target != path)
+    spec = technique.find(head)
+    if spec is None:
+        return ()
+    return tuple(replace(t, path=f"{head}.{t.path}") for t in _resolve(spec.technique, rest))
+
+
+def _leaves(technique: Graph) -> Iterator[tuple[str, Parameter]]:
+    for spec in technique.passes:
+        if isinstance(spec.technique, Kernel):
+            for parameter in spec.technique.parameters:
+                yield f"{spec.name}.{parameter.name}", parameter
+        else:
+            for path, parameter in _leaves(spec.technique):
+                yield f"{spec.name}.{path}", parameter
+
+
+def _set_land(sketch: Sketch, key: str, given: object) -> Sketch:
+    numbers: list[object]
+    if isinstance(given, str):
+        numbers = list(given.replace("x", ",").split(","))
+    else:
+        numbers = list(given) if isinstance(given, list | tuple) else [given]
+    try:
+        values = [float(str(n)) for n in numbers]
+    except ValueError:
+        values = []
+    if key == "size":
+        if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= 16384 for v in values):
+            raise ParameterError(f"size = {given!r}: expected 1 to 16384 texels a side, as 513 or 513x257")
+        return replace(sketch, size=(int(values[0]), int(values[-1])))
+    if key == "extent":
+        if len(values) not in (1, 2) or not all(0 < v < 1e9 for v in values):
+            raise ParameterError(f"extent = {given!r}: expected metres above 0, as 10240 or 10240x8000")
+        return replace(sketch, extent=(values[0], values[-1]))
+    if len(values) != 1 or not abs(values[0]) < 1e9 or (key == "relief" and values[0] < 0):
+        raise ParameterError(f"{key} = {given!r}: expected a number of metres")
+    return replace(sketch, relief=values[0]) if key == "relief" else replace(sketch, base_elevation=values[0])

@@ -1,0 +1,303 @@
+"""What a sketch is made of: frozen values that can be hashed, compared and sent to a child process."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from playground.errors import ParameterError, SketchError, nearest
+from playground.sketch.source import SourceText
+
+Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
+"""A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Widget:
+    """How a parameter is shown and what it may be."""
+
+    kind: str = "number"  # number slider log_slider angle direction colour menu checkbox point file
+    low: float | None = None  # None: unbounded
+    high: float | None = None
+    choices: tuple[str, ...] = ()  # of a menu
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How a texture is read."""
+
+    filter: str = "nearest"  # nearest | linear
+    wrap: str = "clamp"  # clamp | repeat
+    mipmap: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A uniform with its ``//!`` annotation."""
+
+    name: str
+    type: str  # GLSL: float int uint bool vec2..4 ivec2..4 uvec2..4, or sampler2D for a file
+    default: Value
+    widget: Widget = Widget()
+    step: float | None = None
+    unit: str = ""
+    group: str = ""
+    label: str = ""
+    tooltip: str = ""
+    sampling: Sampling = Sampling()  # of a file
+    file: str = ""
+    line: int = 0
+
+    @property
+    def title(self) -> str:
+        """What a panel writes beside it."""
+        return self.label or self.name.replace("_", " ").capitalize()
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A texture that a kernel reads."""
+
+    name: str
+    sampling: Sampling = Sampling()
+    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
+    line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A texture that a kernel writes."""
+
+    name: str
+    format: str  # r8 r16 r16f r32f and their rg and rgba forms
+
+    @property
+    def components(self) -> int:
+        """Channels of a texel."""
+        return 4 if self.format.startswith("rgba") else 2 if self.format.startswith("rg") else 1
+
+    @property
+    def glsl(self) -> str:
+        """The GLSL type of a texel."""
+        return {1: "float", 2: "vec2", 4: "vec4"}[self.components]
+
+
+@dataclass(frozen=True, slots=True)
+class Buffer:
+    """A storage buffer of a compute companion."""
+
+    name: str
+    type: str  # GLSL scalar or vec4
+    count: str  # expression
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """One GLSL file that can be run: a kernel, a source, a draw, a compute companion or a plain shader."""
+
+    name: str  # "generation/diamond_square"
+    kind: str  # kernel | source | draw | compute | plain_fragment | plain_compute
+    source: SourceText
+    outputs: tuple[Output, ...]
+    parameters: tuple[Parameter, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    repeat: str = "1"
+    accepts: str = ""
+    visits: str = ""
+    registry: str = ""  # of a source or a draw: the name of the source or mesh
+    blend: str = "none"
+    depth: str = "less"
+    groups: str = ""  # of a compute companion
+    local: tuple[int, int] = (8, 8)
+    buffers: tuple[Buffer, ...] = ()
+    title: str = ""  # the sentence that the file begins with
+    companion: Kernel | None = None  # the .comp beside it
+
+    @property
+    def path(self) -> str:
+        """Absolute path of the file."""
+        return self.source.path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file the kernel is made of."""
+        return self.source.files + (self.companion.files if self.companion else ())
+
+    def parameter(self, name: str) -> Parameter | None:
+        """Return the parameter of that name, if there is one."""
+        return next((p for p in self.parameters if p.name == name), None)
+
+    def reads(self, given: str) -> bool:
+        """Say whether the text names something that the engine gives."""
+        return given in self.source.names
+
+    @property
+    def needs_inputs(self) -> tuple[str, ...]:
+        """Inputs that must be wired."""
+        return tuple(i.name for i in self.inputs if not i.fallback)
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """A name that a technique of several passes shows outside, and what it stands for inside."""
+
+    name: str
+    targets: tuple[str, ...]  # paths inside; the first gives annotation and default
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class PassSpec:
+    """A ``[[pass]]`` of a TOML file, with the technique that fills it."""
+
+    name: str
+    use: str
+    technique: Technique
+    inputs: tuple[tuple[str, str], ...] = ()  # input → "pass[.inner…][:output]"
+    values: tuple[tuple[str, Value], ...] = ()  # parameter path inside the technique → value
+    size: tuple[str, str] | None = None  # expressions; None: the size of what it stands in
+    repeat: str = ""
+    feedback: tuple[tuple[str, str], ...] = ()  # input → own output
+    file: str = ""
+    line: int = 0
+
+    def error(self, message: str) -> SketchError:
+        """Return an error that points at this pass."""
+        return SketchError(message, file=self.file, line=self.line)
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A technique of several passes; a sketch is one too."""
+
+    name: str
+    path: str  # absolute path of its TOML
+    passes: tuple[PassSpec, ...]
+    parameters: tuple[Export, ...] = ()
+    inputs: tuple[Export, ...] = ()
+    outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
+    title: str = ""
+    companion: Kernel | None = None
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file the technique is made of."""
+        found = dict.fromkeys([self.path])
+        for spec in self.passes:
+            found |= dict.fromkeys(spec.technique.files)
+        if self.companion:
+            found |= dict.fromkeys(self.companion.files)
+        return tuple(found)
+
+    def find(self, name: str) -> PassSpec | None:
+        """Return the pass of that name, if there is one."""
+        return next((p for p in self.passes if p.name == name), None)
+
+
+Technique = Kernel | Graph
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """An eye that orbits a point of the land."""
+
+    azimuth: float = 200.0  # [degrees] clockwise from north: where the eye stands, seen from the target
+    elevation: float = 32.0  # [degrees] of the eye above the target's horizon, -89..89
+    distance: float = 0.0  # [m] from the target; 0: as far as shows the whole land
+    target: tuple[float, float, float] | None = None  # [m] of the land; None: its middle, at half its relief
+    field_of_view: float = 35.0  # [degrees] vertical, 5..120
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A picture that a sketch promises."""
+
+    name: str
+    size: tuple[int, int] = (640, 360)  # pixels
+    time: float = 0.0  # [s]
+    camera: Camera | None = None  # None: the view's
+    values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
+    preset: str = ""
+    samples: int | None = None  # None: the view's
+    steps: tuple[tuple[str, int], ...] = ()  # pass → turn to stop at
+    line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Preset:
+    """Values that go together."""
+
+    name: str
+    values: tuple[tuple[str, Value], ...]
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A whole sketch: what a user opens, shares and keeps under version control."""
+
+    name: str
+    file: str  # absolute path of the TOML, or of the kernel opened alone
+    folder: str  # absolute path; its own files stay inside
+    graph: Graph  # the passes; the view is the last of them, named "view"
+    title: str = ""
+    size: tuple[int, int] | None = None  # texels, x and y; None: from the land's file
+    extent: tuple[float, float] | None = None  # [m]
+    relief: float | None = None  # [m]
+    base_elevation: float | None = None  # [m] above sea level at height 0
+    camera: Camera = Camera()
+    samples: int = 4  # antialiasing of draws
+    shots: tuple[Shot, ...] = ()
+    presets: tuple[Preset, ...] = ()
+    overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every text file the sketch is made of."""
+        return tuple(dict.fromkeys([self.file, *self.graph.files]))
+
+    def shot(self, name: str) -> Shot:
+        """Return the shot of that name; raise ``SketchError`` if there is none."""
+        for shot in self.shots:
+            if shot.name == name:
+                return shot
+        raise SketchError(f"no shot '{name}' in sketch {self.name}{nearest(name, [s.name for s in self.shots])}")
+
+    def with_values(self, values: Mapping[str, object]) -> Sketch:
+        """Return the sketch with parameters set, by path; text is read as on the command line.
+
+        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well.
+        Raises ``ParameterError`` naming the nearest path or the range.
+        """
+        from playground.sketch.assign import assign  # it needs this module
+
+        return assign(self, values)
+
+    def with_camera(self, camera: Camera) -> Sketch:
+        """Return the sketch seen by another camera."""
+        return replace(self, camera=camera)
+
+    def with_preset(self, name: str) -> Sketch:
+        """Return the sketch with a preset's values; raise ``ParameterError`` if there is no such preset."""
+        for preset in self.presets:
+            if preset.name == name:
+                return self.with_values(dict(preset.values))
+        raise ParameterError(f"no preset '{name}'{nearest(name, [p.name for p in self.presets])}")
+
+    def for_shot(self, shot: Shot) -> Sketch:
+        """Return the sketch as a shot shows it."""
+        sketch = self.with_preset(shot.preset) if shot.preset else self
+        sketch = sketch.with_values(dict(shot.values))
+        if shot.camera is not None:
+            sketch = replace(sketch, camera=shot.camera)
+        if shot.samples is not None:
+            sketch = replace(sketch, samples=shot.samples)
+        return sketch
+
+
+def kernels_of(technique: Technique, prefix: str = "") -> Iterator[tuple[str, Kernel]]:
+    """Yield (path, kernel) of every kernel a technique is made of, in the order of the files."""
+    if isinstance(technique, Kernel):
+        yield prefix, technique
+        return
+    for spec in technique.passes:
+        yield from kernels_of(spec.technique, f"{prefix}.{spec.name}" if prefix else spec.name)

@@ -1,0 +1,175 @@
+"""Read and write parameter values: from TOML, the command line, Python; to text.
+
+Every value ends as Python's own type for the parameter's GLSL type, checked
+against the range its annotation gives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from playground.errors import ParameterError, nearest
+from playground.sketch.colour import parse_hex, to_hex
+from playground.sketch.model import Parameter, Value
+
+_LENGTH = {"vec2": 2, "vec3": 3, "vec4": 4, "ivec2": 2, "ivec3": 3, "ivec4": 4, "uvec2": 2, "uvec3": 3, "uvec4": 4}
+_TRUE = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+
+
+def length_of(glsl_type: str) -> int:
+    """Return the number of components of a GLSL type, 1 for a scalar."""
+    return _LENGTH.get(glsl_type, 1)
+
+
+def is_whole(glsl_type: str) -> bool:
+    """Say whether a type's components are integers."""
+    return glsl_type in ("int", "uint") or glsl_type.startswith(("ivec", "uvec"))
+
+
+def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
+    """Return ``given`` as a value of the parameter.
+
+    Takes numbers, sequences, ``{azimuth, elevation}``, ``"#rrggbb"`` (sRGB, becomes
+    linear), menu names, and text as on the command line (``"135,25"``). Raises
+    ``ParameterError`` in one sentence that says what was expected.
+    """
+    name = path or parameter.name
+    kind = parameter.widget.kind
+    if kind == "file" or parameter.type == "sampler2D":
+        if isinstance(given, str):
+            return given
+        raise _wrong(name, given, "the path of a file")
+    if kind == "menu":
+        return _menu(parameter, given, name)
+    if parameter.type == "bool":
+        if isinstance(given, bool):
+            return given
+        if isinstance(given, str) and given.strip().lower() in _TRUE:
+            return _TRUE[given.strip().lower()]
+        raise _wrong(name, given, "true or false")
+    if kind == "direction" and isinstance(given, Mapping):
+        given = _direction(given, name)
+    if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
+        try:
+            given = parse_hex(given.strip())[: length_of(parameter.type)]
+        except ValueError as error:
+            raise ParameterError(f"{name}: {error}") from None
+    if isinstance(given, str):
+        given = _numbers(given, name, expected(parameter))
+    count = length_of(parameter.type)
+    if count == 1:
+        if isinstance(given, Sequence) and len(given) == 1:
+            given = given[0]
+        value: Value = _number(parameter, given, name)
+    else:
+        if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != count:
+            raise _wrong(name, given, expected(parameter))
+        value = tuple(_number(parameter, item, name) for item in given)  # type: ignore[assignment]
+    _check_range(parameter, value, name)
+    return value
+
+
+def expected(parameter: Parameter) -> str:
+    """Say in a few words what a parameter takes."""
+    widget = parameter.widget
+    count = length_of(parameter.type)
+    what = {
+        "direction": "azimuth and elevation in degrees, as 135,25",
+        "colour": "a colour, as #8a9a5b",
+        "point": "two numbers from 0 to 1, as 0.5,0.5",
+        "file": "the path of a file",
+        "checkbox": "true or false",
+    }.get(widget.kind)
+    if widget.kind == "menu":
+        return "one of " + ", ".join(widget.choices)
+    if what is None:
+        noun = "whole number" if is_whole(parameter.type) else "number"
+        what = f"a {noun}" if count == 1 else f"{count} {noun}s, as " + ",".join(["1"] * count)
+    if widget.low is not None and widget.high is not None and widget.kind not in ("direction", "point"):
+        what += f" from {widget.low:g} to {widget.high:g}"
+    return what
+
+
+def write(parameter: Parameter, value: Value) -> str:
+    """Return a value as the command line would take it."""
+    if parameter.widget.kind == "menu" and isinstance(value, int):
+        return parameter.widget.choices[value]
+    if parameter.widget.kind == "colour" and isinstance(value, tuple):
+        return to_hex(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple):
+        return ",".join(f"{v:.9g}" for v in value)
+    return value if isinstance(value, str) else f"{value:.9g}"
+
+
+def _menu(parameter: Parameter, given: object, name: str) -> int:
+    choices = parameter.widget.choices
+    if isinstance(given, str):
+        if given in choices:
+            return choices.index(given)
+        raise ParameterError(f"{name} = '{given}': expected one of {', '.join(choices)}{_meant(given, choices)}")
+    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(choices):
+        return given
+    raise _wrong(name, given, "one of " + ", ".join(choices))
+
+
+def _meant(given: str, choices: Sequence[str]) -> str:
+    hint = nearest(given, choices)
+    return hint if "did you mean" in hint else ""
+
+
+def _direction(given: Mapping[str, object], name: str) -> list[object]:
+    extra = set(given) - {"azimuth", "elevation"}
+    if extra or len(given) != 2:
+        raise ParameterError(f"{name}: expected {{ azimuth, elevation }}, found {{ {', '.join(map(str, given))} }}")
+    return [given["azimuth"], given["elevation"]]
+
+
+def _numbers(text: str, name: str, wanted: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise _wrong(name, text, wanted) from None
+
+
+def _number(parameter: Parameter, given: object, name: str) -> float | int:
+    if hasattr(given, "item"):  # a NumPy scalar
+        given = given.item()
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise _wrong(name, given, expected(parameter))
+    if not math.isfinite(given):
+        raise ParameterError(f"{name} = {given}: expected a finite number")
+    if not is_whole(parameter.type):
+        return float(given)
+    if given != int(given):
+        raise _wrong(name, given, expected(parameter))
+    whole = int(given)
+    low, high = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
+    if not low <= whole <= high:
+        raise ParameterError(f"{name} = {whole}: expected a whole number from {low} to {high}")
+    return whole
+
+
+def _check_range(parameter: Parameter, value: Value, name: str) -> None:
+    widget = parameter.widget
+    items = value if isinstance(value, tuple) else (value,)
+    if widget.kind == "direction":
+        azimuth, elevation = items
+        if not -90 <= float(elevation) <= 90:
+            raise ParameterError(f"{name}: elevation {float(elevation):g} is outside -90 to 90 degrees")
+        if not -720 <= float(azimuth) <= 720:
+            raise ParameterError(f"{name}: azimuth {float(azimuth):g} is outside -720 to 720 degrees")
+        return
+    if widget.low is None or widget.high is None:
+        return
+    for item in items:
+        slack = 1e-6 * max(abs(widget.low), abs(widget.high))
+        if isinstance(item, int | float) and not widget.low - slack <= item <= widget.high + slack:
+            raise ParameterError(f"{name} = {item:g} is outside its range {widget.low:g} to {widget.high:g}")
+
+
+def _wrong(name: str, given: object, wanted: str) -> ParameterError:
+    shown = f"'{given}'" if isinstance(given, str) else repr(given)
+    return ParameterError(f"{name} = {shown}: expected {wanted}")

@@ -1,0 +1,72 @@
+"""Know which names a kernel may not take: GLSL's own, and those the engine gives it.
+
+Source: The OpenGL Shading Language 4.60.8, chapter 3.6 (keywords, reserved
+words) and chapter 8 (built-in functions). A parameter named after one of them
+compiles on some drivers and fails on others.
+"""
+
+from __future__ import annotations
+
+PREFIX = "k_"
+"""Names that begin so belong to the driver that wraps a kernel."""
+
+GIVEN: dict[str, tuple[str, str]] = {
+    "size": ("ivec2", "texels of this pass's textures"),
+    "iteration": ("int", "this turn of a repeated kernel, from 0"),
+    "iterations": ("int", "turns in all"),
+    "time": ("float", "seconds"),
+    "spacing": ("vec2", "metres from one texel of this pass to the next, east and north"),
+    "extent": ("vec2", "metres from the land's first texel to its last, east and north"),
+    "relief": ("float", "metres from height 0 to height 1"),
+    "base_elevation": ("float", "metres above sea level at height 0"),
+    "clip_from_world": ("mat4", "the camera: metres of the land to clip space"),
+    "world_from_clip": ("mat4", "its inverse"),
+    "eye": ("vec3", "where the camera stands, metres of the land"),
+}
+"""Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
+
+_KEYWORDS = """
+attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly
+atomic_uint layout centroid flat smooth noperspective patch sample break continue do for while
+switch case default if else subroutine in out inout int void bool true false float double
+discard return lowp mediump highp precision struct common partition active asm class union enum
+typedef template this resource goto inline noinline public static extern external interface long
+short half fixed unsigned superp input output hvec2 hvec3 hvec4 fvec2 fvec3 fvec4 filter sizeof
+cast namespace using sampler3DRect invariant precise
+vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 dvec2 dvec3 dvec4
+mat2 mat3 mat4 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 mat4x4 uint
+sampler1D sampler2D sampler3D samplerCube sampler2DArray sampler2DShadow sampler2DRect
+samplerBuffer sampler2DMS isampler2D usampler2D image1D image2D image3D iimage2D uimage2D
+"""
+
+_FUNCTIONS = """
+radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2
+sqrt inversesqrt abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step
+smoothstep isnan isinf floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat fma frexp
+ldexp packUnorm2x16 packSnorm2x16 packUnorm4x8 packSnorm4x8 unpackUnorm2x16 unpackSnorm2x16
+unpackUnorm4x8 unpackSnorm4x8 packHalf2x16 unpackHalf2x16 length distance dot cross normalize
+faceforward reflect refract matrixCompMult outerProduct transpose determinant inverse lessThan
+lessThanEqual greaterThan greaterThanEqual equal notEqual any all not uaddCarry usubBorrow
+umulExtended imulExtended bitfieldExtract bitfieldInsert bitfieldReverse bitCount findLSB findMSB
+textureSize textureQueryLod texture textureProj textureLod textureOffset texelFetch
+texelFetchOffset textureGrad textureGather imageSize imageLoad imageStore dFdx dFdy fwidth
+noise1 noise2 noise3 noise4 barrier memoryBarrier groupMemoryBarrier main
+"""
+
+GLSL_WORDS: frozenset[str] = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split())
+"""Keywords, reserved words and built-in functions of GLSL 4.60."""
+
+DRIVER_BOUND: dict[str, str] = {
+    "texture": "use texelFetch, or textureLod with a level: the two drivers choose levels differently",
+    "textureGrad": "use textureLod with a level",
+    "textureGather": "GLSL 3.30 has none: use four texelFetch",
+    "textureQueryLod": "a compute shader has no derivatives",
+    "dFdx": "a compute shader has no derivatives: take differences of texels",
+    "dFdy": "a compute shader has no derivatives: take differences of texels",
+    "fwidth": "a compute shader has no derivatives: take differences of texels",
+    "discard": "a compute shader cannot discard: return previous(texel)",
+    "fma": "GLSL 3.30 has none, and it rounds once where a*b+c rounds twice",
+    "precise": "GLSL 3.30 has none",
+    "findMSB": "GLSL 3.30 has none",
+}
+"""What a kernel may not use, for the same text runs as a fragment and as a compute shader; with the reason."""

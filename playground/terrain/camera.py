@@ -1,0 +1,93 @@
+"""Turn a camera that orbits the land into matrices.
+
+World space: metres of the land, x east, y north, z up from height 0; the south-west
+corner is the origin.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pyrr
+from numpy.typing import NDArray
+
+from playground.sketch.model import Camera
+
+FILL = 0.86
+"""Share of the bounding sphere's distance at which an unset distance puts the eye: land is flatter than a sphere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Eye:
+    """A camera over one land, seen in one picture."""
+
+    clip_from_world: NDArray[np.float32]  # (4, 4), rows; acts on column vectors
+    position: tuple[float, float, float]  # [m]
+    target: tuple[float, float, float]  # [m]
+    distance: float  # [m]
+
+    @property
+    def world_from_clip(self) -> NDArray[np.float32]:
+        """The inverse of ``clip_from_world``."""
+        return np.linalg.inv(self.clip_from_world.astype(np.float64)).astype(np.float32)
+
+
+def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple[int, int]) -> Eye:
+    """Return the eye of a camera over a land of ``extent`` and ``relief`` metres, in a picture of ``size`` pixels."""
+    aspect = size[0] / size[1]
+    radius = 0.5 * math.sqrt(extent[0] ** 2 + extent[1] ** 2 + relief**2)
+    target = camera.target or (extent[0] / 2, extent[1] / 2, relief / 2)
+    distance = camera.distance or fit(camera, radius, aspect)
+    azimuth, elevation = math.radians(camera.azimuth), math.radians(camera.elevation)
+    towards = (
+        math.sin(azimuth) * math.cos(elevation),
+        math.cos(azimuth) * math.cos(elevation),
+        math.sin(elevation),
+    )
+    position = tuple(t + distance * d for t, d in zip(target, towards, strict=True))
+    middle = (extent[0] / 2, extent[1] / 2, relief / 2)
+    away = math.dist(position, middle)
+    near = max((away - 1.2 * radius), 0.002 * distance, 1e-3)
+    far = away + 2.0 * radius
+    up = (-math.sin(azimuth), -math.cos(azimuth), 0.0) if abs(camera.elevation) > 88 else (0.0, 0.0, 1.0)
+    view = pyrr.matrix44.create_look_at(position, target, up, dtype=np.float64)
+    lens = pyrr.matrix44.create_perspective_projection(
+        camera.field_of_view, aspect, near, far, dtype=np.float64
+    )
+    # pyrr multiplies row vectors; ours are columns.
+    matrix = (view @ lens).T.astype(np.float32)
+    return Eye(matrix, (position[0], position[1], position[2]), target, distance)
+
+
+def fit(camera: Camera, radius: float, aspect: float) -> float:
+    """Return the distance from which a sphere of ``radius`` metres about fills the picture."""
+    half = math.radians(camera.field_of_view) / 2
+    narrow = min(half, math.atan(math.tan(half) * aspect))
+    return FILL * radius / math.sin(narrow)
+
+
+def orbit(camera: Camera, azimuth: float, elevation: float) -> Camera:
+    """Return the camera turned by so many degrees; the eye stays 89 degrees or less from the horizon."""
+    return replace(
+        camera,
+        azimuth=(camera.azimuth + azimuth) % 360.0,
+        elevation=min(max(camera.elevation + elevation, -89.0), 89.0),
+    )
+
+
+def zoom(camera: Camera, factor: float, distance: float) -> Camera:
+    """Return the camera ``factor`` times as far from its target as ``distance`` metres."""
+    return replace(camera, distance=min(max(distance * factor, 1e-2), 1e8))
+
+
+def pan(camera: Camera, eye: Eye, right: float, up: float) -> Camera:
+    """Return the camera moved over the land by shares of the picture's height: ``right``, and ``up`` along the ground."""
+    azimuth = math.radians(camera.azimuth)
+    scale = 2 * eye.distance * math.tan(math.radians(camera.field_of_view) / 2)
+    # The picture's right is a quarter turn counter-clockwise from where the eye stands, seen from above.
+    east = -math.cos(azimuth) * right - math.sin(azimuth) * up
+    north = math.sin(azimuth) * right - math.cos(azimuth) * up
+    x, y, z = eye.target
+    return replace(camera, target=(x + scale * east, y + scale * north, z))

@@ -1,0 +1,78 @@
+"""Build the meshes that draws may ask for, by name.
+
+A closed registry: a sketch is data and cannot bring Python. A builder takes the draw's
+parameters that it declares, and nothing else, so that a mesh is kept while they stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import SketchError, nearest
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Vertices and how to join them."""
+
+    attributes: dict[str, NDArray[np.float32]]  # name → (n, components)
+    indices: NDArray[np.uint32]  # (m,), three a triangle
+
+
+def grid(values: Mapping[str, int]) -> Mesh:
+    """Return a square of ``grid`` by ``grid`` vertices with a skirt around it.
+
+    Attribute ``corner``: east and north, 0..1, and 0 on the land or 1 at the skirt's foot.
+    """
+    n = values["grid"]
+    steps = np.linspace(0.0, 1.0, n, dtype=np.float32)
+    east, north = np.meshgrid(steps, steps)
+    top = np.stack([east.ravel(), north.ravel(), np.zeros(n * n, np.float32)], axis=1)
+    index = np.arange(n * n, dtype=np.uint32).reshape(n, n)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 6)
+    rim = np.concatenate([index[0, :-1], index[:-1, -1], index[-1, :0:-1], index[:0:-1, 0]])
+    foot = top[rim].copy()
+    foot[:, 2] = 1.0
+    low = np.arange(len(rim), dtype=np.uint32) + np.uint32(n * n)
+    following = np.roll(np.arange(len(rim)), -1)
+    wall = np.stack([rim, low, low[following], rim, low[following], rim[following]], axis=-1)
+    indices = np.concatenate([faces.ravel(), wall.ravel()]).astype(np.uint32)
+    return Mesh({"corner": np.concatenate([top, foot])}, indices)
+
+
+def sheet(values: Mapping[str, int]) -> Mesh:
+    """Return one flat square; attribute ``corner``: east and north, 0..1, and 0."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+    return Mesh({"corner": corners}, np.array([0, 1, 2, 0, 2, 3], np.uint32))
+
+
+MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int, int]]]] = {
+    "grid": (grid, {"grid": (2, 4097)}),
+    "sheet": (sheet, {}),
+}
+"""Name → (builder, the draw's parameters that it reads with their least and greatest)."""
+
+
+def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
+    """Return the parameters that a mesh depends on; raise ``SketchError`` where one is missing or out of range."""
+    if name not in MESHES:
+        raise SketchError(f"there is no mesh '{name}'{nearest(name, MESHES)}")
+    found = []
+    for parameter, (low, high) in MESHES[name][1].items():
+        value = values.get(parameter)
+        if not isinstance(value, int):
+            raise SketchError(f"mesh '{name}' needs a parameter 'uniform int {parameter}'")
+        if not low <= value <= high:
+            raise SketchError(f"{parameter} = {value}: mesh '{name}' takes {low} to {high}")
+        found.append((parameter, value))
+    return tuple(found)
+
+
+def build_mesh(name: str, key: tuple[tuple[str, int], ...]) -> Mesh:
+    """Build a mesh from what ``mesh_key`` gave."""
+    return MESHES[name][0](dict(key))

@@ -1,0 +1,120 @@
+"""The sources a sketch may name: what the processor must do to make land.
+
+A closed registry: a sketch is data and cannot bring Python. A source says what it knows
+of its land before any texel is made (``describe``), then makes the texels (``make``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError, SketchError, nearest
+from playground.paths import shown
+from playground.sketch.model import Value
+from playground.terrain.elevation import Elevation, fill_no_data, read_elevation, resample
+
+
+@dataclass(frozen=True, slots=True)
+class Land:
+    """What a source knows of its land; None where it does not."""
+
+    size: tuple[int, int] | None = None  # texels, x and y
+    extent: tuple[float, float] | None = None  # [m]
+    relief: float | None = None  # [m] from height 0 to height 1
+    base_elevation: float | None = None  # [m] above sea level at height 0
+
+
+@dataclass(frozen=True, slots=True)
+class SourceKind:
+    """One entry of the registry."""
+
+    describe: Callable[[Mapping[str, Value]], Land]
+    make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
+    files: tuple[str, ...]  # parameters that name files
+    parameters: tuple[str, ...]  # what the kernel's file must declare
+
+
+def source_kind(name: str) -> SourceKind:
+    """Return a registered source; raise ``SketchError`` with the nearest name."""
+    if name not in SOURCES:
+        raise SketchError(f"there is no source '{name}'{nearest(name, SOURCES)}")
+    return SOURCES[name]
+
+
+@lru_cache(maxsize=4)
+def _read(
+    path: str, stamp: tuple[int, int], raw_size: tuple[int, int] | None, packing: str, voids: str
+) -> Elevation:
+    elevation = read_elevation(Path(path), raw_size=raw_size, packing="rgb" if packing == "rgb" else "grey")
+    return fill_no_data(elevation, "fill" if voids == "fill" else "refuse")
+
+
+def _elevation(values: Mapping[str, Value]) -> Elevation:
+    path = Path(str(values["elevation"]))
+    try:
+        stat = path.stat()
+    except OSError as error:
+        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
+    raw = values["raw_size"]
+    size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
+    packing = ("grey", "rgb")[int(values["packing"])]  # type: ignore[arg-type]
+    voids = ("refuse", "fill")[int(values["no_data"])]  # type: ignore[arg-type]
+    return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids)
+
+
+def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
+    """Return the metres that the file's lowest and highest codes stand for, if anything says."""
+    low, high = values["metres"] if isinstance(values["metres"], tuple) else (0.0, 0.0)
+    if low != high:
+        return float(low), float(high)
+    return None
+
+
+def _span(elevation: Elevation) -> tuple[float, float]:
+    """Return the numbers of the file that become heights 0 and 1."""
+    return elevation.lowest, elevation.highest
+
+
+def _describe_elevation(values: Mapping[str, Value]) -> Land:
+    elevation = _elevation(values)
+    low, high = _span(elevation)
+    asked = _range(values, elevation)
+    relief = base = None
+    if asked is not None:
+        codes = elevation.code_range or (low, high)
+        scale = (asked[1] - asked[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = asked[0] + (low - codes[0]) * scale, (high - low) * scale
+    elif elevation.in_metres:
+        base, relief = low, high - low
+    return Land(elevation.size, elevation.extent, relief, base)
+
+
+def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+    elevation = _elevation(values)
+    low, high = _span(elevation)
+    span = high - low
+    heights = (
+        (elevation.heights - np.float32(low)) / np.float32(span)
+        if span > 0
+        else np.zeros_like(elevation.heights)
+    )
+    if size != elevation.size:
+        heights = resample(heights, size)
+    return {"height": heights}
+
+
+SOURCES: dict[str, SourceKind] = {
+    "elevation_file": SourceKind(
+        _describe_elevation,
+        _make_elevation,
+        ("elevation",),
+        ("elevation", "raw_size", "packing", "no_data", "metres"),
+    ),
+}
+"""Name → what it does."""

@@ -1,0 +1,773 @@
+"""Elevation files: every format against numbers made here, every refusal, gaps, sizes.
+
+The truth for degrees is distances integrated along the ellipsoid and published
+tables; for sizes SciPy's splines; for gaps a plane, which is its own smooth sheet.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import shutil
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image as PillowImage
+from scipy.interpolate import RectBivariateSpline
+
+from playground.errors import DataError
+from playground.images.files import write_values
+from playground.terrain.elevation import (
+    Elevation,
+    degree_lengths,
+    fill_no_data,
+    read_elevation,
+    resample,
+)
+
+RNG = np.random.default_rng(11)
+LAND = RNG.integers(200, 2000, (6, 9)).astype(np.int16)  # north row first, as files are
+
+
+def refused(path: Path, words: str, **options: object) -> None:
+    with pytest.raises(DataError, match=words) as caught:
+        read_elevation(path, **options)  # type: ignore[arg-type]
+    assert "\n" not in str(caught.value) and str(path) in str(caught.value)
+
+
+def assert_land(found: Elevation, north_first: np.ndarray) -> None:
+    assert found.heights.dtype == np.float32 and found.heights.flags.c_contiguous
+    np.testing.assert_array_equal(found.heights[::-1], north_first.astype(np.float32))
+
+
+# Degrees
+
+
+# National Geospatial-Intelligence Agency, "Length of a degree of latitude and longitude", WGS 84, km.
+@pytest.mark.parametrize(
+    ("latitude", "north", "east"),
+    [
+        (0, 110.574, 111.320),
+        (15, 110.649, 107.550),
+        (30, 110.852, 96.486),
+        (45, 111.132, 78.847),
+        (60, 111.412, 55.800),
+        (75, 111.618, 28.902),
+        (90, 111.694, 0.000),
+    ],
+)
+def test_a_degree_is_as_long_as_the_tables_say(latitude, north, east):
+    assert degree_lengths(latitude) == pytest.approx((1000 * east, 1000 * north), abs=0.6)
+    assert degree_lengths(-latitude) == degree_lengths(latitude)
+
+
+def on_ellipsoid(latitude: float, longitude: float) -> np.ndarray:
+    """Return the point in space: the ellipse x²/a² + z²/b² = 1 by its reduced latitude."""
+    a, b = 6378137.0, 6356752.314245
+    reduced = math.atan(b / a * math.tan(math.radians(latitude)))
+    around = math.radians(longitude)
+    flat = a * math.cos(reduced)
+    return np.array([flat * math.cos(around), flat * math.sin(around), b * math.sin(reduced)])
+
+
+@pytest.mark.parametrize("latitude", [-63.2, 0.0, 12.5, 36.59, 80.0])
+def test_short_steps_in_space_are_as_long_as_their_degrees(latitude):
+    step = 1 / 1200
+    east, north = degree_lengths(latitude)
+    over = np.linalg.norm(on_ellipsoid(latitude, step) - on_ellipsoid(latitude, 0.0))
+    up = np.linalg.norm(on_ellipsoid(latitude + step / 2, 0.0) - on_ellipsoid(latitude - step / 2, 0.0))
+    np.testing.assert_allclose([east * step, north * step], [over, up], rtol=1e-7)
+
+
+# PNG
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+def test_grey_png(tmp_path, bits):
+    land = RNG.integers(0, 2**bits, (6, 9)).astype(f"u{bits // 8}")
+    PillowImage.fromarray(land).save(tmp_path / "a.png")
+    found = read_elevation(tmp_path / "a.png")
+    assert_land(found, land)
+    assert (found.size, found.name, found.missing) == ((9, 6), "a.png", 0)
+    assert found.code_range == (0, 2**bits - 1)
+    assert found.spacing is None and found.extent is None and not found.in_metres
+    assert (found.lowest, found.highest) == (land.min(), land.max())
+
+
+def test_what_write_values_wrote_comes_back(tmp_path):
+    land = RNG.random((6, 9)).astype(np.float32)  # south first
+    write_values(tmp_path / "a.png", land)
+    np.testing.assert_allclose(read_elevation(tmp_path / "a.png").heights / 65535, land, atol=0.51 / 65535)
+    write_values(tmp_path / "a.tif", land)
+    np.testing.assert_array_equal(read_elevation(tmp_path / "a.tif").heights, land)
+    write_values(tmp_path / "a.npy", land)
+    np.testing.assert_array_equal(read_elevation(tmp_path / "a.npy", first_row="south").heights, land)
+    np.testing.assert_array_equal(read_elevation(tmp_path / "a.npy").heights, land[::-1])
+
+
+@pytest.mark.parametrize("ending", ["png", "tif"])
+def test_heights_packed_in_three_channels(tmp_path, ending):
+    land = RNG.integers(0, 2**24, (6, 9))
+    land[0, 0], land[0, 1] = 2**24 - 1, 2**24 - 2
+    colour = np.stack([land >> 16, (land >> 8) & 255, land & 255], axis=-1).astype(np.uint8)
+    PillowImage.fromarray(colour).save(tmp_path / f"a.{ending}")
+    found = read_elevation(tmp_path / f"a.{ending}", packing="rgb")
+    assert_land(found, land)
+    assert found.code_range == (0, 2**24 - 1)
+    refused(tmp_path / f"a.{ending}", "in colour; expected grey, or packing 'rgb'")
+
+
+def test_grey_in_three_channels_is_grey(tmp_path):
+    land = RNG.integers(0, 256, (6, 9), dtype=np.uint8)
+    PillowImage.fromarray(np.stack([land] * 3, axis=-1)).save(tmp_path / "a.png")
+    assert_land(read_elevation(tmp_path / "a.png"), land)
+
+
+def test_transparent_texels_have_no_data(tmp_path):
+    land = np.stack([LAND.astype(np.uint8), np.full(LAND.shape, 255, np.uint8)], axis=-1)
+    land[1, 2, 1] = 0
+    PillowImage.fromarray(land).save(tmp_path / "a.png")
+    found = read_elevation(tmp_path / "a.png")
+    assert found.missing == 1 and np.isnan(found.heights[6 - 1 - 1, 2])
+
+
+def test_packing_must_fit_the_file(tmp_path):
+    PillowImage.fromarray(LAND.astype(np.uint16)).save(tmp_path / "a.png")
+    refused(tmp_path / "a.png", "three channels of 8 bits; found 1 of 16", packing="rgb")
+    np.save(tmp_path / "a.npy", LAND)
+    refused(tmp_path / "a.npy", "read from PNG and TIFF", packing="rgb")
+    tifffile.imwrite(tmp_path / "a.tif", LAND)
+    refused(tmp_path / "a.tif", "found one", packing="rgb")
+    refused(tmp_path / "a.png", "no such packing: 'gray'; did you mean 'grey'", packing="gray")
+    refused(tmp_path / "a.png", "no such first row: 'North'", first_row="North")
+
+
+# TIFF
+
+
+@pytest.mark.parametrize("dtype", ["u1", "u2", "i2", "u4", "i4", "f2", "f4", "f8"])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_tiff_of_every_kind_of_number(tmp_path, dtype, order):
+    land = (LAND % 200).astype(dtype)
+    tifffile.imwrite(tmp_path / "a.tif", land, byteorder=order, photometric="minisblack")
+    found = read_elevation(tmp_path / "a.tif")
+    assert_land(found, land)
+    assert found.code_range == {"u1": (0, 255), "u2": (0, 65535)}.get(dtype)
+
+
+@pytest.mark.parametrize("compression", ["tiff_lzw", "tiff_adobe_deflate", "packbits"])
+@pytest.mark.parametrize("mode", ["u1", "u2", "f4"])
+def test_compressed_tiff(tmp_path, compression, mode):
+    land = (LAND % 200).astype(mode)
+    PillowImage.fromarray(land).save(tmp_path / "a.tif", compression=compression)
+    assert_land(read_elevation(tmp_path / "a.tif"), land)
+
+
+@pytest.mark.parametrize("predictor", [2, 3])
+def test_tiff_with_a_predictor(tmp_path, predictor):
+    land = LAND.astype("u2" if predictor == 2 else "f4")
+    picture = PillowImage.fromarray(land)
+    picture.save(tmp_path / "a.tif", compression="tiff_lzw", tiffinfo={317: predictor})
+    assert_land(read_elevation(tmp_path / "a.tif"), land)
+
+
+def test_what_neither_library_unpacks_is_a_sentence(tmp_path, monkeypatch):
+    def lacking(*_: object, **__: object) -> None:
+        raise ValueError("<COMPRESSION.ADOBE_DEFLATE: 8> requires the 'imagecodecs' package")
+
+    tifffile.imwrite(tmp_path / "a.tif", LAND.astype("f8"), compression="zlib")
+    tifffile.imwrite(tmp_path / "b.tif", LAND, compression="zlib")
+    monkeypatch.setattr(tifffile.TiffPage, "asarray", lacking)
+    refused(
+        tmp_path / "a.tif", "float64 numbers under compression ADOBE_DEFLATE .* package imagecodecs installed"
+    )
+    assert_land(read_elevation(tmp_path / "b.tif"), LAND)
+
+
+def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):
+    tifffile.imwrite(tmp_path / "a.tif", LAND, metadata=None)
+    content = bytearray((tmp_path / "a.tif").read_bytes())
+    with tifffile.TiffFile(tmp_path / "a.tif") as tif:
+        at = tif.pages[0].tags[273].offset
+    content[at + 2 : at + 4] = b"\xff\xff"
+    (tmp_path / "a.tif").write_bytes(content)
+    refused(tmp_path / "a.tif", "damaged or cut short")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_tiff_in_tiles_and_signed(tmp_path):
+    land = RNG.integers(-3000, 3000, (40, 70)).astype(np.int16)
+    tifffile.imwrite(tmp_path / "a.tif", land, tile=(16, 32), compression="zlib")
+    assert_land(read_elevation(tmp_path / "a.tif"), land)
+
+
+def test_the_first_of_several_pictures_is_read_and_said(tmp_path):
+    with tifffile.TiffWriter(tmp_path / "a.tif") as tif:
+        tif.write(LAND)
+        tif.write(2 * LAND)
+    found = read_elevation(tmp_path / "a.tif")
+    assert_land(found, LAND)
+    assert found.notes == ("the first of 2 pictures was read",)
+
+
+def geotiff(
+    path: Path,
+    land: np.ndarray,
+    keys: dict[int, int],
+    scale: tuple[float, float] = (1.0, 1.0),
+    tie: tuple[float, ...] = (0, 0, 0, 0, 0, 0),
+    no_data: str | None = None,
+    matrix: tuple[float, ...] | None = None,
+) -> Path:
+    directory = [1, 1, 0, len(keys)]
+    for key, value in sorted(keys.items()):
+        directory += [key, 0, 1, value]
+    tags: list[tuple[object, ...]] = []
+    if matrix is None:
+        tags += [(33550, "d", 3, (*scale, 0.0), True), (33922, "d", 6, tie, True)]
+    else:
+        tags += [(34264, "d", 16, matrix, True)]
+    if keys:
+        tags += [(34735, "H", len(directory), directory, True)]
+    if no_data is not None:
+        tags += [(42113, "s", 0, no_data, True)]
+    tifffile.imwrite(path, land, extratags=tags, metadata=None, photometric="minisblack")
+    return path
+
+
+def test_a_projected_geotiff_tells_metres(tmp_path):
+    found = read_elevation(
+        geotiff(tmp_path / "a.tif", LAND, {1024: 1, 3072: 32633, 3076: 9001}, (30.0, 20.0))
+    )
+    assert_land(found, LAND)
+    assert found.spacing == (30.0, 20.0) and found.extent == (8 * 30.0, 5 * 20.0)
+    assert found.in_metres and found.code_range is None and found.notes == ()
+
+
+def test_16_bits_without_a_sign_are_metres_in_a_geotiff_only(tmp_path):
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND.astype(np.uint16), {1024: 1, 3076: 9001}))
+    assert found.in_metres and found.code_range is None
+
+
+@pytest.mark.parametrize(("unit", "metres"), [(9002, 0.3048), (9003, 1200 / 3937)])
+def test_feet_become_metres(tmp_path, unit, metres):
+    keys = {1024: 1, 3076: unit, 4099: unit}
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND, keys, (10.0, 10.0)))
+    assert found.spacing == pytest.approx((10 * metres, 10 * metres))
+    np.testing.assert_allclose(found.heights[::-1], LAND * metres, rtol=1e-6)
+
+
+@pytest.mark.parametrize("raster", [1, 2])
+def test_a_geographic_geotiff_has_its_middle_latitude(tmp_path, raster):
+    tie = (0, 0, 0, 10.0, 61.0, 0)
+    keys = {1024: 2, 1025: raster, 2048: 4326}
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND, keys, (0.1, 0.1), tie))
+    middle = 61.0 - (0.3 if raster == 1 else 0.25)  # six pixels, or five steps from node to node
+    east, north = degree_lengths(middle)
+    assert found.spacing == pytest.approx((0.1 * east, 0.1 * north), rel=1e-12)
+    assert found.in_metres
+
+
+def test_a_matrix_tells_the_same_as_scale_and_tie_point(tmp_path):
+    matrix = (0.1, 0, 0, 10.0, 0, -0.1, 0, 61.0, 0, 0, 0, 0, 0, 0, 0, 1)
+    keys = {1024: 2, 1025: 1}
+    a = read_elevation(geotiff(tmp_path / "a.tif", LAND, keys, matrix=matrix))
+    b = read_elevation(geotiff(tmp_path / "b.tif", LAND, keys, (0.1, 0.1), (0, 0, 0, 10.0, 61.0, 0)))
+    assert a.spacing == pytest.approx(b.spacing)
+    turned = (0.1, 0.05, 0, 10.0, 0.05, -0.1, 0, 61.0, 0, 0, 0, 0, 0, 0, 0, 1)
+    c = read_elevation(geotiff(tmp_path / "c.tif", LAND, keys, matrix=turned))
+    assert c.spacing is None and "turned against north" in c.notes[0]
+
+
+def test_web_mercator_is_brought_back_to_true_metres(tmp_path):
+    # At 60 degrees its unit is half a metre of the sphere it draws.
+    y = 6378137.0 * math.log(math.tan(math.pi / 4 + math.radians(60) / 2))
+    keys = {1024: 1, 1025: 1, 3072: 3857, 3076: 9001}
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND, keys, (10.0, 10.0), (0, 3, 0, 0, y, 0)))
+    assert found.spacing == pytest.approx((5.0, 5.0), rel=1e-6)
+
+
+def test_a_texel_size_without_a_unit_is_not_believed(tmp_path):
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND, {}, (10.0, 10.0)))
+    assert found.spacing is None and not found.in_metres and "does not say" in found.notes[0]
+    at_the_pole = geotiff(tmp_path / "b.tif", LAND, {1024: 2}, (0.1, 0.1), (0, 0, 0, 0, 90.3, 0))
+    assert read_elevation(at_the_pole).spacing is None
+    refused(geotiff(tmp_path / "c.tif", LAND, {1024: 1}, (0.0, 10.0)), "expected lengths above zero")
+
+
+@pytest.mark.parametrize(
+    ("dtype", "value", "text"),
+    [
+        ("i2", -9999, "-9999"),
+        ("i2", -32768, None),
+        ("u2", 0, "0"),
+        ("f4", -9999, "-9999.0 "),
+        ("f4", -3.4028234663852886e38, "-3.40282346638529e+38"),
+        ("f4", -3.4028230607370965e38, "-3.4028231e+38"),
+        ("f8", -1.7976931348623157e308, "-1.7976931348623157e+308"),
+        ("f4", np.nan, "nan"),
+    ],
+)
+def test_no_data_becomes_nan(tmp_path, dtype, value, text):
+    land = LAND.astype(dtype)
+    land[1, 3] = value
+    found = read_elevation(geotiff(tmp_path / "a.tif", land, {1024: 1}, no_data=text))
+    expected = LAND.astype(np.float32)
+    expected[1, 3] = np.nan
+    assert_land(found, expected)
+    assert found.missing == 1 and found.lowest == np.nanmin(expected)
+
+
+@pytest.mark.parametrize("text", ["-9999", "0.5", "nonsense", "nan", "1e99"])
+def test_a_no_data_value_that_the_numbers_cannot_have_is_ignored(tmp_path, text):
+    found = read_elevation(geotiff(tmp_path / "a.tif", LAND.astype("u2"), {1024: 1}, no_data=text))
+    assert found.missing == 0
+
+
+# NumPy
+
+
+@pytest.mark.parametrize("dtype", ["u1", "<i2", ">i2", ">f4", "<f8", "f2", "i8"])
+@pytest.mark.parametrize("by_columns", [False, True])
+def test_npy_of_every_kind_of_number(tmp_path, dtype, by_columns):
+    land = np.asarray((LAND % 200).astype(dtype), order="F" if by_columns else "C")
+    np.save(tmp_path / "a.npy", land)
+    found = read_elevation(tmp_path / "a.npy")
+    assert_land(found, land)
+    assert found.spacing is None and not found.in_metres
+
+
+def test_the_jacksboro_fault_has_its_true_size(tmp_path):
+    path = Path(__file__).parents[2] / "data" / "jacksboro_fault_dem.npz"
+    if not path.exists():
+        # The same header as the shipped file's, without its land.
+        path = tmp_path / "jacksboro_fault_dem.npz"
+        bounds = dict(xmin=-84.41375, xmax=-84.07791666666667, ymin=36.73291666666667, ymax=36.44625)
+        land = np.arange(344 * 403).reshape(344, 403) % 840 + 236
+        np.savez(path, elevation=land.astype(np.int16), dx=1 / 1200, dy=1 / 1200, **bounds)
+    found = read_elevation(path)
+    assert found.size == (403, 344) and found.in_metres
+    assert (found.lowest, found.highest, found.missing) == (236, 1076 if found.highest == 1076 else 1075, 0)
+    with np.load(path) as file:
+        np.testing.assert_array_equal(found.heights, file["elevation"][::-1])  # row 0 in the south
+    # From one edge to the other, by steps along the ellipsoid.
+    latitudes = np.linspace(36.73291666666667 - 0.5 / 1200, 36.44625 + 0.5 / 1200, 344)
+    points = np.array([on_ellipsoid(v, 0.0) for v in latitudes])
+    depth = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+    width = 402 * np.linalg.norm(on_ellipsoid(36.58958333, 1 / 1200) - on_ellipsoid(36.58958333, 0.0))
+    assert found.extent == pytest.approx((width, depth), rel=1e-6)
+
+
+def test_npz_in_metres_and_other_names(tmp_path):
+    np.savez(tmp_path / "a.npz", dem=LAND, dx=25, dy=np.array([30.0]), title=np.array("x"))
+    found = read_elevation(tmp_path / "a.npz")
+    assert_land(found, LAND)
+    assert found.spacing == (25.0, 30.0) and found.in_metres
+    np.savez_compressed(tmp_path / "b.npz", other=2 * LAND, elevation=LAND)
+    found = read_elevation(tmp_path / "b.npz")
+    assert_land(found, LAND)
+    assert found.spacing is None and not found.in_metres
+
+
+def test_npz_bounds_in_metres_are_not_degrees(tmp_path):
+    bounds = dict(xmin=0.0, xmax=80.0, ymin=0.0, ymax=50.0)
+    np.savez(tmp_path / "a.npz", elevation=LAND, dx=10.0, dy=10.0, **bounds)
+    assert read_elevation(tmp_path / "a.npz").spacing == (10.0, 10.0)
+    np.savez(tmp_path / "b.npz", elevation=LAND, dx=0.01, dy=0.01, units="m", **bounds)
+    assert read_elevation(tmp_path / "b.npz").spacing == (0.01, 0.01)
+    np.savez(tmp_path / "c.npz", elevation=LAND, dx=0.1, dy=0.1, units="degrees", ymin=0.0, ymax=0.5)
+    assert read_elevation(tmp_path / "c.npz").spacing == pytest.approx((11131.9, 11057.4), rel=1e-4)
+
+
+def test_npz_without_one_grid_is_refused(tmp_path):
+    np.savez(tmp_path / "a.npz", first=LAND, second=LAND, line=np.zeros(3))
+    refused(tmp_path / "a.npz", "no array 'elevation' and 2 of two dimensions; it holds first, line, second")
+    np.savez(tmp_path / "b.npz", line=np.zeros(3))
+    refused(tmp_path / "b.npz", "and 0 of two dimensions")
+    for extra, words in (
+        ({"dx": np.zeros(3)}, "expected one number"),
+        ({"dx": np.nan}, "finite number"),
+        ({"dx": 0.0}, "are zero"),
+        ({"dx": 1.0, "units": "furlong"}, "'furlong'; expected 'm'"),
+        ({"dx": 1.0, "units": 3}, "expected a word"),
+    ):
+        np.savez(tmp_path / "c.npz", elevation=LAND, **extra)
+        refused(tmp_path / "c.npz", words)
+
+
+# Raw numbers
+
+
+@pytest.mark.parametrize("ending", ["r16", "raw"])
+def test_raw_numbers_are_square_unless_told(tmp_path, ending):
+    land = RNG.integers(0, 65536, (7, 7)).astype("<u2")
+    (tmp_path / f"a.{ending}").write_bytes(land.tobytes())
+    found = read_elevation(tmp_path / f"a.{ending}")
+    assert_land(found, land)
+    assert found.code_range == (0, 65535) and not found.in_metres
+    (tmp_path / f"b.{ending}").write_bytes(LAND.astype("<u2").tobytes())
+    assert_land(read_elevation(tmp_path / f"b.{ending}", raw_size=(9, 6)), LAND)
+
+
+def test_raw_numbers_that_do_not_fit_are_sentences(tmp_path):
+    path = tmp_path / "a.r16"
+    path.write_bytes(LAND.astype("<u2").tobytes())
+    refused(path, r"54 heights .* no square \(7 x 7 would be 49, 8 x 8 64\); raw_size could be 9 x 6")
+    refused(path, "6 x 6 heights of 16 bits need 72; raw_size could be 9 x 6", raw_size=(6, 6))
+    refused(path, "expected at least 2 x 2", raw_size=(54, 1))
+    refused(path, "expected at least 2 x 2", raw_size=(-9, -6))
+    refused(path, r"the most is 2\*\*28", raw_size=(100_000, 100_000))
+    path.write_bytes(bytes(99))
+    refused(path, "an odd number")
+    path.write_bytes(bytes(32 * 32))
+    refused(path, "it is 32 x 32 of 8 bits, which is not read here")
+    path.write_bytes(bytes(2 * 1009))  # a prime
+    refused(path, "raw_size must give its width and height")
+
+
+@pytest.mark.parametrize(
+    ("name", "middle"), [("N36W085.hgt", 36.5), ("s07e110.HGT", -6.5), ("S01E006.hgt", -0.5)]
+)
+def test_srtm_tiles_cover_a_degree(tmp_path, name, middle):
+    land = RNG.integers(-100, 4000, (61, 61)).astype(">i2")
+    land[5, 7] = -32768
+    (tmp_path / name).write_bytes(land.tobytes())
+    found = read_elevation(tmp_path / name)
+    assert found.extent == pytest.approx(degree_lengths(middle), rel=1e-12)
+    assert found.in_metres and found.missing == 1 and np.isnan(found.heights[60 - 5, 7])
+    assert found.heights[60, 60] == land[0, 60]
+
+
+def test_srtm_of_three_seconds_without_a_name_has_no_spacing(tmp_path):
+    (tmp_path / "hill.hgt").write_bytes(np.full((1201, 1201), 5, ">i2").tobytes())
+    found = read_elevation(tmp_path / "hill.hgt")
+    assert found.size == (1201, 1201) and found.spacing is None and "N36W085" in found.notes[0]
+
+
+# Whatever the format
+
+
+def test_no_file_no_heights(tmp_path):
+    np.save(tmp_path / "hill.npy", LAND)
+    refused(tmp_path / "hil.npy", "no such file; did you mean 'hill.npy'")
+    refused(tmp_path / "none" / "hill.npy", "no folder")
+    refused(tmp_path, "is a folder")
+    (tmp_path / "folder.tif").mkdir()
+    refused(tmp_path / "folder.tif", "is a folder")
+    for ending in ("png", "tif", "npy", "npz", "r16", "hgt"):
+        (tmp_path / f"empty.{ending}").touch()
+        refused(tmp_path / f"empty.{ending}", "the file is empty")
+    (tmp_path / "land.jpg").write_bytes(b"x")
+    refused(tmp_path / "land.jpg", r"'\.jpg' is no elevation format; readable are \.png, \.tif,")
+    (tmp_path / "land").write_bytes(b"x")
+    refused(tmp_path / "land", "without an ending")
+
+
+def test_permission_denied_is_a_sentence(tmp_path, monkeypatch):
+    for ending in ("png", "npy", "npz", "tif", "r16"):
+        (tmp_path / f"a.{ending}").write_bytes(bytes(18))
+
+    def denied(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    for place in ("pathlib.Path.open", "io.open", "builtins.open", "numpy.fromfile"):
+        monkeypatch.setattr(place, denied)
+    for ending in ("png", "npy", "npz", "r16"):
+        refused(tmp_path / f"a.{ending}", "cannot be read: Permission denied", raw_size=(3, 3))
+
+
+@pytest.mark.parametrize("ending", ["png", "tif", "npy", "npz", "hgt"])
+def test_rubbish_is_refused(tmp_path, ending):
+    for content in (
+        b"\0" * 300,
+        b"II*\0" + b"\xff" * 300,
+        b"PK\x03\x04" + bytes(40),
+        b"\x93NUMPY\x01\0\x08\0rubbish!",
+    ):
+        (tmp_path / f"a.{ending}").write_bytes(content + b"x")
+        refused(tmp_path / f"a.{ending}", "damaged or cut short|not a|odd number|no square|tell")
+
+
+def damage(path: Path) -> None:
+    whole = path.read_bytes()
+    for part in (0.3, 0.6, 0.9):
+        path.write_bytes(whole[: int(part * len(whole)) // 2 * 2])
+        refused(path, "cut short|no square|not a|damaged")
+
+
+def test_files_cut_short_are_refused(tmp_path):
+    land = RNG.integers(0, 60000, (64, 64)).astype(np.uint16)
+    PillowImage.fromarray(land).save(tmp_path / "a.png")
+    tifffile.imwrite(tmp_path / "a.tif", land)
+    tifffile.imwrite(tmp_path / "b.tif", land, compression="zlib", rowsperstrip=8)
+    np.save(tmp_path / "a.npy", land)
+    np.savez(tmp_path / "a.npz", land)
+    np.savez_compressed(tmp_path / "b.npz", land)
+    land[:45].tofile(tmp_path / "a.r16")
+    for path in sorted(tmp_path.iterdir()):
+        damage(path)
+
+
+def test_a_tiff_that_promises_more_than_it_has_is_refused_before_it_is_unpacked(tmp_path, monkeypatch):
+    tifffile.imwrite(tmp_path / "a.tif", LAND, metadata=None)
+    whole = (tmp_path / "a.tif").read_bytes()
+    (tmp_path / "a.tif").write_bytes(whole[:-2])
+    monkeypatch.setattr(tifffile.TiffPage, "asarray", None)
+    refused(tmp_path / "a.tif", f"its data ends at byte {len(whole)}, the file before")
+
+
+def test_a_damaged_archive_is_refused(tmp_path):
+    np.savez_compressed(tmp_path / "a.npz", RNG.integers(0, 60000, (64, 64)))
+    content = bytearray((tmp_path / "a.npz").read_bytes())
+    content[200:400] = bytes(200)
+    (tmp_path / "a.npz").write_bytes(content)
+    refused(tmp_path / "a.npz", "damaged or cut short")
+
+
+@pytest.mark.parametrize(
+    ("array", "words"),
+    [
+        (np.array([[1, "a"], [None, 2]], object), "Python objects, which are never loaded"),
+        (np.array([["a", "b"], ["c", "d"]]), "holds <U1, not heights"),
+        (np.zeros((4, 4), complex), "holds complex128, not heights"),
+        (np.zeros((4, 4), bool), "holds bool, not heights"),
+        (np.zeros((4, 4), "M8[s]"), "not heights"),
+        (np.zeros((4, 4), [("ä", "f4")]), "not heights"),
+        (np.zeros(16), "has 1 dimensions"),
+        (np.zeros((4, 4, 3)), "has 3 dimensions"),
+        (np.float32(1.0), "has 0 dimensions"),
+        (np.zeros((1, 1)), "is 1 x 1 texels; expected at least 2 x 2"),
+        (np.zeros((1, 9)), "is 9 x 1 texels"),
+        (np.zeros((0, 4)), "is 4 x 0 texels"),
+        (np.full((4, 4), np.nan), "no texel has any data"),
+        (np.array([[0, np.inf], [0, 0]]), r"infinite, at texel \(1, 1\)"),
+        (np.array([[0, 0], [1e300, 0]]), r"infinite, at texel \(0, 0\)"),
+        (np.full((4, 4), -32768, np.int16), "no texel has any data"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:Stored array in format 3.0")
+def test_arrays_that_are_no_land_are_refused(tmp_path, array, words):
+    np.save(tmp_path / "a.npy", array, allow_pickle=True)
+    refused(tmp_path / "a.npy", words)
+    if "objects" not in words and "ä" not in (array.dtype.names or ()):
+        np.savez(tmp_path / "a.npz", elevation=array)
+        refused(tmp_path / "a.npz", words)
+
+
+def test_an_object_inside_an_archive_is_never_loaded(tmp_path):
+    with (tmp_path / "a.npz").open("wb") as handle:
+        np.savez(handle, elevation=np.array([[print]], object))
+    refused(tmp_path / "a.npz", "Python objects")
+
+
+def monstrous_header(shape: tuple[int, ...]) -> bytes:
+    stream = io.BytesIO()
+    header = {"descr": "<f8", "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(stream, header)
+    return stream.getvalue() + bytes(1000)
+
+
+def test_monsters_are_refused_by_their_header(tmp_path):
+    (tmp_path / "a.npy").write_bytes(monstrous_header((10**6, 10**6)))
+    refused(tmp_path / "a.npy", r"1000000 x 1000000 texels; the most is 2\*\*28")
+    (tmp_path / "b.npy").write_bytes(monstrous_header((10_000, 10_000)))
+    refused(tmp_path / "b.npy", "promises 800000000 bytes, 1000 are there")
+    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
+        archive.writestr("elevation.npy", monstrous_header((10**6, 10**6)))
+    refused(tmp_path / "a.npz", r"the most is 2\*\*28")
+    tifffile.imwrite(tmp_path / "a.tif", LAND, metadata=None)
+    content = (tmp_path / "a.tif").read_bytes()
+    with tifffile.TiffFile(tmp_path / "a.tif") as tif:
+        places = [tif.pages[0].tags[code].valueoffset for code in (256, 257)]
+        kinds = [tif.pages[0].tags[code].dtype for code in (256, 257)]
+    for place, kind in zip(places, kinds, strict=True):
+        huge = (60_000).to_bytes(2 if kind == 3 else 4, "little")
+        content = content[:place] + huge + content[place + len(huge) :]
+    (tmp_path / "a.tif").write_bytes(content)
+    refused(tmp_path / "a.tif", r"60000 x 60000 texels; the most is 2\*\*28")
+
+
+def test_large_offsets_that_float32_cannot_hold_are_said(tmp_path):
+    land = 5e6 + RNG.random((6, 9))
+    np.save(tmp_path / "a.npy", land)
+    assert read_elevation(tmp_path / "a.npy").notes == (
+        "float64 heights up to 5e+06 are kept as float32, to 0.5 only",
+    )
+    np.save(tmp_path / "b.npy", land - 5e6)
+    assert read_elevation(tmp_path / "b.npy").notes == ()
+
+
+def test_reading_twice_gives_the_same_and_cannot_be_changed(tmp_path):
+    np.save(tmp_path / "a.npy", LAND)
+    a, b = read_elevation(tmp_path / "a.npy"), read_elevation(str(tmp_path / "a.npy"))
+    np.testing.assert_array_equal(a.heights, b.heights)
+    with pytest.raises(ValueError, match="read-only"):
+        a.heights[0, 0] = 1.0
+
+
+def test_the_name_s_case_does_not_matter(tmp_path):
+    np.save(tmp_path / "a.npy", LAND)
+    shutil.move(tmp_path / "a.npy", tmp_path / "A.NPY")
+    assert_land(read_elevation(tmp_path / "A.NPY"), LAND)
+
+
+# Gaps
+
+
+def plane(n: int) -> np.ndarray:
+    y, x = np.mgrid[:n, :n] / (n - 1)
+    return (1000.0 + 300.0 * x + 200.0 * y).astype(np.float32)
+
+
+def test_gaps_are_refused_with_their_number_and_place():
+    heights = plane(9)
+    heights[3, 4] = heights[5, 1] = np.nan
+    with pytest.raises(DataError, match=r"hill: 2 of 81 texels have no data, the first at \(4, 3\)"):
+        fill_no_data(Elevation(heights, "hill"), "refuse")
+    with pytest.raises(DataError, match="no such way with gaps: 'fil'; did you mean 'fill'"):
+        fill_no_data(Elevation(heights, "hill"), "fil")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("mode", ["refuse", "fill"])
+def test_land_without_gaps_is_left_alone(mode):
+    whole = Elevation(plane(9), "hill")
+    assert fill_no_data(whole, mode) is whole
+
+
+@pytest.mark.parametrize("n", [33, 100, 257])
+def test_a_hole_in_a_plane_is_filled_by_the_plane(n):
+    y, x = np.mgrid[:n, :n] / (n - 1)
+    heights = plane(n)
+    heights[(x - 0.5) ** 2 + (y - 0.45) ** 2 < 0.09] = np.nan
+    found = fill_no_data(Elevation(heights, "hill", spacing=(2.0, 2.0), in_metres=True), "fill")
+    assert np.abs(found.heights - plane(n)).max() < 0.005 * 500.0
+    known = ~np.isnan(heights)
+    np.testing.assert_array_equal(found.heights[known], heights[known])
+    assert found.missing == 0 and found.spacing == (2.0, 2.0) and found.in_metres
+    assert "were filled" in found.notes[0]
+
+
+def test_a_fill_is_smooth_within_range_and_the_same_each_time():
+    y, x = np.mgrid[:129, :200] / 60.0
+    heights = (100 * np.sin(3 * x) * np.cos(2 * y)).astype(np.float32)
+    land = heights.copy()
+    land[:40, :50] = land[60:90, 100:160] = np.nan
+    land[RNG.random(land.shape) < 0.2] = np.nan
+    one, two = (fill_no_data(Elevation(land, "hill"), "fill").heights for _ in range(2))
+    np.testing.assert_array_equal(one, two)
+    assert np.nanmin(land) <= one.min() and one.max() <= np.nanmax(land)
+    steepest = np.abs(np.diff(heights, axis=1)).max()
+    assert np.abs(np.diff(one, axis=1)).max() < 3 * steepest
+
+
+def test_one_known_texel_fills_the_land():
+    heights = np.full((37, 21), np.nan, np.float32)
+    heights[30, 2] = 7.25
+    assert (fill_no_data(Elevation(heights, "hill"), "fill").heights == np.float32(7.25)).all()
+
+
+def test_a_fill_keeps_the_symmetry_of_the_land():
+    heights = plane(65)
+    heights[20:45, 20:45] = np.nan
+    a = fill_no_data(Elevation(heights, "a"), "fill").heights
+    b = fill_no_data(Elevation(np.ascontiguousarray(heights[:, ::-1]), "b"), "fill").heights
+    np.testing.assert_allclose(a, b[:, ::-1], atol=1.0)
+
+
+# Size
+
+
+SIZES = [(65, 65), (33, 129), (17, 17), (200, 31), (2, 2), (64, 66), (5, 300), (1025, 2)]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_constant_stays_exactly_constant(size):
+    found = resample(np.full((40, 65), 0.1, np.float32), size)
+    assert found.shape == size[::-1] and found.dtype == np.float32 and found.flags.c_contiguous
+    assert (found == np.float32(0.1)).all()
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_plane_stays_a_plane_with_its_corners(size):
+    y, x = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 65), indexing="ij")
+    v, u = np.meshgrid(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]), indexing="ij")
+    found = resample(700.0 + 250.0 * x - 90.0 * y, size)
+    np.testing.assert_allclose(found, 700.0 + 250.0 * u - 90.0 * v, atol=2e-4)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_corners_keep_their_heights(size):
+    land = RNG.random((40, 65), dtype=np.float32)
+    corners = np.ix_([0, -1], [0, -1])
+    np.testing.assert_allclose(resample(land, size)[corners], land[corners], atol=1e-6)
+
+
+def test_the_same_size_is_the_same_land():
+    land = RNG.random((40, 65), dtype=np.float32)
+    np.testing.assert_allclose(resample(land, (65, 40)), land, atol=1e-7)
+
+
+@pytest.mark.parametrize("size", [(129, 129), (300, 77), (500, 500)])
+def test_growing_smooth_land_follows_scipy_s_spline(size):
+    x, y = np.linspace(0, 1, 65), np.linspace(0, 1, 49)
+    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
+    spline = RectBivariateSpline(y, x, land)
+    expected = spline(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
+    difference = np.abs(resample(land, size) - expected)
+    margin = math.ceil(2 * size[0] / 65), math.ceil(2 * size[1] / 49)
+    assert difference[margin[1] : -margin[1], margin[0] : -margin[0]].max() < 6e-5
+    # The edges have no neighbour beyond: there the land's curvature, f'' h^2 / 16, is not seen.
+    assert difference.max() < (25 + 16 + 2) / 48**2 / 16
+
+
+@pytest.mark.parametrize("size", [(65, 65), (100, 47), (33, 33)])
+def test_shrinking_smooth_land_follows_scipy_s_spline(size):
+    x, y = np.linspace(0, 1, 513), np.linspace(0, 1, 385)
+    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
+    expected = RectBivariateSpline(y, x, land)(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
+    assert np.abs(resample(land, size) - expected).max() < 2e-3
+
+
+def test_shrinking_averages_and_does_not_alias():
+    rows, cols = np.indices((257, 257))
+    checked = ((rows + cols) % 2).astype(np.float32)  # taking every 4th texel would see only zeros
+    inside = resample(checked, (65, 65))[4:-4, 4:-4]
+    np.testing.assert_allclose(inside, 0.5, atol=0.01)
+    waves = np.sin(2 * np.pi * cols * 0.23)  # would come back as a slow wave at 4 to 1
+    assert np.abs(resample(waves, (65, 65))[:, 4:-4]).max() < 0.05
+    noise = RNG.normal(size=(257, 257))
+    assert resample(noise, (65, 65))[4:-4, 4:-4].std() < 0.35
+
+
+def test_tiles_that_share_an_edge_share_it_afterwards():
+    land = RNG.random((65, 129))
+    for size in ((17, 17), (129, 100)):
+        west, east = resample(land[:, :65], size), resample(land[:, 64:], size)
+        np.testing.assert_allclose(west[:, -1], east[:, 0], atol=1e-6)
+
+
+def test_turning_the_land_turns_the_result():
+    land = RNG.random((40, 65))
+    for size in ((31, 90), (100, 20)):
+        found = resample(land, size)
+        np.testing.assert_allclose(resample(land[::-1, ::-1], size), found[::-1, ::-1], atol=1e-6)
+        np.testing.assert_allclose(resample(land.T, size[::-1]), found.T, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("heights", "size", "words"),
+    [
+        (np.zeros((4, 4)), (1, 4), "resampled heights: is 1 x 4 texels"),
+        (np.zeros((4, 4)), (10**5, 10**5), r"the most is 2\*\*28"),
+        (np.zeros(4), (4, 4), "has 1 dimensions"),
+        (np.zeros((1, 4)), (4, 4), "is 4 x 1 texels"),
+        (np.zeros((4, 4), complex), (4, 4), "holds complex128"),
+        (np.array([[0, np.nan], [0, 0]]), (4, 4), "1 are not finite; expected gaps to be filled"),
+    ],
+)
+def test_what_cannot_be_resampled_is_a_sentence(heights, size, words):
+    with pytest.raises(DataError, match=words):
+        resample(heights, size)
