@@ -327,8 +327,8 @@ _CAUSES = (
     ),
     _Cause(
         _NO_DRIVER,
-        _any_set("LIBGL_DRIVERS_PATH", "MESA_LOADER_DRIVER_OVERRIDE", "GALLIUM_DRIVER"),
-        "LIBGL_DRIVERS_PATH, MESA_LOADER_DRIVER_OVERRIDE or GALLIUM_DRIVER is set: unset it.",
+        _any_set("LIBGL_DRIVERS_PATH", "MESA_LOADER_DRIVER_OVERRIDE"),
+        "LIBGL_DRIVERS_PATH or MESA_LOADER_DRIVER_OVERRIDE is set: unset it.",
     ),
     _Cause(
         _NO_LIBRARY,

@@ -1,0 +1,52 @@
+"""What every test shares: one headless context, checked for OpenGL errors around each test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.gpu.context import open_context
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(autouse=True)
+def _strict_numbers() -> Iterator[None]:
+    with np.errstate(all="raise"):
+        yield
+
+
+@pytest.fixture(scope="session")
+def shared_context() -> Iterator[moderngl.Context]:
+    """Give one headless context for the whole session."""
+    ctx = open_context()
+    yield ctx
+    ctx.release()
+
+
+@pytest.fixture
+def ctx(shared_context: moderngl.Context) -> Iterator[moderngl.Context]:
+    """Give the context, and see that the test leaves no OpenGL error behind."""
+    assert shared_context.error == "GL_NO_ERROR"
+    yield shared_context
+    assert shared_context.error == "GL_NO_ERROR"
+
+
+@pytest.fixture(params=["fragment", "compute"])
+def engine(request: pytest.FixtureRequest, ctx: moderngl.Context) -> Iterator[Engine]:
+    """Give an engine of each driver."""
+    if request.param == "compute" and ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver=request.param) as made:
+        yield made
+
+
+@pytest.fixture
+def any_engine(ctx: moderngl.Context) -> Iterator[Engine]:
+    """Give an engine that chooses its drivers itself."""
+    with Engine(ctx) as made:
+        yield made
