@@ -97,6 +97,20 @@ def make_plan(
     return _Planner(sketch, flat, frame_size, time, dict(steps or {})).plan()
 
 
+def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
+    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
+    flat = flatten(sketch, compute=False)
+    return _accepted_by(flat, (least, least))
+
+
+def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
+    for leaf in leaves_of(flat.nodes):
+        at_land_size = leaf.spec.size is None and not leaf.path.startswith("view")
+        if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
+            size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
+    return size
+
+
 class _Planner:
     def __init__(
         self, sketch: Sketch, flat: Flat, frame_size: tuple[int, int], time: float, steps: dict[str, int]
@@ -164,7 +178,7 @@ class _Planner:
                 self._check_source(leaf)
                 known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
                 break
-        size = self.sketch.size or self._accepted(known.size or DEFAULT_SIZE)
+        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_SIZE)
         extent = self.sketch.extent or known.extent
         if extent is None:
             shape = known.size or size
@@ -173,14 +187,6 @@ class _Planner:
         relief = self.sketch.relief if self.sketch.relief is not None else known.relief
         base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
         return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
-
-    def _accepted(self, size: tuple[int, int]) -> tuple[int, int]:
-        """Return the land's size that every kernel of the land takes, from ``size`` up."""
-        for leaf in leaves_of(self.flat.nodes):
-            at_land_size = leaf.spec.size is None and not leaf.path.startswith("view")
-            if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
-                size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
-        return size
 
     def _check_source(self, leaf: Leaf) -> None:
         try:

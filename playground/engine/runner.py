@@ -19,7 +19,7 @@ from playground.engine.results import Result
 from playground.errors import ContextError, SketchError
 from playground.gpu.context import ContextInfo
 from playground.gpu.program import compile_wrapped
-from playground.gpu.textures import bytes_of, clear_texture, make_texture, write_texture
+from playground.gpu.textures import bytes_of, clear_texture, make_framebuffer, make_texture, write_texture
 from playground.gpu.wrap import COMPUTE, LOCAL, Wrapped, wrap
 from playground.images.files import read_image
 from playground.sketch import expressions
@@ -156,7 +156,7 @@ class Runner:
         for iteration in range(step.repeat):
             self._bind_previous(program, step.kernel, previous, unit)
             self._count(program, iteration, step, turn)
-            framebuffer = self.ctx.framebuffer([result.textures[o.name] for o in step.kernel.outputs])
+            framebuffer = make_framebuffer(self.ctx, [result.textures[o.name] for o in step.kernel.outputs])
             framebuffer.use()
             vao.render(self.ctx.TRIANGLES, vertices=3)
             framebuffer.release()
@@ -280,7 +280,7 @@ class Runner:
             program.run(-(-width // kernel.local[0]), -(-height // kernel.local[1]))
             self.ctx.memory_barrier()
             return result
-        framebuffer = self.ctx.framebuffer([texture])
+        framebuffer = make_framebuffer(self.ctx, [texture])
         framebuffer.use()
         framebuffer.clear(0, 0, 0, 1)
         assert vao is not None
@@ -308,7 +308,7 @@ class Runner:
         dtype = "f1" if output.format.endswith("8") else "f4" if output.format.endswith("32f") else "f2"
         colour = ctx.renderbuffer(step.size, components, samples=samples if samples > 1 else 0, dtype=dtype)
         depth = ctx.depth_renderbuffer(step.size, samples=samples if samples > 1 else 0)
-        surface = ctx.framebuffer([colour], depth)
+        surface = make_framebuffer(ctx, [colour], depth)
         surface.use()
         surface.clear(0, 0, 0, 0, depth=1.0)
         self._start_from(inputs.get("initial"), surface, samples)
@@ -331,7 +331,7 @@ class Runner:
         ctx.disable(ctx.BLEND | ctx.DEPTH_TEST)
         vao.release()
         result = self._make_result(step, key)
-        resolved = ctx.framebuffer([result.textures[output.name]])
+        resolved = make_framebuffer(ctx, [result.textures[output.name]])
         ctx.copy_framebuffer(resolved, surface)
         resolved.release()
         result.surface = surface
@@ -382,8 +382,8 @@ class Runner:
         for output in step.kernel.outputs:
             target = result.textures[output.name]
             if output.name in previous:
-                source = self.ctx.framebuffer([previous[output.name]])
-                destination = self.ctx.framebuffer([target])
+                source = make_framebuffer(self.ctx, [previous[output.name]])
+                destination = make_framebuffer(self.ctx, [target])
                 self.ctx.copy_framebuffer(destination, source)
                 source.release()
                 destination.release()
@@ -510,7 +510,7 @@ class Runner:
                 data = np.ascontiguousarray(pixels).tobytes()
                 texture = self.ctx.texture((width, height), 4, data, alignment=1, internal_format=_SRGB8_ALPHA8)
             else:
-                from playground.images.colour import srgb_to_linear
+                from playground.sketch.colour import srgb_to_linear
 
                 top = float(np.iinfo(pixels.dtype).max) if pixels.dtype.kind == "u" else 1.0
                 linear = pixels.astype(np.float64) / top

@@ -6,12 +6,13 @@ EGL on Linux (no display and no GPU needed), a hidden native context elsewhere. 
 
 from __future__ import annotations
 
+import ctypes.util
 import os
 import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
 from playground.gpu.mend import mend
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     import moderngl
 
 VERSIONS = (430, 410, 330)
+_MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
@@ -76,28 +78,64 @@ def open_context(*, software: bool = False, device: int | None = None) -> modern
     import moderngl
 
     if software:
-        prefer_software()
-    options: dict[str, object] = {"standalone": True}
+        return _open_software(device)
+    return _open(device)
+
+
+def _open(device: int | None = None) -> moderngl.Context:
+    import moderngl
+
+    options: dict[str, Any] = {"standalone": True}
     if sys.platform.startswith("linux"):
         options["backend"] = "egl"
         if device is not None:
             options["device_index"] = device
+        if not ctypes.util.find_library("EGL"):
+            # Without ldconfig nothing is found by name; the names with a version need no -dev package.
+            options |= {"libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
     elif device is not None:
         raise ContextError("--device picks an EGL device, which only Linux has")
-    causes: list[str] = []
+    cause = ""
     for version in VERSIONS:
         try:
             ctx = moderngl.create_context(require=version, **options)
         except Exception as error:  # moderngl and glcontext raise bare Exception, ValueError, RuntimeError
-            causes.append(str(error))
+            cause = str(error)
             continue
         ctx.gc_mode = "auto"
-        if software and not context_info(ctx).software:
-            renderer = context_info(ctx).renderer
-            ctx.release()
-            raise ContextError(f"--software was asked for, but OpenGL gave {renderer}; is Mesa's llvmpipe installed?")
         return ctx
-    raise ContextError(mend(causes[0], sys.platform, os.environ))
+    raise ContextError(f"{mend(cause, sys.platform, os.environ)} ({cause})")
+
+
+def _open_software(device: int | None) -> moderngl.Context:
+    """Open a context on the processor's renderer, wherever among the devices it is.
+
+    Mesa does not let its software switch override a device that was chosen by number, and
+    where there is a GPU the default device is that; its own software device comes last.
+    """
+    prefer_software()
+    first = _open(device)
+    if device is not None or context_info(first).software:
+        return _software_or_refuse(first)
+    wanted = context_info(first).renderer
+    first.release()
+    for index in range(_MAX_DEVICES, -1, -1):
+        try:
+            ctx = _open(index)
+        except ContextError:
+            continue
+        if context_info(ctx).software:
+            return ctx
+        ctx.release()
+    raise ContextError(f"--software was asked for, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?")
+
+
+def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
+    info = context_info(ctx)
+    if info.software:
+        return ctx
+    ctx.release()
+    raise ContextError(f"--software was asked for, but this device is {info.renderer}")
 
 
 def adopt_context() -> moderngl.Context:

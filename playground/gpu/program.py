@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.logs import LogEntry, hint, parse_log, source_column, split_moderngl
-from playground.gpu.wrap import Stage, Wrapped
+from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, wrap_library
 from playground.paths import shown
+from playground.sketch.model import Kernel
+from playground.sketch.source import SourceText
 
 if TYPE_CHECKING:
     import moderngl
-
-Program = "moderngl.Program | moderngl.ComputeShader"
 
 
 def compile_wrapped(ctx: moderngl.Context, wrapped: Wrapped) -> moderngl.Program | moderngl.ComputeShader:
@@ -30,6 +30,16 @@ def compile_wrapped(ctx: moderngl.Context, wrapped: Wrapped) -> moderngl.Program
         raise explain(str(error), wrapped) from None
     finally:
         _ = ctx.error  # a failed compile may leave one behind
+
+
+def compile_library(ctx: moderngl.Context, source: SourceText) -> None:
+    """Compile a library file alone, as a fragment shader and, where there is compute, as a compute shader.
+
+    Raises ``ShaderError`` with one diagnostic for each of the driver's complaints.
+    """
+    kernel = Kernel(shown(source.path), "kernel", source, ())
+    for driver in (FRAGMENT, COMPUTE) if ctx.version_code >= 430 else (FRAGMENT,):
+        compile_wrapped(ctx, wrap_library(kernel, driver)).release()
 
 
 def explain(text: str, wrapped: Wrapped) -> ShaderError:

@@ -5,6 +5,7 @@ Arrays have row 0 in the south, as textures have.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,9 +49,27 @@ def make_texture(ctx: moderngl.Context, size: tuple[int, int], form: str) -> mod
     return texture
 
 
+def make_framebuffer(
+    ctx: moderngl.Context,
+    attachments: Sequence[moderngl.Texture | moderngl.Renderbuffer],
+    depth: moderngl.Renderbuffer | None = None,
+) -> moderngl.Framebuffer:
+    """Make a framebuffer; raise ``ContextError`` where an OpenGL error stood before.
+
+    moderngl 5.13 asks Mesa about attachments that are not there, which leaves
+    GL_INVALID_OPERATION behind; it is taken away here, so that a real error shows.
+    """
+    before = ctx.error
+    if before != "GL_NO_ERROR":
+        raise ContextError(f"OpenGL reports {before}")
+    framebuffer = ctx.framebuffer(list(attachments), depth)
+    _ = ctx.error
+    return framebuffer
+
+
 def clear_texture(ctx: moderngl.Context, texture: moderngl.Texture) -> None:
     """Fill a texture with zeros."""
-    framebuffer = ctx.framebuffer([texture])
+    framebuffer = make_framebuffer(ctx, [texture])
     framebuffer.clear()
     framebuffer.release()
 

@@ -69,6 +69,16 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
     return _wrap_compute(kernel) if driver == COMPUTE else _wrap_fragment(kernel)
 
 
+def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
+    """Wrap a library file, which has nothing to run, so that it can be compiled alone."""
+    if driver == COMPUTE:
+        before = ["#version 430", "layout(local_size_x = 1) in;"]
+        return Wrapped(kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, ["void main() {}"], "")})
+    after = ["out vec4 k_out;", "void main() { k_out = vec4(0.0); }"]
+    stage = _stage(kernel, ["#version 330"], kernel.source.code, after, "")
+    return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+
+
 def signature(kernel: Kernel) -> str:
     """Return the signature that a kernel's function must have."""
     if len(kernel.outputs) == 1:

@@ -5,7 +5,7 @@ of values have row 0 in the south, as in the engine, and are turned over where
 a format is an image. A file is written whole or not at all: a temporary file
 in the same folder takes the name only when it is complete.
 
-It does not decode sRGB (`playground.images.colour` does), does not apply ICC
+It does not decode sRGB (`playground.sketch.colour` does), does not apply ICC
 profiles, and knows nothing of metres (`playground.terrain.elevation` does).
 
 16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour

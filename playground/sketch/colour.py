@@ -1,35 +1,79 @@
-"""Convert colours between linear light and sRGB's encoding.
+"""Move colours between encoded sRGB, linear sRGB and `"#rrggbb"`.
 
-Source: IEC 61966-2-1:1999, the exact two-piece curve.
+Every colour is linear inside the playground; encoded ones live only in files,
+in TOML and on the screen. There is no other colour space here, and no tone
+mapping (that is `view/present`).
+
+Source: IEC 61966-2-1:1999 with Amendment 1 (2003), clause 5.2: the exact
+piecewise curve, not the power 2.2. Its printed thresholds (0.04045 and
+0.0031308) leave a step of less than 1e-7 between the pieces, far below the
+1/255 of a byte.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-def decode(encoded: float) -> float:
-    """Return the linear light of one sRGB-encoded channel, both 0..1."""
-    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+from playground.errors import DataError
 
-
-def encode(linear: float) -> float:
-    """Return one channel of linear light, 0..1, encoded as sRGB."""
-    return linear * 12.92 if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055
+_HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6}|[0-9a-f]{8})", re.IGNORECASE | re.ASCII)
 
 
-def parse_hex(text: str) -> tuple[float, float, float, float]:
-    """Return linear RGB and alpha of ``#rgb``, ``#rrggbb`` or ``#rrggbbaa``; raise ``ValueError`` in a sentence."""
-    if not re.fullmatch(r"#([0-9A-Fa-f]{3}|[0-9A-Fa-f]{6}|[0-9A-Fa-f]{8})", text):
-        raise ValueError(f"'{text}' is not a colour; expected #rrggbb, as #8a9a5b")
-    digits = text[1:] if len(text) > 4 else "".join(c * 2 for c in text[1:])
-    channels = [int(digits[i : i + 2], 16) / 255 for i in range(0, len(digits), 2)]
-    alpha = channels[3] if len(channels) == 4 else 1.0
-    return decode(channels[0]), decode(channels[1]), decode(channels[2]), alpha
+def srgb_to_linear(encoded: ArrayLike) -> NDArray[np.float64]:
+    """Decode sRGB to linear light, component by component.
+
+    `encoded` is 0..1, any shape (divide bytes by 255 first); the result is
+    float64 of that shape. Below 0 the straight piece goes on, above 1 the
+    curve does. Alpha is never encoded: leave it out.
+    """
+    c = np.asarray(encoded, dtype=np.float64)
+    curve = ((np.maximum(c, 0.04045) + 0.055) / 1.055) ** 2.4
+    return np.asarray(np.where(c <= 0.04045, c / 12.92, curve))
+
+
+def linear_to_srgb(linear: ArrayLike) -> NDArray[np.float64]:
+    """Encode linear light as sRGB: the inverse of `srgb_to_linear`, same shapes."""
+    c = np.asarray(linear, dtype=np.float64)
+    curve = 1.055 * np.maximum(c, 0.0031308) ** (1.0 / 2.4) - 0.055
+    return np.asarray(np.where(c <= 0.0031308, 12.92 * c, curve))
+
+
+def parse_hex(text: str) -> tuple[float, ...]:
+    """Read `"#rgb"`, `"#rrggbb"` or `"#rrggbbaa"` as linear floats, 0..1.
+
+    Returns three numbers, or four where an alpha was written (it is not decoded:
+    alpha is a coverage, not a light).
+
+    Raises:
+        DataError: the text is not such a colour.
+    """
+    found = text.strip() if isinstance(text, str) else ""
+    if not _HEX.fullmatch(found):
+        raise DataError(f"{text!r} is not a colour; expected '#rrggbb', '#rgb' or '#rrggbbaa', as '#87a96b'")
+    digits = found[1:]
+    if len(digits) == 3:
+        digits = "".join(2 * d for d in digits)
+    values = np.array(list(bytes.fromhex(digits))) / 255.0
+    return (*srgb_to_linear(values[:3]).tolist(), *values[3:].tolist())
 
 
 def to_hex(linear: Sequence[float]) -> str:
-    """Return linear RGB (and alpha) as ``#rrggbb`` (``#rrggbbaa``), clamped to 0..1."""
-    channels = [encode(min(max(c, 0.0), 1.0)) for c in linear[:3]] + [min(max(a, 0.0), 1.0) for a in linear[3:4]]
-    return "#" + "".join(f"{round(c * 255):02x}" for c in channels)
+    """Write a linear colour of three or four numbers as `"#rrggbb"` or `"#rrggbbaa"`.
+
+    Components outside 0..1 are clamped. `to_hex(parse_hex(text))` is `text` in
+    lower case and full length.
+
+    Raises:
+        DataError: not three or four finite numbers.
+    """
+    values = [float(v) for v in linear]
+    if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
+        raise DataError(f"{tuple(values)} is not a colour; expected three or four finite numbers from 0 to 1")
+    clamped = np.clip(np.array(values), 0.0, 1.0)
+    clamped[:3] = linear_to_srgb(clamped[:3])
+    return "#" + bytes(np.rint(255.0 * clamped).astype(np.uint8)).hex()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from playground.errors import ParameterError, nearest
+from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Value
 
@@ -52,8 +52,8 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
         given = _direction(given, name)
     if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
         try:
-            given = parse_hex(given.strip())[: length_of(parameter.type)]
-        except ValueError as error:
+            given = (*parse_hex(given.strip()), 1.0)[: length_of(parameter.type)]
+        except DataError as error:
             raise ParameterError(f"{name}: {error}") from None
     if isinstance(given, str):
         given = _numbers(given, name, expected(parameter))

@@ -1,0 +1,34 @@
+// texturing/snow.glsl -- a seamless tile of snow: drifts laid by the wind, fine ripples, grains.
+//
+//   gives    colour, linear light
+//   needs    noise/periodic.glsl
+//   units    the tile is 1 wide; drifts are counted across it
+//   source   made here; the thesis (Belaiche 2010, section 2.3) takes a photograph
+//   tested   tests/glsl/test_base_textures.py: seamless, its mean colour, its seeds
+//
+// Fresh snow throws back nine tenths of the light, so there is little room above its mean:
+// everything here is a shallow hollow, bluish, because a hollow is lit by the sky.
+#include "noise/periodic.glsl"
+#pragma kernel(output = "colour:rgba16f")
+
+uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+uniform int drifts = 4;                       //! slider(1, 64) Drifts across the tile
+uniform vec3 tint = vec3(0.84, 0.86, 0.88);     //! colour Snow in the light
+uniform vec3 shade = vec3(0.50, 0.58, 0.70);    //! colour The depth of a hollow
+uniform float ripples = 0.4;                  //! slider(0, 1) step(0.01) How much the wind has furrowed it
+uniform float grain = 0.3;                    //! slider(0, 1) step(0.01) How coarse it looks close up
+
+vec4 kernel(ivec2 texel) {
+    vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(drifts);
+    ivec2 period = ivec2(drifts);
+    uint number = seed * 32u;
+    float drift = gradient_fbm_periodic(place, period, 5, 0.5, number);
+    // Ripples lie across the wind: five times as many along one axis as along the other.
+    vec2 bent = place + 0.35 * vec2(drift, gradient_fbm_periodic(place, period, 3, 0.5, number + 6u));
+    float ripple = gradient_fbm_periodic(bent * vec2(2.0, 10.0), period * ivec2(2, 10), 3, 0.5, number + 9u);
+    ripple = 1.0 - smoothstep(0.0, 0.45, abs(ripple));
+    float speck = value_noise_periodic(place * 48.0, period * 48, number + 12u);
+    float hollow = smoothstep(-0.25, 0.35, -drift) * 0.55 + ripples * 0.30 * ripple * (0.5 - drift);
+    hollow += grain * 0.5 * (speck - 0.5);
+    return vec4(mix(tint, shade, clamp(hollow, 0.0, 1.0)), 1.0);
+}

@@ -1,0 +1,93 @@
+"""The trial's child process: opens a context, tries what it is handed, answers.
+
+Run by ``engine.trial`` only, as ``python -m playground.engine.trial_child MEMORY RENDERER DEVICE``.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.engine.engine import Engine
+from playground.engine.plan import smallest_land
+from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch, receive, send
+from playground.errors import ContextError, PlaygroundError
+from playground.gpu.context import open_context
+from playground.gpu.program import compile_library
+from playground.gpu.wrap import COMPUTE
+from playground.sketch.source import read_source
+
+if TYPE_CHECKING:
+    import moderngl
+
+
+def main() -> None:
+    """Answer requests until the parent closes its end."""
+    memory, renderer, device = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+    requests = sys.stdin.buffer
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever a driver prints must not get between the answers
+    ctx: moderngl.Context | None = None
+    failure: ContextError | None = None
+    try:
+        ctx = open_context(software=renderer == "software", device=int(device) if device else None)
+    except ContextError as error:
+        failure = error
+    _limit(memory)
+    engines: dict[str, Engine] = {}
+    while (message := receive(requests)) is not None:
+        number, request = message  # type: ignore[misc]
+        start = time.perf_counter()
+        if ctx is None:
+            report = TrialReport(False, failure)
+        else:
+            report = _try(ctx, engines, request)
+        send(answers, (number, replace(report, seconds=time.perf_counter() - start)))
+
+
+def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request) -> TrialReport:
+    skipped: list[str] = []
+    try:
+        if isinstance(request, TryLibrary):
+            compile_library(ctx, read_source(Path(request.path), (Path(request.folder),)))
+            return TrialReport(True)
+        for driver in request.drivers:
+            if driver == COMPUTE and ctx.version_code < 430:
+                skipped.append(COMPUTE)
+                continue
+            if driver not in engines:
+                engines[driver] = Engine(ctx, driver=driver, cache_bytes=64 * 2**20)
+            _draw(engines[driver], request)
+    except PlaygroundError as error:
+        return TrialReport(False, error, tuple(skipped))
+    except MemoryError:
+        return TrialReport(False, PlaygroundError("the trial ran out of memory"), tuple(skipped))
+    except Exception as error:  # a fault of ours: it must reach the parent as words
+        return TrialReport(False, PlaygroundError(f"{type(error).__name__}: {error}"), tuple(skipped))
+    return TrialReport(True, None, tuple(skipped))
+
+
+def _draw(engine: Engine, request: TrySketch) -> None:
+    small = replace(request.sketch, size=smallest_land(request.sketch), samples=1)
+    engine.draw(small, size=request.size, time=request.time)
+    engine.ctx.finish()
+    fault = engine.ctx.error
+    if fault != "GL_NO_ERROR":
+        raise ContextError(f"OpenGL reports {fault} after the frame")
+
+
+def _limit(memory: int) -> None:
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    # Data, not address space: a GPU's driver reserves far more addresses than it uses.
+    resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
+
+
+if __name__ == "__main__":
+    main()
