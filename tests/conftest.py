@@ -11,6 +11,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
 
+pytest_plugins = ["playground.shots.plugin", "pytester"]
+
 ROOT = Path(__file__).resolve().parent.parent
 
 

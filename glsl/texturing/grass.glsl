@@ -15,9 +15,9 @@
 uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
 uniform int blades = 44;                      //! slider(4, 200) Blades across the tile
 uniform int clumps = 5;                       //! slider(1, 32) Clumps across the tile
-uniform vec3 tint = vec3(0.105, 0.165, 0.035);  //! colour A blade in the light
+uniform vec3 tint = vec3(0.120, 0.165, 0.034);  //! colour A blade in the light
 uniform vec3 dry = vec3(0.235, 0.205, 0.075);   //! colour A dry blade
-uniform vec3 shade = vec3(0.017, 0.032, 0.008); //! colour The ground between the blades
+uniform vec3 shade = vec3(0.026, 0.038, 0.010); //! colour The ground between the blades
 uniform float variety = 0.5;                  //! slider(0, 1) step(0.01) How much blades and clumps differ
 
 // How high the tallest blade stands over a place (0: no blade), how dry it is, how far along it is.
@@ -37,7 +37,7 @@ vec3 tallest(vec2 place, ivec2 period, uint number, float blur) {
             vec2 offset = place - root;
             float share = clamp(dot(offset, along) / (reach * reach), 0.0, 1.0);
             float aside = length(offset - along * share);
-            float width = 0.17 * (1.0 - 0.85 * share * share);
+            float width = 0.21 * (1.0 - 0.85 * share * share);
             float cover = clamp((width - aside) / blur + 0.5, 0.0, 1.0);
             // Blades rise from their roots, some higher than others.
             float height = cover * (0.25 + 0.45 * share + 0.3 * chance.y);

@@ -1,4 +1,4 @@
-// texturing/snow.glsl -- a seamless tile of snow: drifts laid by the wind, fine ripples, grains.
+// texturing/snow.glsl -- a seamless tile of snow: drifts laid by the wind, furrows along it, grains.
 //
 //   gives    colour, linear light
 //   needs    noise/periodic.glsl
@@ -12,7 +12,7 @@
 #pragma kernel(output = "colour:rgba16f")
 
 uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
-uniform int drifts = 4;                       //! slider(1, 64) Drifts across the tile
+uniform int drifts = 6;                       //! slider(1, 64) Drifts across the tile
 uniform vec3 tint = vec3(0.84, 0.86, 0.88);     //! colour Snow in the light
 uniform vec3 shade = vec3(0.50, 0.58, 0.70);    //! colour The depth of a hollow
 uniform float ripples = 0.4;                  //! slider(0, 1) step(0.01) How much the wind has furrowed it
@@ -22,13 +22,15 @@ vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(drifts);
     ivec2 period = ivec2(drifts);
     uint number = seed * 32u;
-    float drift = gradient_fbm_periodic(place, period, 5, 0.5, number);
-    // Ripples lie across the wind: five times as many along one axis as along the other.
-    vec2 bent = place + 0.35 * vec2(drift, gradient_fbm_periodic(place, period, 3, 0.5, number + 6u));
-    float ripple = gradient_fbm_periodic(bent * vec2(2.0, 10.0), period * ivec2(2, 10), 3, 0.5, number + 9u);
-    ripple = 1.0 - smoothstep(0.0, 0.45, abs(ripple));
-    float speck = value_noise_periodic(place * 48.0, period * 48, number + 12u);
-    float hollow = smoothstep(-0.25, 0.35, -drift) * 0.55 + ripples * 0.30 * ripple * (0.5 - drift);
-    hollow += grain * 0.5 * (speck - 0.5);
+    float drift = gradient_fbm_periodic(place, period, 5, 0.65, number);
+    // Furrows lie along the wind: six times as many across it; the drifts turn them a little.
+    vec2 bent = place + vec2(0.15, 0.35) * drift;
+    float furrow = gradient_fbm_periodic(bent * vec2(2.0, 12.0), period * ivec2(2, 12), 4, 0.6, number + 6u);
+    // abs() folds the noise: crests are sharp, hollows round.
+    float crest = 1.0 - abs(furrow) * 2.2;
+    float sheltered = smoothstep(-0.3, 0.3, -drift);
+    float speck = value_noise_periodic(place * 40.0, period * 40, number + 12u)
+                * value_noise_periodic(place * 23.0, period * 23, number + 13u);
+    float hollow = 0.30 * sheltered + ripples * (0.35 + 0.65 * sheltered) * (1.0 - crest * crest) + grain * 0.8 * (speck - 0.25);
     return vec4(mix(tint, shade, clamp(hollow, 0.0, 1.0)), 1.0);
 }

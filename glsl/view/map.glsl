@@ -9,9 +9,10 @@
 #include "colour/ramp.glsl"
 #pragma kernel(output = "frame:rgba8")
 
-uniform sampler2D shown;              //! input
+uniform sampler2D shown;              //! input("linear", "mipmap")
 uniform int channel = 0;              //! menu("colour", "red", "green", "blue", "alpha") What is shown: all channels as a colour, or one as a number
 uniform int ramp = 0;                 //! menu("grey", "false colour") How a number is shown
+uniform int shrunk = 0;               //! menu("mean", "nearest") How a texture larger than the picture is shown: each pixel the mean of its texels, or one of them
 uniform float lowest = 0.0;           //! slider(-2, 2) step(0.01) group("Range") The number shown darkest
 uniform float highest = 1.0;          //! slider(-2, 2) step(0.01) group("Range") The number shown brightest
 
@@ -25,7 +26,10 @@ vec4 kernel(ivec2 texel) {
     float worst = max(scale.x, scale.y);
     vec2 place = (vec2(texel) + 0.5 - 0.5 * vec2(size)) * worst + 0.5 * vec2(shown_size);
     if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, vec2(shown_size)))) return vec4(0.0, 0.0, 0.0, 1.0);
-    vec4 value = texelFetch(shown, ivec2(place), 0);
+    // Enlarged, texels are squares: numbers are looked at one by one.
+    vec4 value = worst > 1.0 && shrunk == 0
+               ? textureLod(shown, place / vec2(shown_size), log2(worst))
+               : texelFetch(shown, ivec2(place), 0);
     if (any(isnan(value)) || any(isinf(value))) return vec4(NOT_A_NUMBER, 1.0);
     float span = highest - lowest;
     vec4 share = (value - lowest) / (abs(span) < 1e-20 ? 1e-20 : span);

@@ -10,6 +10,7 @@ import ctypes.util
 import os
 import re
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -138,13 +139,38 @@ def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
     raise ContextError(f"--software was asked for, but this device is {info.renderer}")
 
 
-def adopt_context() -> moderngl.Context:
-    """Return the context that a window has made current, asking for the highest version it has."""
+def adopt_context(address_of: Callable[[str], int | None] | None = None) -> moderngl.Context:
+    """Return the context that a window has made current, at the version that it has.
+
+    ``address_of`` finds an OpenGL function by name, as ``glfw.get_proc_address`` does; without
+    it the platform's usual library is asked, which knows nothing of Wayland's contexts.
+    """
     import moderngl
 
-    ctx = moderngl.create_context(require=330)
+    options = {} if address_of is None else {"context": _Functions(address_of)}
+    ctx = moderngl.create_context(require=330, **options)
     ctx.gc_mode = "auto"
     return ctx
+
+
+class _Functions:
+    """What moderngl asks of whoever owns a context: its functions, and nothing else."""
+
+    def __init__(self, address_of: Callable[[str], int | None]) -> None:
+        self._address_of = address_of
+
+    def load_opengl_function(self, name: str) -> int:
+        """Return a function's address; 0 if there is none."""
+        return self._address_of(name) or 0
+
+    def __enter__(self) -> None:
+        """Stay current: the window keeps it so."""
+
+    def __exit__(self, *_: object) -> None:
+        """Stay current."""
+
+    def release(self) -> None:
+        """Leave the context to the window."""
 
 
 def prefer_software() -> None:

@@ -70,6 +70,7 @@ def make_framebuffer(
 def clear_texture(ctx: moderngl.Context, texture: moderngl.Texture) -> None:
     """Fill a texture with zeros."""
     framebuffer = make_framebuffer(ctx, [texture])
+    framebuffer.use()  # clear() binds anew what was bound before, which may have been released by now
     framebuffer.clear()
     framebuffer.release()
 

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, Value
-from playground.sketch.values import coerce
+from playground.sketch.same import Same
+from playground.sketch.values import coerce, spell
 
 LAND = ("size", "extent", "relief", "base_elevation")
 """What belongs to the sketch itself, and may be set like a parameter."""
@@ -76,20 +79,20 @@ def shown_parameters(sketch: Sketch) -> Iterator[Shown]:
                 yield Shown(f"{spec.name}.{path}", parameter, False)
 
 
-def check_values(technique: Technique, given: Mapping[str, object]) -> tuple[tuple[str, Value], ...]:
-    """Return values checked against the parameters their paths stand for; raise ``ParameterError``."""
-    return tuple((path, coerce(resolve(technique, path)[0].parameter, value, path)) for path, value in given.items())
-
-
 def flat_values(technique: Technique, given: Mapping[str, object], prefix: str = "") -> dict[str, object]:
-    """Join the nested tables that TOML makes of dotted keys, but for a value that is itself a table."""
+    """Join the nested tables that TOML makes of dotted keys, but for a value that is itself a table.
+
+    Raises ``ParameterError`` for a path that is set twice, once as a table and once by a dotted name.
+    """
     found: dict[str, object] = {}
     for key, value in given.items():
         path = f"{prefix}{key}"
-        if isinstance(value, Mapping) and not _resolve(technique, path):
-            found |= flat_values(technique, value, f"{path}.")
-        else:
-            found[path] = value
+        inside = isinstance(value, Mapping) and not _resolve(technique, path)
+        new = flat_values(technique, value, f"{path}.") if inside and isinstance(value, Mapping) else {path: value}
+        for name in new:
+            if name in found:
+                raise ParameterError(f"'{name}' is set twice")
+        found |= new
     return found
 
 
@@ -97,17 +100,25 @@ def assign(sketch: Sketch, given: Mapping[str, object]) -> Sketch:
     """Return the sketch with values set over its own; raise ``ParameterError``."""
     overrides = dict(sketch.overrides)
     for path, value in given.items():
+        found = check_value(sketch, path, value)
         if path in LAND:
-            sketch = _set_land(sketch, path, value)
-            continue
-        try:
-            target = resolve(sketch.graph, path)[0]
-        except ParameterError:
-            valid = [*LAND, *all_paths(sketch.graph)]
-            raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}") from None
-        overrides.pop(path, None)
-        overrides[path] = coerce(target.parameter, value, path)
+            sketch = _with_land(sketch, path, found)
+        else:
+            overrides.pop(path, None)  # what is set last stands last, and wins
+            overrides[path] = found
     return replace(sketch, overrides=tuple(overrides.items()))
+
+
+def check_value(sketch: Sketch, path: str, given: object) -> Value:
+    """Return a value as the parameter, or the part of the land, takes it; raise ``ParameterError``."""
+    if path in LAND:
+        return _land_value(path, given)
+    try:
+        target = resolve(sketch.graph, path)[0]
+    except ParameterError:
+        valid = [*LAND, *all_paths(sketch.graph)]
+        raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}") from None
+    return coerce(target.parameter, given, path)
 
 
 def effective_values(technique: Technique) -> dict[str, Value]:
@@ -116,6 +127,12 @@ def effective_values(technique: Technique) -> dict[str, Value]:
     A pass's own ``set`` wins over what its technique sets inside, and that over the
     kernels' defaults; the targets of one export share the first target's value.
     """
+    return dict(_effective(Same(technique)))
+
+
+@lru_cache(maxsize=128)
+def _effective(key: Same[Technique]) -> Mapping[str, Value]:
+    technique = key.object
     if isinstance(technique, Kernel):
         return {p.name: p.default for p in technique.parameters}
     found: dict[str, Value] = {}
@@ -154,15 +171,14 @@ def _resolve(technique: Technique, path: str) -> tuple[Target, ...]:
         parameter = technique.parameter(path)
         return (Target(path, parameter),) if parameter else ()
     head, _, rest = path.partition(".")
-    if not rest:
-        export = next((e for e in technique.parameters if e.name == head), None)
-        if export is None:
-            return ()
-        return tuple(t for target in export.targets for t in _resolve(technique, target) if target != path)
-    spec = technique.find(head)
-    if spec is None:
-        return ()
-    return tuple(replace(t, path=f"{head}.{t.path}") for t in _resolve(spec.technique, rest))
+    if rest:
+        spec = technique.find(head)
+        found = _resolve(spec.technique, rest) if spec else ()
+        return tuple(Target(f"{head}.{t.path}", t.parameter) for t in found)
+    export = next((e for e in technique.parameters if e.name == head), None)
+    # A target is a path inside: one without a dot would be another export, perhaps this one.
+    targets = [target for target in export.targets if "." in target] if export else []
+    return tuple(found for target in targets for found in _resolve(technique, target))
 
 
 def _leaves(technique: Graph) -> Iterator[tuple[str, Parameter]]:
@@ -175,24 +191,29 @@ def _leaves(technique: Graph) -> Iterator[tuple[str, Parameter]]:
                 yield f"{spec.name}.{path}", parameter
 
 
-def _set_land(sketch: Sketch, key: str, given: object) -> Sketch:
-    numbers: list[object]
-    if isinstance(given, str):
-        numbers = list(given.replace("x", ",").split(","))
-    else:
-        numbers = list(given) if isinstance(given, list | tuple) else [given]
+def _land_value(key: str, given: object) -> Value:
+    if hasattr(given, "tolist"):  # a NumPy scalar or array
+        given = given.tolist()
+    parts = given.replace("x", ",").split(",") if isinstance(given, str) else given
+    numbers: list[object] = list(parts) if isinstance(parts, list | tuple) else [parts]
     try:
         values = [float(str(n)) for n in numbers]
     except ValueError:
         values = []
     if key == "size":
         if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= 16384 for v in values):
-            raise ParameterError(f"size = {given!r}: expected 1 to 16384 texels a side, as 513 or 513x257")
-        return replace(sketch, size=(int(values[0]), int(values[-1])))
+            raise ParameterError(f"size = {spell(given)}: expected 1 to 16384 texels a side, as 513 or 513x257")
+        return int(values[0]), int(values[-1])
     if key == "extent":
         if len(values) not in (1, 2) or not all(0 < v < 1e9 for v in values):
-            raise ParameterError(f"extent = {given!r}: expected metres above 0, as 10240 or 10240x8000")
-        return replace(sketch, extent=(values[0], values[-1]))
+            raise ParameterError(f"extent = {spell(given)}: expected metres above 0, as 10240 or 10240x8000")
+        return values[0], values[-1]
     if len(values) != 1 or not abs(values[0]) < 1e9 or (key == "relief" and values[0] < 0):
-        raise ParameterError(f"{key} = {given!r}: expected a number of metres")
-    return replace(sketch, relief=values[0]) if key == "relief" else replace(sketch, base_elevation=values[0])
+        wanted = "a number of metres, 0 or more" if key == "relief" else "a number of metres"
+        raise ParameterError(f"{key} = {spell(given)}: expected {wanted}")
+    return values[0]
+
+
+def _with_land(sketch: Sketch, key: str, value: Value) -> Sketch:
+    changes: dict[str, Any] = {key: value}
+    return replace(sketch, **changes)

@@ -3,7 +3,8 @@
 An expression is read as Python's grammar and walked; nothing is ever handed to
 ``eval``. There are + - * / // % **, comparisons, ``a if b else c``, and the
 functions ``log2`` (exact), ``min``, ``max``, ``abs``, ``floor``, ``ceil``. Names may be
-dotted (``size.x``, ``height.size.y``); the caller says what they stand for.
+dotted (``size.x``, ``height.size.y``); the caller says what they stand for. Whole
+numbers are divided exactly: ``3 * (n / 3)`` is n.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from functools import lru_cache
 
@@ -19,6 +21,9 @@ from playground.errors import nearest
 
 Number = int | float | Fraction
 _LIMIT = 2**62
+_LONGEST = 500
+_DEEPEST = 100
+_LARGEST_SIDE = 16_384
 
 
 class ExpressionError(ValueError):
@@ -36,23 +41,31 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     value = _walk(_parse(text), text, look_up, known)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
-    if isinstance(value, Fraction) and value.denominator == 1:
-        value = value.numerator
-    if isinstance(value, bool) or not isinstance(value, int):
+    if not isinstance(value, int):
         raise ExpressionError(f"'{text}' gives {float(value):g}; a whole number was expected")
-    return value
+    return int(value)
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
     """Return the two integers of ``"w, h"``."""
-    parts = text.split(",")
+    parts = _parts(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions parted by a comma")
     return evaluate(parts[0], names), evaluate(parts[1], names)
 
 
+def check(text: str, known: Collection[str], *, count: int = 1) -> None:
+    """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``known``."""
+    parts = _parts(text)
+    if len(parts) != count:
+        what = "one expression" if count == 1 else f"{count} expressions parted by a comma"
+        raise ExpressionError(f"'{text}' should be {what}")
+    for part in parts:
+        _walk(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
+
+
 def names_in(text: str) -> frozenset[str]:
-    """Return the dotted names that an expression reads."""
+    """Return the dotted names that an expression, or several parted by commas, reads."""
     found: set[str] = set()
 
     def visit(node: ast.AST) -> None:
@@ -65,17 +78,18 @@ def names_in(text: str) -> frozenset[str]:
             for child in ast.iter_child_nodes(node):
                 visit(child)
 
-    for part in text.split(",") if "(" not in text else [text]:
+    for part in _parts(text):
         visit(_parse(part))
     return frozenset(found)
 
 
-def accepted_sizes(accepts: str, limit: int = 65_537) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """List the sizes that ``accepts`` allows along x and along y, smallest first.
+def accepted_sizes(accepts: str, limit: int = _LARGEST_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """List the sizes up to ``limit`` that ``accepts`` allows along x and along y, smallest first.
 
-    ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own.
+    ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own. The
+    values must grow with n, which goes from 0 up.
     """
-    parts = [part.strip() for part in accepts.split(",")]
+    parts = _parts(accepts)
     if len(parts) > 2:
         raise ExpressionError(f"'{accepts}' should be one expression of n, or two of n and m")
     axes = [_values(part, "n" if index == 0 else "m", limit) for index, part in enumerate(parts)]
@@ -84,8 +98,8 @@ def accepted_sizes(accepts: str, limit: int = 65_537) -> tuple[tuple[int, ...], 
 
 def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
     """Say whether a size is one of those that ``accepts`` allows."""
-    xs, ys = accepted_sizes(accepts, max(*size, 2))
-    if "," not in accepts and size[0] != size[1]:
+    xs, ys = accepted_sizes(accepts)
+    if len(_parts(accepts)) == 1 and size[0] != size[1]:
         return False
     return size[0] in xs and size[1] in ys
 
@@ -93,35 +107,59 @@ def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
 def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, int], ...]:
     """Return the accepted sizes just below and just above ``size`` (one of them where it has no other)."""
     xs, ys = accepted_sizes(accepts)
-    if "," not in accepts:
+    if len(_parts(accepts)) == 1:
         size = (max(size), max(size))
-    below = tuple(max((v for v in axis if v <= s), default=axis[0]) for axis, s in zip((xs, ys), size, strict=True))
-    above = tuple(min((v for v in axis if v >= s), default=axis[-1]) for axis, s in zip((xs, ys), size, strict=True))
+    axes = list(zip((xs, ys), size, strict=True))
+    below = tuple(max((v for v in axis if v <= s), default=axis[0]) for axis, s in axes)
+    above = tuple(min((v for v in axis if v >= s), default=axis[-1]) for axis, s in axes)
     return tuple(dict.fromkeys([(below[0], below[1]), (above[0], above[1])]))
+
+
+def _parts(text: str) -> list[str]:
+    """Split at the commas that are in no bracket."""
+    parts, depth, start = [], 0, 0
+    for index, letter in enumerate(text):
+        depth += {"(": 1, ")": -1}.get(letter, 0)
+        if letter == "," and depth == 0:
+            parts.append(text[start:index].strip())
+            start = index + 1
+    return [*parts, text[start:].strip()]
 
 
 @lru_cache(maxsize=256)
 def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
+    check(text, (variable,))
     found: list[int] = []
-    for n in range(64):
-        value = evaluate(text, {variable: n})
+    for n in range(limit + 1):
+        try:
+            value = evaluate(text, {variable: n})
+        except ExpressionError:  # not whole for this n, as 2**(n - 1) for 0
+            continue
         if value > limit:
             break
-        if value >= 1 and value not in found:
+        if value >= 1 and value not in found[-1:]:
             found.append(value)
     if not found:
         raise ExpressionError(f"'{text}' allows no size")
-    return tuple(found)
+    return tuple(sorted(set(found)))
 
 
 @lru_cache(maxsize=1024)
 def _parse(text: str) -> ast.expr:
-    if len(text) > 500:
-        raise ExpressionError("an expression may not be longer than 500 characters")
+    if len(text) > _LONGEST:
+        raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
-        return ast.parse(text.strip(), mode="eval").body
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated, and not worth a line on the console
+            tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
+    level: list[ast.AST] = [tree]
+    for _ in range(_DEEPEST):
+        level = [child for node in level for child in ast.iter_child_nodes(node)]
+        if not level:
+            return tree
+    raise ExpressionError(f"'{text}' is nested more than {_DEEPEST} deep")
 
 
 def _dotted(node: ast.expr, text: str) -> str:
@@ -133,27 +171,20 @@ def _dotted(node: ast.expr, text: str) -> str:
 
 
 def _power(base: Number, exponent: Number) -> Number:
-    if not isinstance(exponent, int) or abs(exponent) > 62 or abs(base) > 2**31:
+    if not isinstance(exponent, int):
+        raise ExpressionError("the exponent of a power should be a whole number")
+    if abs(exponent) > 62 or abs(base) > 2**31:
         raise ExpressionError("a power may not be that large")
-    return Fraction(base) ** exponent if exponent < 0 and isinstance(base, int) else base**exponent
+    if base == 0 and exponent < 0:
+        raise ExpressionError("division by zero")
+    try:
+        return Fraction(base) ** exponent if exponent < 0 and isinstance(base, int) else base**exponent
+    except OverflowError:
+        raise ExpressionError("a power may not be that large") from None
 
 
 def _divide(a: Number, b: Number) -> Number:
-    if b == 0:
-        raise ExpressionError("division by zero")
     return Fraction(a, b) if isinstance(a, int) and isinstance(b, int) else a / b
-
-
-def _floor_divide(a: Number, b: Number) -> Number:
-    if b == 0:
-        raise ExpressionError("division by zero")
-    return a // b
-
-
-def _modulo(a: Number, b: Number) -> Number:
-    if b == 0:
-        raise ExpressionError("division by zero")
-    return a % b
 
 
 def _log2(value: Number) -> int:
@@ -168,8 +199,8 @@ _BINARY: dict[type[ast.operator], Callable[[Number, Number], Number]] = {
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: _divide,
-    ast.FloorDiv: _floor_divide,
-    ast.Mod: _modulo,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
     ast.Pow: _power,
 }
 _COMPARE: dict[type[ast.cmpop], Callable[[Number, Number], bool]] = {
@@ -190,9 +221,13 @@ _FUNCTIONS: dict[str, Callable[..., Number]] = {
 }
 
 
-def _walk(node: ast.expr, text: str, look_up: Callable[[str], Number], known: tuple[str, ...]) -> Number:
+def _walk(
+    node: ast.expr, text: str, look_up: Callable[[str], Number], known: tuple[str, ...], *, dry: bool = False
+) -> Number:
+    """Return the value of a node; ``dry`` looks at names and kinds only, in both branches of an ``if``."""
+
     def go(inner: ast.expr) -> Number:
-        return _walk(inner, text, look_up, known)
+        return _walk(inner, text, look_up, known, dry=dry)
 
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
         value: Number = node.value
@@ -203,13 +238,17 @@ def _walk(node: ast.expr, text: str, look_up: Callable[[str], Number], known: tu
         except KeyError:
             raise ExpressionError(f"'{text}' names '{name}', which is not known here{nearest(name, known)}") from None
     elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
-        value = _BINARY[type(node.op)](go(node.left), go(node.right))
+        left, right = go(node.left), go(node.right)
+        value = 1 if dry else _binary(type(node.op), left, right)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         value = -go(node.operand)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
-        value = go(node.operand)
+        value = +go(node.operand)
     elif isinstance(node, ast.IfExp):
-        value = go(node.body) if go(node.test) else go(node.orelse)
+        test = go(node.test)
+        value = go(node.body) if test or dry else go(node.orelse)
+        if dry:
+            go(node.orelse)
     elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARE:
         value = int(_COMPARE[type(node.ops[0])](go(node.left), go(node.comparators[0])))
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
@@ -217,11 +256,22 @@ def _walk(node: ast.expr, text: str, look_up: Callable[[str], Number], known: tu
             raise ExpressionError(f"'{text}' calls '{node.func.id}'{nearest(node.func.id, _FUNCTIONS)}")
         arguments = [go(argument) for argument in node.args]
         try:
-            value = _FUNCTIONS[node.func.id](*arguments)
-        except (TypeError, OverflowError):
+            value = _FUNCTIONS[node.func.id](*([1] * len(arguments) if dry else arguments))
+        except TypeError:
             raise ExpressionError(f"'{text}' calls '{node.func.id}' with the wrong number of values") from None
     else:
         raise ExpressionError(f"'{text}' holds something other than numbers, names, + - * / // % ** and log2()")
-    if abs(value) > _LIMIT:
+    return _checked(value, text)
+
+
+def _binary(kind: type[ast.operator], left: Number, right: Number) -> Number:
+    if right == 0 and kind in (ast.Div, ast.FloorDiv, ast.Mod):
+        raise ExpressionError("division by zero")
+    return _BINARY[kind](left, right)
+
+
+def _checked(value: Number, text: str) -> Number:
+    # A fraction can stay small and grow without end: ((1/3)**62)**62 has thousands of digits.
+    if not abs(value) <= _LIMIT or (isinstance(value, Fraction) and value.denominator > _LIMIT):
         raise ExpressionError(f"'{text}' grows beyond 2**62")
-    return value
+    return value.numerator if isinstance(value, Fraction) and value.denominator == 1 else value

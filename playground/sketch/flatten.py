@@ -3,19 +3,53 @@
 The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring follows one
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
-latest earlier pass with an output of its name.
+latest earlier pass with an output of its name. What is wired to a path inside a technique
+wins over what is wired to the export that stands for it.
+
+The shape of the result depends on the graph alone, so it is worked out once for each; a
+slider only puts new values into it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 from playground.errors import SketchError, nearest
 from playground.paths import shown
-from playground.sketch.assign import resolve, values_of
-from playground.sketch.model import Graph, Kernel, Output, PassSpec, Sketch, Technique, Value
+from playground.sketch.assign import effective_values, resolve
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.same import Same
+from playground.sketch.wiring import (
+    check_graph,
+    initial_names,
+    input_names,
+    inner,
+    is_optional,
+    output_names,
+    outputs_with_formats,
+    takes_input,
+    target_of,
+)
 
+__all__ = [
+    "Fed",
+    "Flat",
+    "Leaf",
+    "Loop",
+    "Node",
+    "Ref",
+    "Source",
+    "check_graph",
+    "flatten",
+    "initial_names",
+    "input_names",
+    "leaves_of",
+    "output_names",
+    "outputs_with_formats",
+    "takes_input",
+]
 
 @dataclass(frozen=True, slots=True)
 class Ref:
@@ -82,113 +116,102 @@ class Flat:
             raise SketchError(f"no pass '{path}' in sketch {sketch}{nearest(path, self.outputs)}")
         found = self.outputs[path]
         if not output:
-            return found[path] if path in found else next(iter(found.values()))
+            return found.get(path.rpartition(".")[2], next(iter(found.values())))
         if output not in found:
             raise SketchError(f"pass '{path}' has no output '{output}'{nearest(output, found)}")
         return found[output]
 
 
-def flatten(sketch: Sketch, *, compute: bool) -> Flat:
+@dataclass(frozen=True)
+class _Shape:
+    """A flat graph before any value is set."""
+
+    nodes: tuple[Node, ...]  # leaves without values and folder
+    specs: dict[str, PassSpec]
+    graphs: dict[str, Graph]
+    outputs: dict[str, dict[str, Ref]]
+    paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
+    targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
+
+
+def flatten(sketch: Sketch, *, compute: bool, opened: tuple[str, ...] = ()) -> Flat:
     """Flatten a sketch; ``compute`` lets companions stand for whole techniques.
 
+    A companion gives its technique's outputs only: it does not stand for a technique that
+    holds one of the paths ``opened``, or a pass inside that something is wired to.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
-    maker = _Flattener(values_of(sketch), sketch.folder, compute)
-    nodes = maker.expand(sketch.graph, "", {})
-    return Flat(tuple(nodes), maker.specs, maker.graphs, maker.values, maker.outputs)
+    graph = sketch.graph
+    shape = _shape(Same(graph), compute, opened)
+    values = effective_values(graph)
+    for path, value in sketch.overrides:
+        if path not in shape.targets:
+            shape.targets[path] = tuple(target.path for target in resolve(graph, path))
+        for target in shape.targets[path]:
+            values[target] = value
+    nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
+    return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs)
 
 
-def output_names(technique: Technique) -> tuple[str, ...]:
-    """Return the names of a technique's outputs."""
-    if isinstance(technique, Kernel):
-        return tuple(o.name for o in technique.outputs)
-    if technique.outputs:
-        return tuple(name for name, _ in technique.outputs)
-    return output_names(technique.passes[-1].technique)
+def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
+    """Yield every leaf, those inside loops included."""
+    for node in nodes:
+        if isinstance(node, Loop):
+            yield from leaves_of(node.body)
+        else:
+            yield node
 
 
-def input_names(technique: Technique) -> tuple[str, ...]:
-    """Return the names of a technique's inputs, optional ones included."""
-    if isinstance(technique, Kernel):
-        return tuple(i.name for i in technique.inputs)
-    return tuple(e.name for e in technique.inputs)
+@lru_cache(maxsize=32)
+def _shape(key: Same[Graph], compute: bool, opened: tuple[str, ...]) -> _Shape:
+    maker = _Flattener(key.object, compute, opened)
+    nodes = tuple(maker.expand(key.object, "", {}))
+    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.paths)
 
 
-def initial_names(kernel: Kernel) -> dict[str, str]:
-    """Map the optional inputs that a repeated kernel or a draw starts from to the outputs they start."""
-    if kernel.kind == "draw":
-        return {"initial": kernel.outputs[0].name}
-    if kernel.kind != "kernel" or kernel.repeat == "1":
-        return {}
-    if len(kernel.outputs) == 1:
-        return {"initial": kernel.outputs[0].name}
-    return {f"initial_{o.name}": o.name for o in kernel.outputs}
-
-
-def takes_input(technique: Technique, name: str) -> bool:
-    """Say whether an input of that name, or path inside, can be wired."""
-    if isinstance(technique, Kernel):
-        return name in input_names(technique) or name in initial_names(technique)
-    head, _, rest = name.partition(".")
-    if not rest:
-        return name in input_names(technique)
-    spec = technique.find(head)
-    return spec is not None and takes_input(spec.technique, rest)
-
-
-def outputs_with_formats(graph: Graph) -> tuple[Output, ...]:
-    """Return a technique's outputs with the formats that its inner kernels give them."""
-    found = []
-    for name in output_names(graph):
-        output = _leaf_output(graph, name)
-        found.append(replace(output, name=name))
-    return tuple(found)
-
-
-def check_graph(graph: Graph) -> None:
-    """Raise ``SketchError`` for an export, input or output of a technique that stands for nothing."""
-    for export in graph.parameters:
-        for target in export.targets:
-            try:
-                resolve(graph, target)
-            except SketchError as error:
-                raise SketchError(f"{export.name}: {error}", file=shown(graph.path), line=export.line) from None
-    for export in graph.inputs:
-        for target in export.targets:
-            if "." not in target or not takes_input(graph, target):
-                valid = [f"{s.name}.{i}" for s in graph.passes for i in input_names(s.technique)]
-                message = f"input '{export.name}': nothing inside takes '{target}'{nearest(target, valid)}"
-                raise SketchError(message, file=shown(graph.path), line=export.line)
-    for name, _ in graph.outputs:
-        _leaf_output(graph, name)
-
-
-def _leaf_output(graph: Graph, name: str) -> Output:
-    text = dict(graph.outputs).get(name, f"{graph.passes[-1].name}:{name}")
-    path, _, output = text.partition(":")
-    technique: Technique = graph
-    for part in path.split("."):
-        spec = technique.find(part) if isinstance(technique, Graph) else None
-        if spec is None:
-            raise SketchError(f"output '{name}': no pass '{path}' inside {graph.name}", file=shown(graph.path))
-        technique = spec.technique
-    names = output_names(technique)
-    output = output or (name if name in names else names[0])
-    if output not in names:
-        raise SketchError(f"output '{name}': '{path}' has no '{output}'{nearest(output, names)}", file=shown(graph.path))
-    if isinstance(technique, Graph):
-        return _leaf_output(technique, output)
-    return next(o for o in technique.outputs if o.name == output)
+def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str) -> Node:
+    if isinstance(node, Loop):
+        body = tuple(_filled(inside, shape, values, folder) for inside in node.body)
+        return Loop(node.path, node.repeat, body, node.feedback, node.spec)
+    own = tuple((name, values[path]) for name, path in shape.paths[node.path])
+    return Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec)
 
 
 class _Flattener:
-    def __init__(self, values: dict[str, Value], folder: str, compute: bool) -> None:
-        self.values = values
-        self.folder = folder
+    def __init__(self, graph: Graph, compute: bool, opened: tuple[str, ...]) -> None:
         self.compute = compute
         self.specs: dict[str, PassSpec] = {}
         self.graphs: dict[str, Graph] = {}
         self.outputs: dict[str, dict[str, Ref]] = {}
+        self.paths: dict[str, tuple[tuple[str, str], ...]] = {}
+        self.opened: set[str] = set()
+        if compute:
+            for path in opened:
+                self._open("", path)
+            self._open_wired(graph, "")
+
+    def _open(self, prefix: str, path: str) -> None:
+        """Keep companions from standing for what is around a path."""
+        parts = path.partition(":")[0].split(".")
+        self.opened |= {_join(prefix, ".".join(parts[:i])) for i in range(1, len(parts))}
+
+    def _open_wired(self, graph: Graph, prefix: str) -> None:
+        for _, text in graph.outputs:
+            self._open(prefix, text)
+        for spec in graph.passes:
+            for name, text in spec.inputs:
+                self._open(prefix, text)
+                self._open(_join(prefix, spec.name), f"inside.{name}" if "." in name else name)
+            if any("." in name for name, _ in (*spec.inputs, *spec.feedback)):
+                self.opened.add(_join(prefix, spec.name))
+            if isinstance(spec.technique, Graph):
+                self._open_wired(spec.technique, _join(prefix, spec.name))
+
+    def _companion(self, technique: Technique, path: str) -> Kernel | None:
+        """Return what stands for a whole technique, if anything does."""
+        if isinstance(technique, Graph) and self.compute and path not in self.opened:
+            return technique.companion
+        return None
 
     def expand(self, graph: Graph, prefix: str, wires: Mapping[str, Source | None]) -> list[Node]:
         """Return the nodes of a graph; ``wires`` maps inputs, as paths inside it, to what feeds them."""
@@ -198,10 +221,10 @@ class _Flattener:
             self.specs[path] = spec
             self.outputs[path] = self._outputs_of(spec.technique, path)
         inside: dict[str, Source | None] = {}
-        for name, source in wires.items():
-            export = next((e for e in graph.inputs if e.name == name), None)
-            for target in export.targets if export else (name,):
-                inside[target] = source
+        for export in graph.inputs:
+            if export.name in wires:
+                inside |= dict.fromkeys(export.targets, wires[export.name])
+        inside |= {name: source for name, source in wires.items() if "." in name}
         nodes: list[Node] = []
         earlier: list[PassSpec] = []
         for spec in graph.passes:
@@ -213,19 +236,15 @@ class _Flattener:
     def _outputs_of(self, technique: Technique, path: str) -> dict[str, Ref]:
         if isinstance(technique, Kernel):
             return {o.name: Ref(path, o.name) for o in technique.outputs}
-        if self.compute and technique.companion:
+        if self._companion(technique, path):
             return {name: Ref(path, name) for name in output_names(technique)}
         found = {}
         for name in output_names(technique):
-            text = dict(technique.outputs).get(name, f"{technique.passes[-1].name}:{name}")
-            inner, _, output = text.partition(":")
-            inner_technique: Technique = technique
-            for part in inner.split("."):
-                spec = inner_technique.find(part) if isinstance(inner_technique, Graph) else None
-                if spec is None:
-                    raise SketchError(f"output '{name}': no pass '{inner}' inside", file=shown(technique.path))
-                inner_technique = spec.technique
-            below = self._outputs_of(inner_technique, _join(path, inner))
+            where, _, output = target_of(technique, name).partition(":")
+            source = inner(technique, where)
+            if source is None:
+                raise SketchError(f"output '{name}': no pass '{where}' inside", file=shown(technique.path))
+            below = self._outputs_of(source, _join(path, where))
             found[name] = below[output] if output in below else below.get(name, next(iter(below.values())))
         return found
 
@@ -238,10 +257,13 @@ class _Flattener:
         for name, text in spec.inputs:
             wires[name] = self._ref(text, name, prefix, spec)
         for name in input_names(technique):
-            if name not in wires:
+            if name not in wires and not _covered(technique, name, wires):
                 wires[name] = self._unwired(name, prefix, spec, earlier)
         if not spec.repeat:
             return self._body(spec, path, wires)
+        for name, source in wires.items():
+            if isinstance(source, Ref) and f"{source.path}.".startswith(f"{path}."):
+                raise spec.error(f"pass '{spec.name}' reads itself; feedback = {{ {name} = \"…\" }} is the way")
         feedback = []
         for name, output in spec.feedback:
             feedback.append((name, wires.get(name), self.outputs[path][output]))
@@ -250,46 +272,36 @@ class _Flattener:
 
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
-        if isinstance(technique, Graph):
-            if not (self.compute and technique.companion):
-                return self.expand(technique, path, wires)
-            kernel = technique.companion
-            values = tuple(
-                (p.name, self.values[_join(path, resolve(technique, p.name)[0].path)]) for p in kernel.parameters
-            )
-            self.graphs[path] = technique
-        else:
+        companion = self._companion(technique, path)
+        if isinstance(technique, Kernel):
             kernel = technique
-            values = tuple((p.name, self.values[_join(path, p.name)]) for p in kernel.parameters)
-        wanted = (*(i.name for i in kernel.inputs), *initial_names(kernel))
-        inputs = tuple((name, wires.get(name)) for name in wanted)
-        return [Leaf(path, kernel, values, inputs, self.folder, spec)]
+            self.paths[path] = tuple((p.name, _join(path, p.name)) for p in kernel.parameters)
+        elif companion:
+            kernel = companion
+            self.graphs[path] = technique
+            self.paths[path] = tuple(
+                (p.name, _join(path, resolve(technique, p.name)[0].path)) for p in kernel.parameters
+            )
+        else:
+            return self.expand(technique, path, wires)
+        wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
+        return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
 
     def _ref(self, text: str, wanted: str, prefix: str, spec: PassSpec) -> Ref:
-        inner, _, output = text.partition(":")
-        path = _join(prefix, inner)
-        head = _join(prefix, inner.split(".")[0])
-        graph = self.graphs[prefix]
-        if head not in self.specs:
-            names = [p.name for p in graph.passes if p is not spec]
-            raise spec.error(f"input '{wanted}' names no pass '{inner}'{nearest(inner, names)}")
-        if path not in self.outputs:
-            technique: Technique = self.specs[head].technique
-            for part in inner.split(".")[1:]:
-                found = technique.find(part) if isinstance(technique, Graph) else None
-                if found is None:
-                    raise spec.error(f"input '{wanted}': nothing named '{inner}' inside '{inner.split('.')[0]}'")
-                technique = found.technique
-            outputs = self._outputs_of(technique, path)
-        else:
-            outputs = self.outputs[path]
+        where, _, output = text.partition(":")
+        head = where.partition(".")[0]
+        names = [p.name for p in self.graphs[prefix].passes if p is not spec]
+        if head not in names and head != spec.name:
+            raise spec.error(f"input '{wanted}' names no pass '{where}'{nearest(where, names)}")
+        technique = inner(self.graphs[prefix], where)
+        if technique is None:
+            raise spec.error(f"input '{wanted}': nothing named '{where}' inside '{head}'")
+        outputs = self._outputs_of(technique, _join(prefix, where))
+        if output and output not in outputs:
+            raise spec.error(f"input '{wanted}': pass '{where}' has no output '{output}'{nearest(output, outputs)}")
         if output:
-            if output not in outputs:
-                raise spec.error(f"input '{wanted}': pass '{inner}' has no output '{output}'{nearest(output, outputs)}")
             return outputs[output]
-        if wanted in outputs:
-            return outputs[wanted]
-        return next(iter(outputs.values()))
+        return outputs.get(wanted.rpartition(".")[2], next(iter(outputs.values())))
 
     def _unwired(self, name: str, prefix: str, spec: PassSpec, earlier: list[PassSpec]) -> Source | None:
         for other in reversed(earlier):
@@ -300,7 +312,7 @@ class _Flattener:
             outputs = self.outputs[_join(prefix, other.name)]
             if name in outputs:
                 return outputs[name]
-        if _is_optional(spec.technique, name):
+        if is_optional(spec.technique, name):
             return None
         candidates = [
             f"{other.name}:{output}" if len(outputs) > 1 else other.name
@@ -312,65 +324,51 @@ class _Flattener:
         raise spec.error(f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}{hint}")
 
 
-def _is_optional(technique: Technique, name: str) -> bool:
+def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
+    """Say whether all that an exported input stands for is wired by paths inside."""
     if isinstance(technique, Kernel):
-        if name in initial_names(technique):
-            return True
-        return any(i.name == name and i.fallback for i in technique.inputs)
-    export = next((e for e in technique.inputs if e.name == name), None)
-    if export is None:
-        return True
-    for target in export.targets:
-        head, _, rest = target.partition(".")
-        spec = technique.find(head)
-        if spec is None or not _is_optional(spec.technique, rest):
-            return False
-    return True
+        return False
+    return all(target in wires for export in technique.inputs if export.name == name for target in export.targets)
 
 
 def _join(prefix: str, name: str) -> str:
     return f"{prefix}.{name}" if prefix else name
 
 
-def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
-    """Yield every leaf, those inside loops included."""
-    for node in nodes:
-        if isinstance(node, Loop):
-            yield from leaves_of(node.body)
-        else:
-            yield node
-
-
 def _reads(node: Node) -> set[str]:
     found = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
     if isinstance(node, Loop):
-        found |= {first.path for _, first, _ in node.feedback if isinstance(first, Ref)}
         found -= {leaf.path for leaf in leaves_of(node.body)}
+        found |= _starts(node)
     return found
+
+
+def _starts(loop: Loop) -> set[str]:
+    """Return what the first turns of a loop, and of the loops in it, read."""
+    found = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
+    inside = [_starts(node) for node in loop.body if isinstance(node, Loop)]
+    return found | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})
 
 
 def _ordered(nodes: list[Node], graph: Graph) -> list[Node]:
     """Sort nodes so that each follows what it reads, otherwise as written."""
     owner = {leaf.path: i for i, node in enumerate(nodes) for leaf in leaves_of([node])}
     needs = {i: {owner[p] for p in _reads(node) if p in owner} for i, node in enumerate(nodes)}
-    order: list[int] = []
+    order: dict[int, None] = {}
     while len(order) < len(nodes):
-        ready = next((i for i in range(len(nodes)) if i not in order and needs[i] <= set(order)), None)
+        ready = next((i for i in needs if i not in order and needs[i] <= order.keys()), None)
         if ready is None:
-            rest = [i for i in range(len(nodes)) if i not in order]
-            chain = [rest[0]]
-            while True:
-                following = next(j for j in needs[chain[-1]] if j not in order)
-                chain.append(following)
-                if following in chain[:-1]:
-                    break
-            chain = chain[chain.index(chain[-1]) :]
-            names = " → ".join(nodes[i].path for i in chain)
-            spec = nodes[chain[0]].spec
-            raise SketchError(
-                f"the passes read each other in a circle: {names}; a loop needs repeat and feedback",
-                file=spec.file or shown(graph.path),
-                line=spec.line,
-            )
-        order.append(ready)
+            raise _circle(nodes, needs, order, graph)
+        order[ready] = None
     return [nodes[i] for i in order]
+
+
+def _circle(nodes: list[Node], needs: dict[int, set[int]], done: dict[int, None], graph: Graph) -> SketchError:
+    chain = [next(i for i in needs if i not in done)]
+    while chain[-1] not in chain[:-1]:
+        chain.append(next(i for i in needs[chain[-1]] if i not in done))
+    chain = chain[chain.index(chain[-1]) :]
+    names = " → ".join(nodes[i].path for i in chain)
+    spec = nodes[chain[0]].spec
+    message = f"the passes read each other in a circle: {names}; a loop needs repeat and feedback"
+    return SketchError(message, file=spec.file or shown(graph.path), line=spec.line)

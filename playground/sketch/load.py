@@ -8,15 +8,28 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
 from playground.sketch import flatten
-from playground.sketch.assign import check_values, flat_values
+from playground.sketch.assign import check_values, flat_values, values_of
 from playground.sketch.header import parse_kernel
-from playground.sketch.model import Camera, Export, Graph, Kernel, PassSpec, Preset, Shot, Sketch, Technique, Value
+from playground.sketch.model import (
+    Camera,
+    Export,
+    Graph,
+    Kernel,
+    PassSpec,
+    Preset,
+    Shot,
+    Sketch,
+    Technique,
+    Value,
+    kernels_of,
+)
 from playground.sketch.source import read_source, read_text
 from playground.sketch.toml_lines import Place, key_lines, line_of
 
@@ -28,13 +41,14 @@ _MAX_NESTING = 16
 def load(name: str | Path = "") -> Sketch:
     """Load a sketch by the name of a shipped one, or by path: a TOML, a folder holding ``sketch.toml``, a GLSL file.
 
-    With no name, the shipped default. A kernel alone takes the place of the pass with
-    its outputs in the default sketch; a plain shader is the whole picture.
+    With no name, the shipped default. A kernel alone, or a technique of several passes,
+    takes the place of the pass with its outputs in the default sketch; a plain shader is
+    the whole picture.
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
     """
     path = find(name or DEFAULT_SKETCH)
-    if path.suffix in _SHADERS:
+    if path.suffix in _SHADERS or is_technique(path):
         return _alone(path)
     return _Toml(path, path.parent.resolve()).sketch()
 
@@ -127,8 +141,6 @@ def shipped_names() -> list[str]:
 
 
 def _with(kernel: Kernel, **changes: Any) -> Kernel:
-    from dataclasses import replace
-
     return replace(kernel, **changes)
 
 
@@ -151,46 +163,83 @@ def _check_companion(companion: Kernel, parameters: set[str], inputs: set[str], 
             )
 
 
+def is_technique(path: Path) -> bool:
+    """Say whether a TOML file is a technique of several passes, not a sketch."""
+    path = path.resolve()
+    if path.is_relative_to(GLSL):
+        return not path.is_relative_to(SKETCHES)
+    try:
+        keys = tomllib.loads(read_text(path)).keys()
+    except (SketchError, tomllib.TOMLDecodeError):
+        return False
+    if path.name == "sketch.toml" or keys & {"view", "shot", "preset", "size", "extent", "relief"}:
+        return False
+    return bool(keys & {"parameters", "inputs", "outputs"})
+
+
 def _alone(path: Path) -> Sketch:
-    """Return a sketch that shows one shader file."""
+    """Return a sketch that shows one shader file, or one technique."""
     path = path.resolve()
     if path.suffix == ".comp" and path.with_suffix(".glsl").is_file():
         path = path.with_suffix(".glsl")
-    kernel = read_kernel(path, path.parent)
-    if kernel is None:
-        raise SketchError("a library file: it has no #pragma kernel, source or draw to run", file=shown(path))
-    if kernel.kind == "compute":
-        raise SketchError(f"a companion runs in place of {path.stem}.glsl, which is missing", file=shown(path))
-    if kernel.kind.startswith("plain"):
-        view = PassSpec("view", f"./{path.stem}", kernel, file=shown(path))
-        graph = Graph(path.stem, str(path), (view,), title=kernel.title)
-        return Sketch(path.stem, str(path), str(path.parent), graph, kernel.title, samples=1)
-    stage = load(DEFAULT_SKETCH)
-    outputs = {o.name for o in kernel.outputs}
-    passes = list(stage.graph.passes)
-    place = next(
-        (i for i, p in enumerate(passes) if p.name != "view" and outputs & set(flatten.output_names(p.technique))), None
-    )
-    if kernel.kind == "draw":
-        place = len(passes) - 1
-    spec = PassSpec(passes[place].name if place is not None else kernel.outputs[0].name, f"./{path.stem}", kernel, file=shown(path))
-    if place is not None:
-        passes[place] = spec
+    technique: Technique | None
+    if path.suffix == ".toml":
+        root = GLSL if path.is_relative_to(GLSL) else path.parent
+        technique = _Toml(path, root, 1).technique(path.stem)
     else:
-        name = spec.name if all(p.name != spec.name for p in passes) else path.stem
-        spec = _with_name(spec, name)
-        look = PassSpec("view", "view/map", read_technique("view/map", GLSL, GLSL), inputs=(("shown", name),))
+        technique = read_kernel(path, path.parent)
+    if technique is None:
+        raise SketchError("a library file: it has no #pragma kernel, source or draw to run", file=shown(path))
+    kind = technique.kind if isinstance(technique, Kernel) else ""
+    if kind == "compute":
+        raise SketchError(f"a companion runs in place of {path.stem}.glsl, which is missing", file=shown(path))
+    if kind.startswith("plain"):
+        view = PassSpec("view", f"./{path.stem}", technique, file=shown(path))
+        graph = Graph(path.stem, str(path), (view,), title=technique.title)
+        return Sketch(path.stem, str(path), str(path.parent), graph, technique.title, samples=1)
+    return _on_stage(path, technique)
+
+
+def _on_stage(path: Path, technique: Technique) -> Sketch:
+    """Return the default sketch with a technique in the place of the pass with its outputs."""
+    stage = load(DEFAULT_SKETCH)
+    outputs = flatten.output_names(technique)
+    passes = list(stage.graph.passes)
+    spec = PassSpec(outputs[0], f"./{path.stem}", technique, file=shown(path))
+    place = next((i for i, p in enumerate(passes) if set(outputs) & set(flatten.output_names(p.technique))), None)
+    if place is not None:
+        passes[place] = replace(spec, name=passes[place].name)
+    else:
+        if any(p.name == spec.name for p in passes):
+            spec = replace(spec, name=path.stem)
+        look = PassSpec("view", "view/map", read_technique("view/map", GLSL, GLSL), inputs=(("shown", spec.name),))
         passes = [*passes[:-1], spec, look]
-    graph = Graph(path.stem, str(path), tuple(passes), title=kernel.title)
-    sketch = Sketch(path.stem, str(path), str(path.parent), graph, kernel.title or path.stem, samples=stage.samples)
+    graph = Graph(path.stem, str(path), tuple(passes), title=technique.title)
+    sketch = replace(
+        stage,
+        name=path.stem,
+        file=str(path),
+        folder=str(path.parent),
+        graph=graph,
+        title=technique.title or path.stem,
+        shots=(),
+        presets=(),
+    )
     flatten.flatten(sketch, compute=False)
-    return sketch
+    return sketch.with_values(_files_of(stage, sketch))
 
 
-def _with_name(spec: PassSpec, name: str) -> PassSpec:
-    from dataclasses import replace
-
-    return replace(spec, name=name)
+def _files_of(stage: Sketch, sketch: Sketch) -> dict[str, str]:
+    """Return the files that the default sketch names in its own folder, by whole path."""
+    found: dict[str, str] = {}
+    values = values_of(sketch)
+    for path, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            value = str(values[f"{path}.{parameter.name}"])
+            beside = Path(stage.folder) / value
+            if parameter.widget.kind == "file" and value and beside.is_file():
+                found[f"{path}.{parameter.name}"] = str(beside)
+    return found
 
 
 class _Toml:
@@ -245,8 +294,6 @@ class _Toml:
             samples,
         )
         flatten.flatten(sketch, compute=False)
-        from dataclasses import replace
-
         sketch = replace(sketch, presets=self.presets(sketch))
         return replace(sketch, shots=self.shots(sketch))
 
@@ -262,8 +309,6 @@ class _Toml:
         graph = Graph(name, str(self.path), passes, exports["parameters"], exports["inputs"], outputs, title)
         beside = self.path.with_suffix(".comp")
         if beside.is_file():
-            from dataclasses import replace
-
             companion = _read_companion(beside, self.root, flatten.outputs_with_formats(graph))
             _check_companion(
                 companion, {e.name for e in graph.parameters}, {e.name for e in graph.inputs}, graph

@@ -178,6 +178,7 @@ class Graph:
     outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
     title: str = ""
     companion: Kernel | None = None
+    line: int = 0  # of its outputs
 
     @property
     def files(self) -> tuple[str, ...]:

@@ -3,23 +3,31 @@
 The driver is given ``SourceText.code``: comments, ``#include`` and the project's
 pragmas are blanked (quotes and anything beyond ASCII are outside GLSL 3.30), lines
 are kept, and ``#line`` is never used, because drivers differ in what they make of it.
+
+A backslash at a line's end joins it to the next, comments included, as GLSL 4.20 has it;
+the driver gets the joined line in the first one's place, since 3.30 knows no such thing.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch.places import is_file, is_inside, names_below, real
 
-_INCLUDE = re.compile(r'^\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?')
-_OWN_PRAGMA = re.compile(r"^\s*#\s*pragma\s+(kernel|source|draw|compute)\b")
+_INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
+_OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
+_WHITE = str.maketrans({"\v": " ", "\f": " "})
+_BEYOND_ASCII = re.compile(r"[^\t -~]")
 _MAX_DEPTH = 32
 _MAX_LINES = 200_000
+_MAX_INCLUDES = 4_096
+_MAX_BYTES = 8 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +35,12 @@ class Line:
     """One line of a flattened text."""
 
     text: str  # as written
-    code: str  # what the driver sees
+    code: str  # what the driver sees; "" where a line before it took it in
     comment: str  # what follows //, without it; "" where there is none
     file: str  # absolute path
     number: int  # from 1, in that file
     chain: tuple[str, ...] = ()  # "file:line" of the includes that led here
+    pragma: str = ""  # one of the project's own pragmas, whole; "" elsewhere
 
     def diagnostic(self, message: str, column: int = 0, severity: str = "error") -> Diagnostic:
         """Return a diagnostic that points at this line."""
@@ -49,7 +58,14 @@ class SourceText:
     path: str  # absolute path of the outermost file
     lines: tuple[Line, ...]
     files: tuple[str, ...] = ()  # absolute paths of every file read, outermost first
-    _cache: dict[str, str] = field(default_factory=dict, compare=False, repr=False, hash=False)
+
+    def __hash__(self) -> int:
+        # A string keeps its hash; a thousand lines would be hashed anew each time.
+        return hash(self.code)
+
+    def __getstate__(self) -> dict[str, object]:
+        # What is worked out from the lines need not travel to a child process.
+        return {"path": self.path, "lines": self.lines, "files": self.files}
 
     @cached_property
     def code(self) -> str:
@@ -71,22 +87,24 @@ def read_source(path: Path, roots: Sequence[Path]) -> SourceText:
     """Read a GLSL file and everything it includes.
 
     An include is looked for beside the file that includes it, then in each of
-    ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them.
+    ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them. A
+    file of ``glsl/`` includes from there alone, so that no sketch changes what it means.
 
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
     path = path.resolve()
-    allowed = tuple(dict.fromkeys([*(root.resolve() for root in roots), GLSL.resolve()]))
-    lines: list[Line] = []
-    files: dict[str, None] = {}
-    _flatten(path, read_text(path), allowed, (), (str(path),), lines, files)
-    return SourceText(str(path), tuple(lines), tuple(files))
+    own = tuple(dict.fromkeys(root.resolve() for root in roots))
+    reader = _Reader(own, GLSL.resolve())
+    reader.flatten(path, read_text(path), (), (str(path),))
+    return SourceText(str(path), tuple(reader.lines), tuple(reader.texts))
 
 
 def read_text(path: Path) -> str:
     """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read."""
     try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except FileNotFoundError:
         raise SketchError("there is no such file", file=shown(path)) from None
@@ -94,63 +112,87 @@ def read_text(path: Path) -> str:
         raise SketchError("this is a folder; a file was expected", file=shown(path)) from None
     except UnicodeDecodeError as error:
         raise SketchError(f"not UTF-8 text (byte {error.start})", file=shown(path)) from None
-    except OSError as error:
-        raise SketchError(f"cannot be read: {error.strerror}", file=shown(path)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SketchError(f"cannot be read: {reason}", file=shown(path)) from None
 
 
-def _flatten(
-    path: Path,
-    text: str,
-    allowed: tuple[Path, ...],
-    chain: tuple[str, ...],
-    stack: tuple[str, ...],
-    lines: list[Line],
-    files: dict[str, None],
-) -> None:
-    files[str(path)] = None
-    in_block = False
-    for number, raw in enumerate(text.split("\n"), 1):
-        code, comment, in_block = _split_comments(raw, in_block)
-        include = _INCLUDE.match(code)
-        if include or _OWN_PRAGMA.match(code):
-            code = ""
-        code = "".join(c if " " <= c <= "~" or c == "\t" else "?" for c in code)
-        line = Line(raw, code, comment, str(path), number, chain)
-        lines.append(line)
-        if len(lines) > _MAX_LINES:
-            raise line.error(f"more than {_MAX_LINES} lines with its includes; is something included over and over?")
-        if include:
-            name = include.group(1) or include.group(2)
-            if not name:
-                raise line.error('#include needs a file name in quotes, as #include "noise/hash.glsl"')
-            target = _find_include(name, path, allowed, line)
-            if str(target) in stack:
-                cycle = [*stack[stack.index(str(target)) :], str(target)]
-                raise line.error("include cycle: " + " → ".join(shown(p) for p in cycle))
-            if len(stack) >= _MAX_DEPTH:
-                raise line.error(f"includes nested more than {_MAX_DEPTH} deep")
-            place = f"{shown(path)}:{number}"
+class _Reader:
+    """Flattens one file."""
+
+    def __init__(self, own: tuple[Path, ...], library: Path) -> None:
+        self.own = own
+        self.library = library
+        self.lines: list[Line] = []
+        self.texts: dict[str, str] = {}  # of each file read, outermost first
+        self.includes = 0
+
+    def flatten(self, path: Path, text: str, chain: tuple[str, ...], stack: tuple[str, ...]) -> None:
+        self.texts[str(path)] = text
+        in_block = False
+        physical = text.split("\n")
+        number = 1
+        while number <= len(physical):
+            joined, count = _joined(physical, number - 1)
+            code, comment, in_block = _split_comments(joined, in_block)
+            include = _INCLUDE.match(code)
+            pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
+            code = "" if include or pragma else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
+            line = Line(physical[number - 1], code, comment, str(path), number, chain, pragma)
+            self.lines.append(line)
+            rest = physical[number : number + count - 1]
+            self.lines += [Line(raw, "", "", str(path), number + i, chain) for i, raw in enumerate(rest, 1)]
+            if len(self.lines) > _MAX_LINES:
+                raise line.error(f"more than {_MAX_LINES} lines with its includes; is something included over and over?")
+            if include:
+                self.include(include, line, path, chain, stack)
+            number += count
+
+    def include(
+        self, match: re.Match[str], line: Line, path: Path, chain: tuple[str, ...], stack: tuple[str, ...]
+    ) -> None:
+        name = match.group(1) or match.group(2)
+        if not name or match.group(3).strip():
+            raise line.error('#include needs one file name in quotes, as #include "noise/hash.glsl"')
+        self.includes += 1
+        if self.includes > _MAX_INCLUDES:
+            raise line.error(f"more than {_MAX_INCLUDES} includes; is something included over and over?")
+        target = self.find(name, path, line)
+        key = str(target)
+        if key in stack:
+            cycle = [*stack[stack.index(key) :], key]
+            raise line.error("include cycle: " + " → ".join(shown(p) for p in cycle))
+        if len(stack) >= _MAX_DEPTH:
+            raise line.error(f"includes nested more than {_MAX_DEPTH} deep")
+        if key not in self.texts:
             try:
-                inner = read_text(target)
+                self.texts[key] = read_text(target)
             except SketchError as error:
-                raise line.error(error.diagnostics[0].message) from None
-            _flatten(target, inner, allowed, (*chain, place), (*stack, str(target)), lines, files)
+                raise line.error(f"'{name}': {error.diagnostics[0].message}") from None
+        place = f"{shown(path)}:{line.number}"
+        self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
+
+    def find(self, name: str, includer: Path, line: Line) -> Path:
+        in_own = any(includer.is_relative_to(root) for root in self.own)
+        from_library = includer.is_relative_to(self.library) and not in_own
+        allowed = (self.library,) if from_library else tuple(dict.fromkeys([*self.own, self.library]))
+        for folder in (includer.parent, *allowed):
+            candidate = real(folder / name)
+            if candidate is not None and is_file(candidate):
+                if not is_inside(candidate, allowed):
+                    raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/")
+                return candidate
+        raise line.error(f"no file '{name}' to include{nearest(name, names_below(allowed, ('.glsl',)))}")
 
 
-def _find_include(name: str, includer: Path, allowed: tuple[Path, ...], line: Line) -> Path:
-    for folder in (includer.parent, *allowed):
-        candidate = (folder / name).resolve()
-        if candidate.is_file():
-            if not any(candidate.is_relative_to(root) for root in allowed):
-                raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/")
-            return candidate
-    known = [
-        str(p.relative_to(root).as_posix())
-        for root in allowed
-        for p in root.rglob("*.glsl")
-        if p.is_file()
-    ]
-    raise line.error(f"no file '{name}' to include{nearest(name, known)}")
+def _joined(lines: list[str], index: int) -> tuple[str, int]:
+    """Return a line with those that its backslashes join to it, and how many lines that are."""
+    last = index
+    while lines[last].endswith("\\") and last + 1 < len(lines):
+        last += 1
+    if last == index:
+        return lines[index], 1
+    return "".join(line[:-1] for line in lines[index:last]) + lines[last], last - index + 1
 
 
 def _split_comments(raw: str, in_block: bool) -> tuple[str, str, bool]:
@@ -175,6 +217,10 @@ def _split_comments(raw: str, in_block: bool) -> tuple[str, str, bool]:
             out.append("  ")
             i += 2
         else:
+            if quoted and two == '\\"':
+                out.append(two)
+                i += 2
+                continue
             if raw[i] == '"':
                 quoted = not quoted
             out.append(raw[i])

@@ -7,6 +7,8 @@ against the range its annotation gives.
 from __future__ import annotations
 
 import math
+import os
+import reprlib
 from collections.abc import Mapping, Sequence
 
 from playground.errors import DataError, ParameterError, nearest
@@ -30,14 +32,18 @@ def is_whole(glsl_type: str) -> bool:
 def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
     """Return ``given`` as a value of the parameter.
 
-    Takes numbers, sequences, ``{azimuth, elevation}``, ``"#rrggbb"`` (sRGB, becomes
+    Takes numbers, sequences, arrays, ``{azimuth, elevation}``, ``"#rrggbb"`` (sRGB, becomes
     linear), menu names, and text as on the command line (``"135,25"``). Raises
     ``ParameterError`` in one sentence that says what was expected.
     """
     name = path or parameter.name
     kind = parameter.widget.kind
+    if hasattr(given, "tolist"):  # a NumPy scalar or array
+        given = given.tolist()
     if kind == "file" or parameter.type == "sampler2D":
-        if isinstance(given, str):
+        if isinstance(given, os.PathLike):
+            given = os.fspath(given)
+        if isinstance(given, str) and "\0" not in given:
             return given
         raise _wrong(name, given, "the path of a file")
     if kind == "menu":
@@ -92,16 +98,39 @@ def expected(parameter: Parameter) -> str:
 
 
 def write(parameter: Parameter, value: Value) -> str:
-    """Return a value as the command line would take it."""
+    """Return a value as the command line would take it, exactly: ``coerce`` gives it back.
+
+    A colour is written as ``#rrggbb`` where that says the same, else as linear numbers.
+    """
     if parameter.widget.kind == "menu" and isinstance(value, int):
         return parameter.widget.choices[value]
     if parameter.widget.kind == "colour" and isinstance(value, tuple):
-        return to_hex(value)
+        text = to_hex(value)
+        there = (*parse_hex(text), 1.0)[: len(value)]
+        if all(math.isclose(a, b, rel_tol=0.0, abs_tol=1e-7) for a, b in zip(there, value, strict=True)):
+            return text
+    if isinstance(value, tuple):
+        return ",".join(map(_digits, value))
+    return value if isinstance(value, str) else _digits(value)
+
+
+def spell(value: object) -> str:
+    """Return a value as a message shows it: short, whatever it is."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, tuple):
-        return ",".join(f"{v:.9g}" for v in value)
-    return value if isinstance(value, str) else f"{value:.9g}"
+    if isinstance(value, str):
+        return f"'{value}'" if len(value) <= 80 else f"'{value[:77]}…'"
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return "a number of thousands of digits"
+
+
+def _digits(value: float | int | bool) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    short = f"{value:.6g}"
+    return short if float(short) == value and abs(value) < 1e6 else repr(value)
 
 
 def _menu(parameter: Parameter, given: object, name: str) -> int:
@@ -109,7 +138,9 @@ def _menu(parameter: Parameter, given: object, name: str) -> int:
     if isinstance(given, str):
         if given in choices:
             return choices.index(given)
-        raise ParameterError(f"{name} = '{given}': expected one of {', '.join(choices)}{_meant(given, choices)}")
+        raise ParameterError(f"{name} = {spell(given)}: expected one of {', '.join(choices)}{_meant(given, choices)}")
+    if isinstance(given, float) and given.is_integer():
+        given = int(given)
     if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(choices):
         return given
     raise _wrong(name, given, "one of " + ", ".join(choices))
@@ -135,10 +166,10 @@ def _numbers(text: str, name: str, wanted: str) -> list[float]:
 
 
 def _number(parameter: Parameter, given: object, name: str) -> float | int:
-    if hasattr(given, "item"):  # a NumPy scalar
-        given = given.item()
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise _wrong(name, given, expected(parameter))
+    if isinstance(given, int) and abs(given) > 2**64:
+        raise ParameterError(f"{name} = {spell(given)}: expected {expected(parameter)}")
     if not math.isfinite(given):
         raise ParameterError(f"{name} = {given}: expected a finite number")
     if not is_whole(parameter.type):
@@ -171,5 +202,4 @@ def _check_range(parameter: Parameter, value: Value, name: str) -> None:
 
 
 def _wrong(name: str, given: object, wanted: str) -> ParameterError:
-    shown = f"'{given}'" if isinstance(given, str) else repr(given)
-    return ParameterError(f"{name} = {shown}: expected {wanted}")
+    return ParameterError(f"{name} = {spell(given)}: expected {wanted}")

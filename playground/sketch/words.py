@@ -25,6 +25,9 @@ GIVEN: dict[str, tuple[str, str]] = {
 }
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
+RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment"})
+"""Functions that the engine gives or calls; ``previous_`` begins more of them."""
+
 _KEYWORDS = """
 attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly
 atomic_uint layout centroid flat smooth noperspective patch sample break continue do for while

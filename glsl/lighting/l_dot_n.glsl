@@ -1,0 +1,31 @@
+// lighting/l_dot_n.glsl -- light by how squarely the sun meets the slope; nothing throws a shadow.
+//
+//   gives    light: red, green, blue; alpha the visible part of the sun, here always 1
+//   needs    lighting/sun.glsl, terrain/heightfield.glsl
+//   units    light without unit, 1 for white; not cut at 1, that is the view's to do
+//   source   Belaiche 2010, section 3.5.3
+//   tested   tests/glsl/test_lighting.py, against inclined planes and NumPy
+//
+// light = sun colour max(0, N·L) gain + sky colour ambient. The thesis gives no number for
+// its gain in section 3.5.3 and 2 in 5.4. Its ambient light is 0: shadows are pitch black.
+// The light map may have another size than the heights; slopes are metres over metres.
+#include "lighting/sun.glsl"
+#include "terrain/heightfield.glsl"
+#pragma kernel(output = "light:rgba16f")
+
+uniform sampler2D height;                //! input
+uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
+uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
+uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
+uniform vec3 sky_colour = vec3(1.0);     //! colour group("Sky") Colour of the light from everywhere
+uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky") Light from everywhere, in shadow too
+uniform int normal = 0;                  //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+
+vec4 kernel(ivec2 texel) {
+    ivec2 grid = textureSize(height, 0);
+    vec2 place = place_on(grid, texel, size);
+    vec2 metres = spacing_of(grid, extent);
+    vec2 slope = relief * slope_at(height, place, metres, normal);
+    float received = gain * sun_on(normal_of_slope(slope), to_sun(sun));
+    return vec4(sun_colour * received + sky_colour * ambient, 1.0);
+}

@@ -1,0 +1,68 @@
+// view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
+//
+//   gives    frame, linear light, over an earlier frame
+//   needs    maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour and a light if there are
+//   units    metres; colours linear
+//   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture); the rest made here
+//   tested   tests/glsl/test_view.py, by where marked land stands in the picture
+//
+// The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
+// costs six times the frame, and light carries the detail that its facets lack.
+#include "maths/drape.glsl"
+#include "view/wires.glsl"
+#pragma draw(mesh = "grid", output = "frame:rgba16f")
+
+uniform sampler2D height;  //! input("linear")
+uniform sampler2D colour;  //! input("linear", "mipmap", "white")
+uniform sampler2D light;   //! input("linear", "mipmap", "white")
+
+uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side
+uniform bool wireframe = false;       //! group("Mesh") Draw the mesh's edges; hidden ones stay hidden
+uniform vec3 wire = vec3(0.75, 0.82, 0.88);  //! colour group("Mesh") The edges' colour
+uniform float faces = 1.0;            //! slider(0, 1) step(0.01) group("Mesh") How bright the faces between the edges are
+uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
+uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
+uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
+uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
+
+// Where height, colour or light is not a number, as in view/map.
+const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
+
+// A level of detail suits the longer side of a pixel's shadow on the land, which a flat view
+// stretches; so much finer, the shorter side blurs less and nothing flickers yet.
+const float SHARPER = -0.7;
+
+bool is_number(float value) {
+    return !isnan(value) && !isinf(value);
+}
+
+// mark: 0 on the land, 1 at the skirt's foot, far below 0 around a vertex whose height is not a
+// number: far, because samples at a triangle's rim are extrapolated.
+vec4 vertex(vec3 corner, out vec3 position, out float mark) {
+    float share = textureLod(height, drape_uv(corner.xy, textureSize(height, 0)), 0.0).r;
+    bool broken = !is_number(share);
+    // A vertex at infinity would take its six triangles with it.
+    float up = broken ? 0.0 : share * relief;
+    // Land below height 0 may lie deeper than the foot.
+    float foot = min(-skirt * max(extent.x, extent.y), up);
+    position = vec3(corner.xy * extent, mix(up, foot, corner.z));
+    mark = broken ? -1000.0 : corner.z;
+    return clip_from_world * vec4(position, 1.0);
+}
+
+// The colour of the cut: darker downwards, and darker on its eastern and western walls, so that its corners show.
+vec3 cut(vec2 share, float below) {
+    vec2 inside = min(share, 1.0 - share);
+    return earth * (inside.x < inside.y ? 0.7 : 1.0) * mix(1.0, 0.55, below);
+}
+
+vec4 fragment(vec3 position, float mark) {
+    vec2 share = position.xy / extent;
+    vec3 shown = texture(colour, drape_uv(share, textureSize(colour, 0)), SHARPER).rgb
+               * texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
+    if (wireframe) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
+    if (mark > 0.0) shown = cut(share, mark);
+    if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
+    if (haze > 0.0) shown = mix(horizon, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
+    return vec4(shown, 1.0);
+}

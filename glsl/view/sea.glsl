@@ -1,0 +1,34 @@
+// view/sea.glsl -- a flat sea over the land that lies below its level.
+//
+//   gives    frame, linear light, over an earlier frame
+//   needs    terrain/heightfield.glsl; a height 0..1; a frame with its depth to start from
+//   units    metres; colours linear
+//   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
+//            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
+//   tested   tests/glsl/test_view.py: drowns the land below its level and no other
+#include "terrain/heightfield.glsl"
+#pragma draw(mesh = "sheet", output = "frame:rgba16f", blend = "alpha", repeat = "1 if sea else 0")
+
+uniform sampler2D height;  //! input
+
+uniform bool sea = false;               //! group("Sea") Draw the sea
+uniform float sea_level = 0.0;          //! slider(-500, 9000) step(1) unit("m") group("Sea") Height of its surface, as elevations are counted
+uniform vec3 water = vec3(0.015, 0.075, 0.11);  //! colour group("Sea") Deep water
+uniform float clarity = 12.0;           //! log_slider(0.1, 500) unit("m") group("Sea") Depth through which a third of the light comes back
+uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") What it mirrors
+
+vec4 vertex(vec3 corner, out vec3 position) {
+    position = vec3(corner.xy * extent, sea_level - base_elevation);
+    return clip_from_world * vec4(position, 1.0);
+}
+
+vec4 fragment(vec3 position) {
+    vec2 share = position.xy / extent;
+    float ground = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
+    float depth = max(position.z - ground, 0.0);
+    float facing = abs(normalize(eye - position).z);
+    float mirrored = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+    // Even a film of water darkens the ground, and shows where the shore is.
+    float hidden = 1.0 - 0.6 * exp(-depth / clarity);
+    return vec4(mix(water, horizon, mirrored), mix(hidden, 1.0, mirrored));
+}

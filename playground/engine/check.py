@@ -1,0 +1,294 @@
+"""Check files: compile every kernel by both drivers, load every sketch, draw one small frame of each.
+
+A kernel is drawn on a stage of its own: stand-in textures for its inputs, a stand-in
+picture for files that nothing names, and a view that only copies, so that a mistake
+elsewhere cannot pass for one of its own. What is drawn is drawn in the trial child,
+where it can crash or hang.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from playground.engine.plan import make_plan
+from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch
+from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
+from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.images.files import write_values
+from playground.paths import GLSL, SKETCHES, shown
+from playground.sketch.assign import values_of
+from playground.sketch.flatten import input_names
+from playground.sketch.load import is_technique, load, read_kernel, read_technique
+from playground.sketch.model import Graph, Input, Kernel, Output, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.source import Line, SourceText, read_text
+
+ENDINGS = (".glsl", ".comp", ".frag", ".toml")
+"""What a folder is searched for."""
+
+BOTH = (FRAGMENT, COMPUTE)
+_FRAME = (64, 36)  # pixels
+_SUBJECT = "subject"
+
+
+@dataclass(frozen=True, slots=True)
+class FileReport:
+    """What was found in one file."""
+
+    path: str  # as the user would name it
+    ok: bool
+    skipped: tuple[str, ...] = ()  # drivers that this machine does not have
+    errors: tuple[Diagnostic, ...] = ()
+    seconds: float = 0.0  # in the trial child
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
+        errors = [
+            {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in self.errors
+        ]
+        return {"path": self.path, "ok": self.ok, "skipped": list(self.skipped), "errors": errors}
+
+
+def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
+    """Return every file to check with the folder it may include from, each file once.
+
+    A folder is searched through and through, but for hidden folders, virtual environments
+    and TOML files of other programs. Raises ``DataError`` for a path that is not there or
+    cannot be checked, and for folders in which there is nothing to check.
+    """
+    found: dict[Path, Path] = {}
+    named: list[str] = []
+    for given in paths:
+        path = Path(given).expanduser()
+        named.append(shown(path))
+        if path.is_dir():
+            for file in _inside(path):
+                found.setdefault(file.resolve(), path.resolve())
+        elif path.is_file():
+            if path.suffix not in (*ENDINGS, ".fs", ".fragment"):
+                wanted = ", ".join(ENDINGS)
+                raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
+            found.setdefault(path.resolve(), _root_of(path.resolve()))
+        else:
+            near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+            hint = nearest(path.name, near)
+            raise DataError(
+                f"there is no such file or folder{hint if 'mean' in hint else ''}", file=shown(path)
+            )
+    if not found:
+        wanted = ", ".join(ENDINGS)
+        raise DataError(f"nothing to check in {', '.join(named)}; expected files ending in {wanted}")
+    return list(found.items())
+
+
+def check_file(path: Path, trial: Trial, root: Path | None = None) -> FileReport:
+    """Check one file and return what is wrong with it; ``root`` is the folder it may include from."""
+    path = path.resolve()
+    with TemporaryDirectory(prefix="playground-check-") as folder:
+        report = _Check(trial, path, _root_of(path) if root is None else root, Path(folder)).run()
+    return report
+
+
+class _Check:
+    """One file being checked."""
+
+    def __init__(self, trial: Trial, path: Path, root: Path, scratch: Path) -> None:
+        self.trial = trial
+        self.path = path
+        self.root = GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root
+        self.scratch = scratch  # where the stand-in picture is written
+        self.skipped: dict[str, None] = {}
+        self.errors: dict[Diagnostic, None] = {}
+        self.seconds = 0.0
+
+    def run(self) -> FileReport:
+        check: Callable[[], None] = self.shader
+        if self.path.suffix == ".toml":
+            check = self.technique if is_technique(self.path) else self.sketch
+        elif self.path.suffix == ".comp" and _owner(self.path) is not None:
+            check = self.companion
+        try:
+            check()
+        except PlaygroundError as error:
+            self.failed(error)
+        wrong = tuple(self.errors)
+        return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, self.seconds)
+
+    # ── the kinds of file ────────────────────────────────────────────────────
+
+    def shader(self) -> None:
+        kernel = read_kernel(self.path, self.root)
+        if kernel is None and self.path.suffix != ".glsl":
+            raise SketchError(
+                "has neither a #version and main of its own nor a #pragma kernel", file=shown(self.path)
+            )
+        if kernel is None:
+            self.attempt(TryLibrary(str(self.path), str(self.root)))
+        elif kernel.kind.startswith("plain"):
+            view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
+            graph = Graph(kernel.name, str(self.path), (view,))
+            sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
+            self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch)))
+        elif kernel.kind == "compute":
+            raise SketchError(
+                f"a companion runs in place of {self.path.stem}.glsl, which is missing", file=shown(self.path)
+            )
+        else:
+            self.on_stage(kernel)
+
+    def companion(self) -> None:
+        owner = _owner(self.path)
+        assert owner is not None
+        self.attempt(self.request(self.read(owner), (COMPUTE,)))
+
+    def technique(self) -> None:
+        self.on_stage(self.read(self.path))
+
+    def sketch(self) -> None:
+        sketch = load(self.path)
+        # The child draws small; what is wrong at the sketch's own size shows in the plan.
+        make_plan(sketch, frame_size=_FRAME)
+        for preset in sketch.presets:
+            make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
+        for shot in sketch.shots:
+            make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+        self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch)))
+
+    # ── trying ───────────────────────────────────────────────────────────────
+
+    def on_stage(self, technique: Technique) -> None:
+        """Try a technique: what it says by both drivers, then what stands for it where there is compute."""
+        plain = _without_companions(technique)
+        self.attempt(self.request(plain, BOTH))
+        if plain != technique and not self.errors:
+            self.attempt(self.request(technique, (COMPUTE,)))
+
+    def attempt(self, request: Request) -> None:
+        report: TrialReport = self.trial.run(request)
+        self.seconds += report.seconds
+        self.skipped |= dict.fromkeys(report.skipped)
+        if report.error is not None:
+            self.failed(report.error)
+        elif not report.ok:
+            self.failed(PlaygroundError("the trial failed and gave no reason"))
+
+    def failed(self, error: PlaygroundError) -> None:
+        for diagnostic in error.diagnostics:
+            if diagnostic.severity == "error":
+                placed = diagnostic if diagnostic.file else replace(diagnostic, file=shown(self.path))
+                self.errors[placed] = None
+
+    def read(self, path: Path) -> Technique:
+        if path.is_relative_to(GLSL):
+            return read_technique(path.relative_to(GLSL).with_suffix("").as_posix(), GLSL, GLSL)
+        return read_technique(f"./{path.stem}", path.parent, self.root)
+
+    def request(self, technique: Technique, drivers: tuple[str, ...]) -> TrySketch:
+        return TrySketch(self.stage(technique), _FRAME, drivers=drivers)
+
+    def stage(self, technique: Technique) -> Sketch:
+        """Return a sketch that shows a technique, its inputs wired to stand-ins."""
+        wanted = technique.needs_inputs if isinstance(technique, Kernel) else input_names(technique)
+        names = [name for name in wanted if name != _SUBJECT]
+        passes = [PassSpec(name, "a stand-in", _STAND_IN) for name in names]
+        passes.append(PassSpec(_SUBJECT, self.path.stem, technique, file=shown(self.path)))
+        passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", _SUBJECT),)))
+        graph = Graph(_SUBJECT, str(self.path), tuple(passes))
+        sketch = Sketch(self.path.stem, str(self.path), str(self.root), graph)
+        return sketch.with_values({path: str(self.picture()) for path in _unnamed_files(sketch)})
+
+    def picture(self) -> Path:
+        """Return a picture, and an elevation file, for parameters that name none."""
+        path = self.scratch / "stand-in.png"
+        if not path.exists():
+            ramp = np.linspace(0.0, 1.0, 33, dtype=np.float32)
+            write_values(path, np.sqrt(np.outer(ramp, ramp)))
+        return path
+
+
+def _inside(folder: Path) -> Iterator[Path]:
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name in ("node_modules", "__pycache__"):
+            continue
+        if path.is_dir():
+            if not (path / "pyvenv.cfg").exists() and not path.is_symlink():
+                yield from _inside(path)
+        elif path.suffix in ENDINGS and (path.suffix != ".toml" or _is_ours(path)):
+            yield path
+
+
+def _is_ours(path: Path) -> bool:
+    try:
+        table = tomllib.loads(read_text(path))
+    except (SketchError, tomllib.TOMLDecodeError):
+        return True  # so that it is reported
+    return "pass" in table or "format" in table or "view" in table
+
+
+def _owner(companion: Path) -> Path | None:
+    """Return the kernel or technique that a .comp stands for, if it lies beside it."""
+    beside = (companion.with_suffix(".glsl"), companion.with_suffix(".toml"))
+    return next((path for path in beside if path.is_file()), None)
+
+
+def _root_of(path: Path) -> Path:
+    """Return the folder of the sketch that a file belongs to, else its own."""
+    for folder in path.parents:
+        if (folder / "sketch.toml").is_file():
+            return folder
+    return path.parent
+
+
+def _drivers(sketch: Sketch) -> tuple[str, ...]:
+    """Return the drivers that a sketch can be drawn by: a plain compute shader has one only."""
+    only_compute = any(kernel.kind == "plain_compute" for _, kernel in kernels_of(sketch.graph))
+    return (COMPUTE,) if only_compute else BOTH
+
+
+def _without_companions(technique: Technique) -> Technique:
+    if isinstance(technique, Kernel):
+        return replace(technique, companion=None) if technique.companion is not None else technique
+    passes = tuple(replace(spec, technique=_without_companions(spec.technique)) for spec in technique.passes)
+    return replace(technique, passes=passes, companion=None)
+
+
+def _unnamed_files(sketch: Sketch) -> list[str]:
+    values = values_of(sketch)
+    return [
+        f"{path}.{parameter.name}"
+        for path, kernel in kernels_of(sketch.graph)
+        for parameter in kernel.parameters
+        if parameter.widget.kind == "file" and not values[f"{path}.{parameter.name}"]
+    ]
+
+
+def _text(*code: str) -> SourceText:
+    return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(code, 1)))
+
+
+_STAND_IN = Kernel(
+    "a stand-in",
+    "kernel",
+    _text(
+        "vec4 kernel(ivec2 texel) {",
+        "    vec2 place = vec2(texel) / vec2(size);",
+        "    return vec4(0.25 + 0.5 * place.x * place.y + 0.2 * sin(9.0 * place.x) * sin(7.0 * place.y));",
+        "}",
+    ),
+    (Output("value", "rgba32f"),),
+)
+_COPY = Kernel(
+    "a copy",
+    "kernel",
+    _text(
+        "uniform sampler2D shown;",
+        "vec4 kernel(ivec2 texel) { return texelFetch(shown, min(texel, textureSize(shown, 0) - 1), 0); }",
+    ),
+    (Output("frame", "rgba16f"),),
+    inputs=(Input("shown"),),
+)

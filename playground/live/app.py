@@ -1,0 +1,219 @@
+"""Open a sketch in a window and keep it there until it is closed.
+
+One turn: sleep until something happens, take in saved files, draw the panel, draw the
+sketch if anything of it changed, put the panel over it. While nothing happens, nothing
+is drawn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.engine.trial import Trial
+from playground.errors import ParameterError, PlaygroundError
+from playground.gpu.context import prefer_software
+from playground.live.actions import Actions
+from playground.live.files import SUFFIXES
+from playground.live.gesture import Gesture, steered
+from playground.live.keys import act_on_keys
+from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
+from playground.live.panel import Panel
+from playground.live.picture import Painter
+from playground.live.session import Session
+from playground.live.status import Status
+from playground.live.watch import Watcher
+from playground.live.window import Window, wake
+from playground.sketch.load import find, load
+from playground.sketch.model import Value
+
+FRAME = 1 / 60  # [s] between pictures while time runs
+IDLE = 1.0  # [s] between turns while nothing happens
+_TRIAL = 0.004  # [s] between questions to the trial
+_SETTLES = 3  # turns that the panel takes to settle after something happened
+_LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
+
+
+def run(
+    sketch: str | Path = "",
+    *,
+    size: tuple[int, int] = (1280, 720),
+    software: bool = False,
+    driver: str = "auto",
+    values: Mapping[str, object] | None = None,
+    time_limit: float | None = None,
+) -> int:
+    """Show a sketch in a window until it is closed; return the exit status.
+
+    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. With a
+    ``time_limit`` [s] the window closes itself. Raises ``ContextError`` where no window
+    can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
+    value that does not fit; any other mistake in the sketch is shown in the window.
+    """
+    path = find(sketch) if sketch else find_default()
+    checked = _checked(path, values or {})
+    if software:
+        prefer_software()
+    with ExitStack() as stack:
+        trial = stack.enter_context(Trial(software=software))
+        trial.start()
+        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", size))
+        engine = stack.enter_context(Engine(window.ctx, driver=driver))
+        session = Session(engine, path, values=checked, trial=trial)
+        stack.callback(session.release)
+        watcher = stack.enter_context(Watcher(wake, SUFFIXES))
+        live = Live(window, session, watcher)
+        stack.callback(live.painter.release)
+        try:
+            live.run(time_limit)
+        except KeyboardInterrupt:
+            return 130
+    return 0
+
+
+def find_default() -> Path:
+    """Return the file of the sketch that opens when none is named."""
+    from playground.paths import DEFAULT_SKETCH
+
+    return find(DEFAULT_SKETCH)
+
+
+def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
+    """Return values as their parameters take them; a sketch that does not load yet takes any."""
+    if not values:
+        return {}
+    try:
+        sketch = load(path)
+    except PlaygroundError:
+        return {k: v for k, v in values.items() if isinstance(v, int | float | bool | str | tuple)}
+    try:
+        overrides = dict(sketch.with_values(values).overrides)
+    except ParameterError:
+        raise
+    return {k: overrides.get(k, v) for k, v in values.items()}  # type: ignore[misc]
+
+
+class Live:
+    """The window, the session and the watcher, turn by turn."""
+
+    def __init__(self, window: Window, session: Session, watcher: Watcher) -> None:
+        self.window = window
+        self.session = session
+        self.watcher = watcher
+        self.panel = Panel()
+        self.actions = Actions(session, window.ask_to_close)
+        self.painter = Painter(window.ctx)
+        self.status = Status.from_environment()
+        self._settling = _SETTLES
+        self._last = time.perf_counter()
+        self._followed: object = None
+        self._reloads = session.last_reload
+
+    def run(self, time_limit: float | None = None) -> None:
+        """Go on until the window is closed, or so many seconds have passed."""
+        end = None if time_limit is None else time.perf_counter() + time_limit
+        self._follow()
+        while self.window.open:
+            patience = self._patience()
+            if end is not None:
+                left = end - time.perf_counter()
+                if left <= 0:
+                    return
+                patience = min(patience, left)
+            self._sleep(patience)
+            self._take_files()
+            if self.window.pixels != (0, 0):
+                self._turn()
+            self._follow()
+
+    def _patience(self) -> float:
+        """Say how long nothing needs to be done [s]."""
+        if self._settling > 0:
+            return 0.0
+        if self.session.animated and self.session.clock.playing:
+            return max(FRAME - (time.perf_counter() - self._last), 0.0)
+        if self.session.testing:
+            return _TRIAL
+        if self.actions.notices or imgui.get_io().want_text_input:
+            return 0.1
+        return IDLE
+
+    def _sleep(self, seconds: float) -> None:
+        start = time.perf_counter()
+        self.window.wait(seconds)
+        woken = seconds > 0 and time.perf_counter() - start < 0.98 * seconds
+        self._settling = _SETTLES if woken else max(self._settling - 1, 0)
+        now = time.perf_counter()
+        if self.session.animated:
+            self.session.clock.advance(min(now - self._last, _LONGEST_STEP))
+        self._last = now
+
+    def _take_files(self) -> None:
+        changed = self.watcher.take()
+        if changed and (self.session.error or changed & self.session.files):
+            self.session.reload()
+
+    def _follow(self) -> None:
+        """Watch the files that the session stands on now."""
+        session = self.session
+        now = (session.shown, session.coming, session.error)
+        before = self._followed
+        if isinstance(before, tuple) and all(a is b for a, b in zip(now, before, strict=True)):
+            return
+        self._followed = now
+        self.watcher.follow(session.files, read_at=session.read_at)
+
+    def _turn(self) -> None:
+        window, session, actions = self.window, self.session, self.actions
+        window.begin()
+        left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
+        act_on_keys(actions)
+        room = imgui.get_main_viewport().size
+        area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
+        self._steer(area)
+        wide, high = window.pixels
+        skipped = min(round(left * window.density), wide - 1)
+        picture = session.frame((wide - skipped, high))
+        self._say_reload()
+        actions.take_notes()
+        if session.error is not None:
+            draw_error(session.error, actions, window.theme, area)
+        if picture is None and session.error is None:
+            draw_waiting("trying the sketch …", window.theme, area)
+        draw_notices(actions, window.theme, area)
+        window.screen.use()
+        window.screen.viewport = (0, 0, wide, high)
+        window.ctx.clear(0.06, 0.065, 0.07, 1.0)
+        if picture is not None:
+            self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
+        window.end()
+        self.status.write(actions)
+
+    def _steer(self, area: Area) -> None:
+        """Move the camera as the mouse says, unless the mouse is the panel's."""
+        io = imgui.get_io()
+        session = self.session
+        if io.want_capture_mouse or session.plan is None or session.sketch is None:
+            return
+        left, right = io.mouse_down[0], io.mouse_down[1]
+        if session.map is None and not session.orbits:
+            return
+        gesture = Gesture(
+            area[3], io.mouse_delta.x, io.mouse_delta.y, io.mouse_wheel,
+            orbiting=left and not io.key_shift, panning=right or (left and io.key_shift),
+        )
+        if gesture.acts and session.orbits:
+            session.look(steered(session.sketch.camera, session.plan.eye, gesture))
+
+    def _say_reload(self) -> None:
+        """Say so when a save has become a picture."""
+        latest = self.session.last_reload
+        if latest is not self._reloads:
+            if self._reloads is not None:
+                self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
+            self._reloads = latest

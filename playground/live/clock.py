@@ -1,0 +1,49 @@
+"""The sketch's own time: it runs, rests, and never jumps when a file is saved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from playground.sketch.header import PLAIN_UNIFORMS
+from playground.sketch.model import Graph, Sketch, Technique, kernels_of
+
+_MOVING = frozenset(n for meaning in ("time", "frame", "delta", "date") for n in PLAIN_UNIFORMS[meaning])
+
+
+@dataclass
+class Clock:
+    """Time as the sketch sees it; whoever holds it says how much of it has passed."""
+
+    time: float = 0.0  # [s] 0 or more
+    playing: bool = True
+    speed: float = 1.0  # seconds of the sketch in a second of the wall
+
+    def advance(self, seconds: float) -> None:
+        """Let so many seconds of the wall pass."""
+        if self.playing:
+            self.time += seconds * self.speed
+
+    def toggle(self) -> None:
+        """Play if it rests, rest if it plays."""
+        self.playing = not self.playing
+
+    def rewind(self) -> None:
+        """Go back to 0."""
+        self.time = 0.0
+
+
+def is_animated(sketch: Sketch) -> bool:
+    """Say whether the picture may differ from moment to moment."""
+    for _, kernel in kernels_of(sketch.graph):
+        named = _MOVING if kernel.kind.startswith("plain") else {"time"}
+        if any(kernel.reads(name) for name in named):
+            return True
+        if "time" in kernel.repeat:
+            return True
+    return _repeats_by_time(sketch.graph)
+
+
+def _repeats_by_time(technique: Technique) -> bool:
+    if not isinstance(technique, Graph):
+        return False
+    return any("time" in spec.repeat or _repeats_by_time(spec.technique) for spec in technique.passes)

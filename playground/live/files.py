@@ -1,0 +1,44 @@
+"""Which files a sketch stands on, so that they can be watched."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playground.engine.files import find_file
+from playground.errors import DataError, PlaygroundError
+from playground.paths import GLSL
+from playground.sketch.assign import values_of
+from playground.sketch.model import Sketch, kernels_of
+
+SUFFIXES = (".toml", ".glsl", ".frag", ".comp", ".fs", ".fragment")
+"""Endings of the text files a sketch may be made of: a new one may mend what was missing."""
+
+
+def files_of(sketch: Sketch) -> frozenset[Path]:
+    """Return every file of a sketch: its texts, and the images and elevation files its parameters name.
+
+    A file that is missing is among them, where it is expected.
+    """
+    found = {Path(name) for name in sketch.files}
+    values = values_of(sketch)
+    for prefix, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = values.get(f"{prefix}.{parameter.name}")
+            if parameter.widget.kind != "file" or not text:
+                continue
+            try:
+                found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
+            except DataError:
+                found.add(Path(sketch.folder, str(text)))
+    return frozenset(found)
+
+
+def files_named_by(error: PlaygroundError) -> frozenset[Path]:
+    """Return the files that an error points at; those of its includes as well."""
+    named = [d.file for d in error.diagnostics]
+    named += [place.rpartition(":")[0] for d in error.diagnostics for place in d.chain]
+    found = set()
+    for name in filter(None, named):
+        path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else Path.cwd() / name
+        found.add(path if path.is_file() else Path.cwd() / name)
+    return frozenset(found)

@@ -1,0 +1,44 @@
+"""What each key does: one table, which the key map shows as well."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from playground.live.actions import Actions
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key and its meaning."""
+
+    key: imgui.Key
+    name: str
+    meaning: str
+    brief: str  # in the panel's last line; empty: not there
+    act: Callable[[Actions], None]
+
+
+KEYS: tuple[Key, ...] = (
+    Key(imgui.Key.space, "Space", "play or pause", "pause", lambda a: a.session.clock.toggle()),
+    Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
+    Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
+    Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
+    Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
+    Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
+    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.quit()),
+)
+
+
+def act_on_keys(actions: Actions) -> None:
+    """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu."""
+    io = imgui.get_io()
+    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super:
+        return
+    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        return
+    for key in KEYS:
+        if imgui.is_key_pressed(key.key, repeat=False):
+            key.act(actions)

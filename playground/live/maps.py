@@ -1,0 +1,82 @@
+"""Show any texture of a sketch as a map from above, instead of its own view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.paths import GLSL
+from playground.sketch.load import read_technique
+from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+
+if TYPE_CHECKING:
+    from playground.engine.plan import Plan
+
+USE = "view/map"
+
+
+@dataclass(frozen=True)
+class Map:
+    """One texture, and how it is shown."""
+
+    ref: str  # "pass[.inner…]:output"
+    values: tuple[tuple[str, Value], ...] = ()  # of view/map's parameters
+    kernel: Kernel = field(default_factory=lambda: map_kernel(), compare=False)
+
+    def of(self, sketch: Sketch) -> Sketch:
+        """Return the sketch with this map for its view."""
+        spec = PassSpec("view", USE, self.kernel, inputs=(("shown", self.ref),), values=self.values)
+        passes = (*(p for p in sketch.graph.passes if p.name != "view"), spec)
+        overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
+        return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
+
+    def with_value(self, name: str, value: Value) -> Map:
+        """Return the map with one of its parameters set."""
+        return replace(self, values=(*(v for v in self.values if v[0] != name), (name, value)))
+
+    def value(self, name: str) -> Value:
+        """Return the value of one of its parameters."""
+        known = dict(self.values)
+        parameter = self.kernel.parameter(name)
+        return known[name] if name in known or parameter is None else parameter.default
+
+
+def map_kernel() -> Kernel:
+    """Read the kernel that draws maps."""
+    found = read_technique(USE, GLSL, GLSL)
+    assert isinstance(found, Kernel)
+    return found
+
+
+def refs_of(plan: Plan) -> list[str]:
+    """List the textures of a plan that a map can show: those of the sketch's own passes, then inner ones."""
+    found = [
+        f"{path}:{output}"
+        for path, outputs in plan.flat.outputs.items()
+        for output in outputs
+        if path.partition(".")[0] != "view"
+    ]
+    return sorted(found, key=lambda ref: ref.count("."))
+
+
+def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
+    """Return the map with its channel and range chosen to suit a texture's values.
+
+    One or two components are shown as a number, from the lowest to the highest there
+    is; three or four as a colour from 0 to 1. Values that are not finite are left out.
+    """
+    known = {p.name for p in shown.kernel.parameters}
+    components = 1 if values.ndim == 2 else values.shape[2]
+    settings: dict[str, Value] = {"channel": 0 if components >= 3 else 1, "lowest": 0.0, "highest": 1.0}
+    if components < 3:
+        numbers = values if values.ndim == 2 else values[..., 0]
+        finite = numbers[np.isfinite(numbers)]
+        if finite.size and finite.min() < finite.max():
+            settings |= {"lowest": float(finite.min()), "highest": float(finite.max())}
+    for name, value in settings.items():
+        if name in known:
+            shown = shown.with_value(name, value)
+    return shown

@@ -1,0 +1,59 @@
+"""How a number is written in the panel, and what a drag makes of it."""
+
+from __future__ import annotations
+
+import math
+
+from playground.sketch.model import Parameter
+from playground.sketch.values import is_whole
+
+
+def decimals(parameter: Parameter) -> int:
+    """Return how many places after the point suit a parameter: those of its step, else a thousandth of its range."""
+    if is_whole(parameter.type):
+        return 0
+    widget = parameter.widget
+    if parameter.step:
+        return _places(parameter.step)
+    if widget.low is not None and widget.high is not None:
+        fine = widget.low if widget.kind == "log_slider" else (widget.high - widget.low) / 1000
+        return _places(10.0 ** math.floor(math.log10(fine) + 1e-9)) if fine > 0 else 3
+    return 3
+
+
+def format_of(parameter: Parameter) -> str:
+    """Return the C format that writes a parameter's number with its unit."""
+    if is_whole(parameter.type):
+        number = "%d"
+    elif parameter.widget.kind == "log_slider":
+        number = "%.4g"
+    else:
+        number = f"%.{decimals(parameter)}f"
+    return number + unit_of(parameter).replace("%", "%%")
+
+
+def unit_of(parameter: Parameter) -> str:
+    """Return the unit as it follows a number: degrees close up, others after a space."""
+    unit = parameter.unit or ("°" if parameter.widget.kind in ("angle", "direction") else "")
+    return unit if unit in ("", "°", "%") else f" {unit}"
+
+
+def snapped(parameter: Parameter, value: float) -> float:
+    """Return the nearest value that lies in the range, whole steps from its lower end."""
+    widget = parameter.widget
+    if parameter.step:
+        start = widget.low or 0.0
+        value = start + round((value - start) / parameter.step) * parameter.step
+        value = round(value, _places(parameter.step) + 2)
+    if widget.low is not None and widget.high is not None:
+        value = min(max(value, widget.low), widget.high)
+    return value
+
+
+def _places(step: float) -> int:
+    """Return the places after the point that a step needs, 6 at most."""
+    for places in range(7):
+        scaled = step * 10**places
+        if abs(scaled - round(scaled)) < 1e-6 * max(scaled, 1.0) and round(scaled) != 0:
+            return places
+    return 6

@@ -1,0 +1,365 @@
+"""The panel: what can be changed, made from the sketch's own annotations.
+
+From the top: the title, time and pictures; presets; which texture is shown; a section
+a pass, with its technique and parameters; what each pass cost. What a technique
+exports comes first, what is inside is folded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import groupby
+from pathlib import Path
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.live import theme
+from playground.live.actions import Actions
+from playground.live.keys import KEYS
+from playground.live.theme import Theme
+from playground.live.widgets import Place, draw_value, explanation
+from playground.paths import shown
+from playground.sketch.assign import Shown, shown_parameters, value_of, values_of
+from playground.sketch.choose import choices
+from playground.sketch.model import Parameter, PassSpec, Preset, Sketch, Value
+
+_LABELS = 0.40  # share of the width that labels take
+_OWN_VIEW = "the sketch's own view"
+
+
+@dataclass
+class Panel:
+    """The panel's own memory: its width, and what it need not work out again."""
+
+    width: float = theme.PANEL_WIDTH  # in units of scale 1
+    _choices: dict[tuple[int, str], list[str]] = field(default_factory=dict)
+    _choices_of: Sketch | None = None
+
+    def draw(self, actions: Actions, look: Theme) -> float:
+        """Draw the panel over the window's left side; return the width it takes, in the window's units."""
+        room = imgui.get_main_viewport().size
+        widest = max(room.x - 160 * look.scale, 160.0)
+        wanted = min(self.width * look.scale, widest)
+        imgui.set_next_window_pos(ImVec2(0, 0))
+        imgui.set_next_window_size(ImVec2(wanted, room.y))
+        imgui.set_next_window_size_constraints(
+            ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
+        )
+        flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_collapse
+        flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
+        flags |= imgui.WindowFlags_.no_nav_inputs | imgui.WindowFlags_.no_scrollbar
+        imgui.begin("panel", None, flags)
+        self._head(actions, look)
+        footer = _footer_height()
+        imgui.begin_child("sections", ImVec2(0, -footer), 0, imgui.WindowFlags_.always_vertical_scrollbar)
+        sketch = actions.session.sketch
+        if sketch is not None:
+            self._map(actions, look)
+            self._passes(sketch, actions, look)
+            _costs(sketch, actions, look)
+        imgui.end_child()
+        _footer(look)
+        width = imgui.get_window_size().x
+        imgui.end()
+        self.width = width / look.scale
+        return width
+
+    # ── the top ──────────────────────────────────────────────────────────────
+
+    def _head(self, actions: Actions, look: Theme) -> None:
+        session, sketch = actions.session, actions.session.sketch
+        with look.font(look.bold, theme.TEXT_SIZE + 2):
+            imgui.text_wrapped(sketch.title if sketch else session.path.stem)
+        with look.font(look.text, theme.SMALL):
+            imgui.text_disabled(_fitting(shown(session.path), imgui.get_content_region_avail().x))
+            imgui.set_item_tooltip(str(session.path))
+        if sketch is None:
+            return
+        _buttons(actions, look)
+        if session.animated:
+            _time(actions, look)
+        if sketch.presets:
+            _presets(sketch, actions)
+        self._shown(actions, look)
+
+    def _shown(self, actions: Actions, look: Theme) -> None:
+        session = actions.session
+        with _row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
+            if imgui.begin_combo("##shown", _ref_name(session.map.ref) if session.map else _OWN_VIEW):
+                if imgui.selectable(_OWN_VIEW, session.map is None)[0]:
+                    actions.show(None)
+                for ref in session.refs:
+                    if imgui.selectable(_ref_name(ref), session.map is not None and session.map.ref == ref)[0]:
+                        actions.show(ref)
+                imgui.end_combo()
+
+    def _map(self, actions: Actions, look: Theme) -> None:
+        """Draw how the map is shown, while there is one."""
+        session = actions.session
+        if session.map is None:
+            return
+        for parameter in session.map.kernel.parameters:
+            path, value = f"map.{parameter.name}", session.map.value(parameter.name)
+            changed = _parameter(path, parameter, value, False, Path(), look.scale)
+            if changed is not None:
+                session.set_map(parameter.name, changed)
+        if imgui.button("Fit to the values"):
+            session.fit_map()
+
+    # ── passes ───────────────────────────────────────────────────────────────
+
+    def _passes(self, sketch: Sketch, actions: Actions, look: Theme) -> None:
+        leaves = values_of(sketch)
+        by_pass = {
+            name: list(group) for name, group in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
+        }
+        for spec in sketch.graph.passes:
+            imgui.spacing()
+            imgui.push_id(spec.name)
+            opened = _pass_header(spec, actions, look)
+            if opened:
+                self._technique(sketch, spec, actions)
+                mine = by_pass.get(spec.name, [])
+                _groups([s for s in mine if s.exported], leaves, sketch, actions, look)
+                _inner([s for s in mine if not s.exported], leaves, sketch, actions, look)
+            imgui.pop_id()
+
+    def _technique(self, sketch: Sketch, spec: PassSpec, actions: Actions) -> None:
+        shown_draft = actions.session.shown
+        chosen = shown_draft is not None and any(n == spec.name for n, _ in shown_draft.edits.techniques)
+        note = f"What fills this pass\n{spec.technique.title}" if spec.technique.title else "What fills this pass"
+        with _row("Technique", note, edited=chosen):
+            # Only an open list is worked out: it reads every technique there is.
+            if imgui.begin_combo("##use", spec.use, imgui.ComboFlags_.height_large):
+                for use in self._choices_for(sketch, spec.name, actions):
+                    if imgui.selectable(use, use == spec.use)[0]:
+                        actions.session.choose(spec.name, use)
+                imgui.end_combo()
+
+    def _choices_for(self, sketch: Sketch, name: str, actions: Actions) -> list[str]:
+        draft = actions.session.shown
+        base = draft.base if draft else sketch
+        if self._choices_of is not base:
+            self._choices_of, self._choices = base, {}
+        key = (id(base), name)
+        if key not in self._choices:
+            self._choices[key] = choices(base, name)
+        return self._choices[key]
+
+
+def _buttons(actions: Actions, look: Theme) -> None:
+    session = actions.session
+    if imgui.button("Reset view"):
+        session.reset_camera()
+    imgui.set_item_tooltip("See the land as the file says (R)")
+    imgui.same_line()
+    edits = session.shown.edits if session.shown else None
+    imgui.begin_disabled(edits is None or not (edits.values or edits.techniques))
+    if imgui.button("Reset values"):
+        session.reset_values()
+    imgui.end_disabled()
+    imgui.set_item_tooltip("Every parameter and technique as the file says")
+    imgui.same_line()
+    if imgui.button("Save PNG"):
+        actions.save_picture()
+    imgui.set_item_tooltip(f"A new file in {actions.folder} (S)")
+
+
+def _time(actions: Actions, look: Theme) -> None:
+    clock = actions.session.clock
+    wide = 64 * look.scale
+    if imgui.button("Pause" if clock.playing else "Play", ImVec2(wide, 0)):
+        clock.toggle()
+    imgui.set_item_tooltip("Space")
+    imgui.same_line()
+    imgui.set_next_item_width(-wide - imgui.get_style().item_spacing.x)
+    changed, time = imgui.drag_float("##time", clock.time, 0.05, 0.0, 1e6, "time %.2f s")
+    if changed:
+        clock.time = max(time, 0.0)
+    imgui.same_line()
+    if imgui.button("To 0", ImVec2(-1, 0)):
+        actions.rewind()
+
+
+def _presets(sketch: Sketch, actions: Actions) -> None:
+    with _row("Preset", "Values that go together", fixed=True):
+        now = next((p.name for p in sketch.presets if _holds(sketch, p)), "")
+        if imgui.begin_combo("##preset", now or "choose"):
+            for preset in sketch.presets:
+                if imgui.selectable(preset.name, preset.name == now)[0]:
+                    actions.session.apply_preset(preset.name)
+            imgui.end_combo()
+
+
+def _holds(sketch: Sketch, preset: Preset) -> bool:
+    overrides = dict(sketch.overrides)
+    return bool(preset.values) and all(overrides.get(path) == value for path, value in preset.values)
+
+
+def _pass_header(spec: PassSpec, actions: Actions, look: Theme) -> bool:
+    """Draw a pass's bar: its name, and how often it ran; green if it ran for this picture."""
+    engine = actions.session.engine
+    mine = [path for path in engine.runs if path == spec.name or path.startswith(f"{spec.name}.")]
+    runs = sum(engine.runs[path] for path in mine)
+    ran = any(path in mine for path in engine.ran)
+    with look.font(look.bold):
+        opened = imgui.collapsing_header(
+            f"{spec.name.replace('_', ' ').capitalize()}###pass", imgui.TreeNodeFlags_.default_open
+        )
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    text = f"{runs} run{'' if runs == 1 else 's'}"
+    spent = [actions.session.times[path] for path in mine if path in actions.session.times]
+    if engine.profiling and spent:
+        text = f"{sum(spent):.1f} ms    {text}"
+    size = imgui.calc_text_size(text)
+    place = ImVec2(high.x - size.x - 8 * look.scale, (low.y + high.y - size.y) / 2)
+    imgui.get_window_draw_list().add_text(place, theme.packed(theme.ACCENT if ran else theme.DIM), text)
+    if imgui.is_item_hovered():
+        imgui.set_tooltip("How often its kernels ran; green: for this very picture")
+    return opened
+
+
+def _groups(items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme) -> None:
+    """Draw parameters, those without a group first."""
+    names = dict.fromkeys(["", *(s.parameter.group for s in items)])
+    for name in names:
+        members = [s for s in items if s.parameter.group == name]
+        if name and members:
+            with look.font(look.text, theme.SMALL):
+                imgui.separator_text(name)
+        for item in members:
+            _one(item, leaves, sketch, actions, look)
+
+
+def _inner(items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme) -> None:
+    """Draw the parameters inside a technique, folded, a heading for each inner pass."""
+    if not items or not imgui.tree_node_ex(f"Inside: {len(items)} more###inner"):
+        return
+    for path, group in groupby(items, lambda s: s.path.rpartition(".")[0]):
+        members = list(group)
+        if imgui.tree_node_ex(path.partition(".")[2] or path):
+            _groups(members, leaves, sketch, actions, look)
+            imgui.tree_pop()
+    imgui.tree_pop()
+
+
+def _one(item: Shown, leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme) -> None:
+    session = actions.session
+    edited = session.shown is not None and session.shown.edits.has(item.path)
+    value = value_of(sketch, item.path, leaves)
+    right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
+    changed = _parameter(item.path, item.parameter, value, edited, Path(sketch.folder), look.scale)
+    if changed is not None:
+        session.set(item.path, changed)
+    if edited:
+        # Room for it is kept in every row, or a slider would shrink under the hand that drags it.
+        imgui.same_line(right - _reset_width() + 2 * look.scale)
+        if imgui.small_button(f"×##{item.path}"):
+            session.unset(item.path)
+        imgui.set_item_tooltip("Back to the file's value")
+
+
+def _parameter(
+    path: str, parameter: Parameter, value: Value, edited: bool, folder: Path, scale: float
+) -> Value | None:
+    with _row(parameter.title, explanation(parameter, path), edited=edited):
+        return draw_value(parameter, value, Place(f"##{path}", scale, folder))
+
+
+class _row:  # noqa: N801 - used as a function
+    """A line of the panel: a label on the left with its tooltip, and what the block draws on the right."""
+
+    def __init__(self, label: str, note: str = "", *, edited: bool = False, fixed: bool = False) -> None:
+        self.label, self.note, self.edited = label, note, edited
+        self.fixed = fixed  # above what scrolls: the scroll bar's room is left free, so that columns meet
+
+    def __enter__(self) -> None:
+        room = imgui.get_content_region_avail().x
+        room -= imgui.get_style().scrollbar_size if self.fixed else 0.0
+        reset = _reset_width()
+        labels = (room - reset) * _LABELS
+        start = imgui.get_cursor_pos_x()
+        imgui.align_text_to_frame_padding()
+        text = _fitting(self.label, labels - imgui.get_style().item_spacing.x)
+        imgui.text_colored(theme.colour(theme.WARM if self.edited else theme.INK), text)
+        if imgui.is_item_hovered():
+            imgui.begin_tooltip()
+            imgui.push_text_wrap_pos(imgui.get_font_size() * 24)
+            imgui.text(self.label if not self.note else f"{self.label}\n{self.note}")
+            imgui.pop_text_wrap_pos()
+            imgui.end_tooltip()
+        imgui.same_line(start + labels)
+        imgui.push_item_width(room - labels - reset)
+
+    def __exit__(self, *_: object) -> None:
+        imgui.pop_item_width()
+
+
+def _reset_width() -> float:
+    return float(imgui.calc_text_size("×").x + 2 * imgui.get_style().frame_padding.x + 2)
+
+
+def _costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
+    """Draw the table of what ran, how often and how long."""
+    session, engine = actions.session, actions.session.engine
+    imgui.spacing()
+    with look.font(look.bold):
+        opened = imgui.collapsing_header("Cost###costs")
+    if not opened:
+        return
+    changed, on = imgui.checkbox("Time each pass", engine.profiling)
+    imgui.set_item_tooltip("By the wall clock each pass waits for the one before, so pictures take a little longer")
+    if changed:
+        engine.profiling = on
+        session.times.clear()
+    if engine.profiling:
+        imgui.same_line()
+        imgui.text_disabled(f"by {engine.clock}")
+    paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+    if imgui.begin_table("costs", 3, flags):
+        for path in paths:
+            imgui.table_next_row()
+            imgui.table_next_column()
+            ran = path in engine.ran
+            imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
+            imgui.table_next_column()
+            imgui.text_disabled(f"{engine.runs[path]} ×")
+            imgui.table_next_column()
+            spent = session.times.get(path)
+            imgui.text("" if spent is None or not engine.profiling else f"{spent:.2f} ms")
+        imgui.end_table()
+    compiled = session.last_reload
+    if compiled is not None:
+        imgui.text_disabled(f"last save to picture {compiled.seconds * 1e3:.0f} ms")
+        if compiled.trial:
+            imgui.same_line(0, 0)
+            imgui.text_disabled(f", {compiled.trial * 1e3:.0f} of them the trial")
+
+
+def _footer_height() -> float:
+    return imgui.get_text_line_height_with_spacing() * 2 + imgui.get_style().item_spacing.y * 2
+
+
+def _footer(look: Theme) -> None:
+    imgui.separator()
+    with look.font(look.text, theme.SMALL):
+        imgui.push_text_wrap_pos(0)
+        imgui.text_disabled("Drag to orbit, right-drag or Shift to pan, wheel to zoom")
+        imgui.text_disabled("   ".join(f"{k.name} {k.brief}" for k in KEYS if k.brief))
+        imgui.pop_text_wrap_pos()
+
+
+def _ref_name(ref: str) -> str:
+    """Return a texture's name without what is said twice: "height:height" is "height"."""
+    path, _, output = ref.partition(":")
+    return path if path.rpartition(".")[2] == output else ref
+
+
+def _fitting(text: str, width: float) -> str:
+    """Return a text cut off so that it fits a width, with an ellipsis."""
+    if imgui.calc_text_size(text).x <= width:
+        return text
+    while len(text) > 1 and imgui.calc_text_size(text + "…").x > width:
+        text = text[:-1]
+    return text.rstrip() + "…"

@@ -1,0 +1,365 @@
+"""A sketch being worked on: what is shown, what was changed by hand, what is wrong.
+
+There are at most two drafts. ``shown`` is the last one that drew well; the panel shows
+its parameters, and it goes on being drawn. ``coming`` is what was saved or chosen
+since: it is tried (in the trial child, where there is one), then drawn, and only then
+takes the place of ``shown``. If it fails, its error is kept and ``shown`` stays.
+
+No window and no keys: ``frame(size)`` gives a texture to whoever has a screen.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.engine.plan import Plan
+from playground.engine.trial import TrialReport, TrySketch
+from playground.errors import ParameterError, PlaygroundError
+from playground.live.clock import Clock, is_animated
+from playground.live.edits import Draft, Edits, reload_draft
+from playground.live.files import files_named_by, files_of
+from playground.live.maps import Map, fitted, refs_of
+from playground.live.picture import Painter, Picture
+from playground.sketch.load import find, load
+from playground.sketch.model import Camera, Sketch, Value, kernels_of
+
+if TYPE_CHECKING:
+    import moderngl
+
+log = logging.getLogger("playground.live")
+
+_SEEN_FROM = ("clip_from_world", "world_from_clip", "eye")
+
+
+class Tester(Protocol):
+    """What tries a sketch where it can do no harm: ``engine.trial.Trial``, or a test's stand-in."""
+
+    def submit(self, request: TrySketch) -> None:
+        """Hand over a sketch."""
+
+    def poll(self) -> TrialReport | None:
+        """Return the answer to the newest request, once."""
+
+
+class Stage(Enum):
+    """How far the coming draft has got."""
+
+    NONE = "nothing is coming"
+    TRIAL = "tried in the child"
+    DRAW = "to be drawn"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Reload:
+    """How a save came to be a picture."""
+
+    seconds: float  # from reading the files to the picture
+    trial: float  # [s] of it in the trial child
+
+
+class Session:
+    """One sketch, open."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        path: str | Path = "",
+        *,
+        values: Mapping[str, Value] | None = None,
+        trial: Tester | None = None,
+        now: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self.engine = engine
+        self.path = find(path) if path else find("")
+        self.clock = Clock()
+        self.shown: Draft | None = None
+        self.coming: Draft | None = None
+        self.stage = Stage.NONE
+        self.map: Map | None = None  # what is shown instead of the sketch's own view
+        self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them takes them out
+        self.plan: Plan | None = None  # of the last picture
+        self.last_reload: Reload | None = None
+        self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
+        self.draws = 0  # pictures drawn so far
+        self.read_at = 0.0  # [s since the epoch] when the files were last read
+        self._initial = Edits(tuple((values or {}).items()))
+        self._trial = trial
+        self._now = now
+        self._started = 0.0  # when what is coming began to be read
+        self._trial_seconds = 0.0
+        self._coming_notes: list[str] = []
+        self._file_error: PlaygroundError | None = None  # of what is coming
+        self._draw_error: PlaygroundError | None = None  # of what is shown
+        self._painter = Painter(engine.ctx)
+        self._picture = Picture(self._painter)
+        self._revision = 0
+        self._drawn: object = None  # what the picture shows
+        self.reload()
+
+    # ── what it is ───────────────────────────────────────────────────────────
+
+    @property
+    def sketch(self) -> Sketch | None:
+        """The sketch that is shown; None before the first good one."""
+        return self.shown.sketch if self.shown else None
+
+    @property
+    def error(self) -> PlaygroundError | None:
+        """What is wrong just now."""
+        return self._file_error or self._draw_error
+
+    @property
+    def testing(self) -> bool:
+        """Whether an answer of the trial is awaited."""
+        return self.stage is Stage.TRIAL
+
+    @property
+    def animated(self) -> bool:
+        """Whether the picture changes with time."""
+        return self.sketch is not None and is_animated(self.sketch)
+
+    @property
+    def orbits(self) -> bool:
+        """Whether the picture is seen from the camera."""
+        if self.sketch is None or self.map is not None:
+            return False
+        return any(kernel.reads(name) for _, kernel in kernels_of(self.sketch.graph) for name in _SEEN_FROM)
+
+    @property
+    def files(self) -> frozenset[Path]:
+        """Every file worth watching: of the drafts, and those that an error points at."""
+        found = {self.path}
+        for draft in (self.shown, self.coming):
+            if draft is not None:
+                found |= files_of(draft.sketch) | files_of(draft.file)
+        if self._file_error is not None:
+            found |= files_named_by(self._file_error)
+        if self._draw_error is not None:
+            found |= files_named_by(self._draw_error)
+        return frozenset(found)
+
+    @property
+    def refs(self) -> list[str]:
+        """Every texture that a map can show."""
+        return refs_of(self.plan) if self.plan is not None else []
+
+    # ── files ────────────────────────────────────────────────────────────────
+
+    def reload(self) -> None:
+        """Read the files again; what is new in them is shown once it has proved good."""
+        self.read_at = time.time()
+        self._started = self._now()
+        self._revision += 1
+        try:
+            loaded = load(self.path)
+            draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
+        except Exception as error:
+            self._drop_coming()
+            self._file_error = _explained(error)
+            return
+        if self.shown is not None and loaded == self.shown.file:
+            self._drop_coming()
+            self._file_error = self._draw_error = None
+            return
+        self._propose(draft, notes)
+
+    def choose(self, pass_name: str, use: str) -> None:
+        """Fill a pass with another technique, once that has proved good."""
+        if self.shown is None:
+            return
+        self._started = self._now()
+        try:
+            self._propose(self.shown.choose(pass_name, use), [])
+        except PlaygroundError as error:
+            self._file_error = error
+
+    def dismiss(self) -> None:
+        """Put what failed away; a save brings it back."""
+        if self.stage is Stage.FAILED:
+            self._drop_coming()
+        self._file_error = self._draw_error = None
+
+    def _propose(self, draft: Draft, notes: list[str]) -> None:
+        self.coming, self._coming_notes = draft, notes
+        self._file_error, self._trial_seconds = None, 0.0
+        if self._trial is None:
+            self.stage = Stage.DRAW
+            return
+        self.stage = Stage.TRIAL
+        self._trial.submit(TrySketch(draft.sketch, time=self.clock.time, drivers=(self.engine.driver,)))
+
+    def _drop_coming(self) -> None:
+        self.coming, self.stage, self._coming_notes = None, Stage.NONE, []
+
+    # ── edits by hand ────────────────────────────────────────────────────────
+
+    def set(self, path: str, value: object) -> None:
+        """Set a parameter by its path; one that it does not take becomes a note."""
+        if self.sketch is None:
+            return
+        try:
+            changed = self.sketch.with_values({path: value})
+        except ParameterError as error:
+            self.notes.append(str(error))
+            return
+        kept = dict(changed.overrides).get(path, value)
+        self._edit(lambda edits: edits.with_value(path, kept))  # type: ignore[arg-type]
+
+    def unset(self, path: str) -> None:
+        """Give a parameter back the file's value."""
+        self._edit(lambda edits: edits.without(path))
+
+    def look(self, camera: Camera) -> None:
+        """See the land from another camera."""
+        self._edit(lambda edits: replace(edits, camera=camera))
+
+    def apply_preset(self, name: str) -> None:
+        """Set the values of one of the sketch's presets."""
+        if self.sketch is None:
+            return
+        for preset in self.sketch.presets:
+            if preset.name == name:
+                for path, value in preset.values:
+                    self.set(path, value)
+
+    def reset_camera(self) -> None:
+        """See the land as the file says."""
+        self._edit(lambda edits: replace(edits, camera=None))
+
+    def reset_values(self) -> None:
+        """Give every parameter and every pass back what the file says."""
+        chosen = self.shown is not None and bool(self.shown.edits.techniques)
+        self._edit(lambda edits: replace(edits, values=()))
+        if chosen and self.shown is not None:
+            self._started = self._now()
+            self._propose(replace(self.shown.reset(), edits=Edits(camera=self.shown.edits.camera)), [])
+
+    def _edit(self, change: Callable[[Edits], Edits]) -> None:
+        self._revision += 1
+        if self.shown is not None:
+            self.shown = self.shown.with_edits(change(self.shown.edits))
+        if self.coming is not None:
+            self.coming = self.coming.with_edits(change(self.coming.edits))
+
+    # ── what is shown ────────────────────────────────────────────────────────
+
+    def show(self, ref: str | None) -> None:
+        """Show a texture from above, its range fitted to its values; None: the sketch's own view."""
+        self._revision += 1
+        self.map = Map(ref) if ref else None
+        self.fit_map()
+
+    def set_map(self, name: str, value: Value) -> None:
+        """Set a parameter of the map."""
+        if self.map is not None:
+            self._revision += 1
+            self.map = self.map.with_value(name, value)
+
+    def fit_map(self) -> None:
+        """Fit the map's channel and range to the texture's values."""
+        if self.map is None or self.sketch is None:
+            return
+        self._revision += 1
+        try:
+            self.map = fitted(self.map, self.engine.read(self.sketch, self.map.ref, time=self.clock.time))
+        except PlaygroundError as error:
+            self.map = None
+            self.notes.append(str(error))
+
+    def frame(self, size: tuple[int, int]) -> moderngl.Texture | None:
+        """Return the picture, drawn anew if anything changed; None before the first good one.
+
+        ``size`` in pixels. The texture stays good until the next call. Nothing is raised
+        for a mistake in the sketch: it is in ``error``, and the last good picture stays.
+        """
+        self._hear_trial()
+        if self.stage is Stage.DRAW:
+            self._draw_coming(size)
+        if self.shown is not None and self._wanted(size) != self._drawn:
+            self._draw_shown(size)
+        return self._picture.texture
+
+    def stale(self, size: tuple[int, int]) -> bool:
+        """Say whether ``frame`` would have to draw."""
+        return self.stage is Stage.DRAW or (self.shown is not None and self._wanted(size) != self._drawn)
+
+    def release(self) -> None:
+        """Give back the picture; the engine is its owner's."""
+        self._picture.release()
+        self._painter.release()
+
+    def read(self) -> Frame | None:
+        """Read the picture back; None before the first."""
+        return self._picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
+
+    def _wanted(self, size: tuple[int, int]) -> object:
+        return self._revision, size, self.clock.time if self.animated else 0.0
+
+    def _hear_trial(self) -> None:
+        if self.stage is not Stage.TRIAL or self._trial is None:
+            return
+        report = self._trial.poll()
+        if report is None:
+            return
+        if report.ok:
+            self.stage = Stage.DRAW
+            self._trial_seconds = report.seconds
+            return
+        self.stage = Stage.FAILED
+        self._file_error = report.error or PlaygroundError("the trial failed without saying why")
+
+    def _draw_coming(self, size: tuple[int, int]) -> None:
+        assert self.coming is not None
+        try:
+            self._draw(self.coming.sketch, size)
+        except Exception as error:
+            self.stage = Stage.FAILED
+            self._file_error = _explained(error)
+            return
+        self.shown = self.coming
+        self.notes.extend(self._coming_notes)
+        self._drop_coming()
+        self._file_error = self._draw_error = None
+        self._drawn = self._wanted(size)
+        self.last_reload = Reload(self._now() - self._started, self._trial_seconds)
+        if self.map is not None:
+            self._draw_shown(size)
+
+    def _draw_shown(self, size: tuple[int, int]) -> None:
+        assert self.shown is not None
+        self._drawn = self._wanted(size)
+        sketch = self.shown.sketch
+        try:
+            if self.map is not None and self.map.ref not in self.refs:
+                self.notes.append(f"{self.map.ref} is gone, so the sketch's own view is shown")
+                self.map = None
+            self._draw(self.map.of(sketch) if self.map else sketch, size)
+            self._draw_error = None
+        except Exception as error:
+            self._draw_error = _explained(error)
+
+    def _draw(self, sketch: Sketch, size: tuple[int, int]) -> None:
+        self.engine.runner.frame = self.draws
+        texture = self.engine.draw(sketch, size=size, time=self.clock.time)
+        self._picture.keep(texture)
+        self.draws += 1
+        self.times |= self.engine.times
+        self.plan = self.engine.plan
+
+
+def _explained(error: Exception) -> PlaygroundError:
+    """Return an error that a person can be shown; the session outlives its own faults as well."""
+    if isinstance(error, PlaygroundError):
+        return error
+    log.exception("the playground itself failed")
+    return PlaygroundError(f"a fault of the playground itself, {type(error).__name__}: {error}")

@@ -1,0 +1,61 @@
+"""Write what the window shows as JSON lines, for a test or another program that follows it.
+
+Switched on by the environment variable ``PLAYGROUND_STATUS``, which names the file. A
+line is added whenever one of its fields changes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from playground.live.actions import Actions
+
+VARIABLE = "PLAYGROUND_STATUS"
+
+
+class Status:
+    """A file that follows the session; does nothing without a path."""
+
+    def __init__(self, path: str | None = None) -> None:
+        self.path = Path(path) if path else None
+        self._last: dict[str, Any] = {}
+        self._hashed = (-1, "")  # the draw that was hashed, and its hash
+
+    @classmethod
+    def from_environment(cls) -> Status:
+        """Return the status that the environment asks for."""
+        return cls(os.environ.get(VARIABLE))
+
+    def write(self, actions: Actions) -> None:
+        """Add a line if anything is new."""
+        if self.path is None:
+            return
+        session = actions.session
+        now = {
+            "draws": session.draws,
+            "picture": self._hash(actions),
+            "error": str(session.error) if session.error else "",
+            "stage": session.stage.name,
+            "notices": [n.text for n in actions.notices],
+            "playing": session.clock.playing,
+            "map": session.map.ref if session.map else "",
+            "saved": str(actions.saved or ""),
+            "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
+            "runs": dict(session.engine.runs),
+        }
+        if now != self._last:
+            self._last = now
+            with self.path.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(now) + "\n")
+
+    def _hash(self, actions: Actions) -> str:
+        draws = actions.session.draws
+        if self._hashed[0] != draws:
+            frame = actions.session.read()
+            digest = hashlib.blake2b(frame.array.tobytes(), digest_size=8).hexdigest() if frame else ""
+            self._hashed = (draws, digest)
+        return self._hashed[1]

@@ -1,0 +1,267 @@
+"""Draw a parameter as its annotation says, and give back what a hand made of it.
+
+One function a widget, found by its name in ``WIDGETS``: a new widget is a new entry.
+Each returns the new value, or None while nothing changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.live import dome, theme
+from playground.live.numbers import format_of, snapped, unit_of
+from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.sketch.model import Parameter, Value
+from playground.sketch.values import expected, is_whole, length_of, write
+
+_CLAMP = imgui.SliderFlags_.always_clamp
+_PAD = 84.0
+_IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
+_WHOLE = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a widget is drawn."""
+
+    label: str  # imgui's, unique in the panel
+    scale: float  # of the screen
+    folder: Path  # the sketch's own: its files are offered
+
+
+Draw = Callable[[Parameter, Value, Place], "Value | None"]
+
+
+def draw_value(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    """Draw the widget of a parameter over the width that is left; return a new value, or None."""
+    return WIDGETS.get(parameter.widget.kind, _number)(parameter, value, place)
+
+
+def explanation(parameter: Parameter, path: str) -> str:
+    """Return what a tooltip says of a parameter: what it is, what it takes, its default, its path."""
+    lines = [parameter.tooltip] if parameter.tooltip else []
+    unit = unit_of(parameter) if parameter.widget.kind not in ("colour", "menu", "checkbox", "file") else ""
+    default = write(parameter, parameter.default) or "none"
+    lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
+    return "\n".join([*lines, path])
+
+
+# ── numbers ──────────────────────────────────────────────────────────────────
+
+
+def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    widget = parameter.widget
+    if widget.low is None or widget.high is None:
+        return _number(parameter, value, place)
+    flags = _CLAMP
+    if widget.kind == "log_slider":
+        flags |= imgui.SliderFlags_.logarithmic
+    form = format_of(parameter)
+    numbers = _as_list(value)
+    if is_whole(parameter.type):
+        low, high = max(int(widget.low), -_WHOLE), min(int(widget.high), _WHOLE)
+        found = [int(n) for n in numbers]
+        draw_int = [imgui.slider_int, imgui.slider_int2, imgui.slider_int3, imgui.slider_int4][len(found) - 1]
+        changed, raw = draw_int(place.label, found[0] if len(found) == 1 else found, low, high, form, flags)
+    else:
+        draw = [imgui.slider_float, imgui.slider_float2, imgui.slider_float3, imgui.slider_float4][len(numbers) - 1]
+        changed, raw = draw(
+            place.label, numbers[0] if len(numbers) == 1 else numbers, widget.low, widget.high, form, flags
+        )
+    return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
+
+
+def _number(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    numbers = _as_list(value)
+    if len(numbers) == 1 and is_whole(parameter.type):
+        # A double holds every 32-bit number, signed or not.
+        step = parameter.step or 1.0
+        changed, whole = imgui.input_double(place.label, numbers[0], step, 10 * step, f"%.0f{_unit_format(parameter)}")
+        low, high = (0, 2**32 - 1) if parameter.type == "uint" else (-(2**31), 2**31 - 1)
+        return int(min(max(round(whole), low), high)) if changed else None
+    largest = max(abs(n) for n in numbers)
+    speed = parameter.step or max(largest, 0.1) * 0.01
+    if is_whole(parameter.type):
+        found = [int(n) for n in numbers]
+        draw_int = [imgui.drag_int, imgui.drag_int2, imgui.drag_int3, imgui.drag_int4][len(found) - 1]
+        changed, raw = draw_int(place.label, found, max(speed, 0.2), -_WHOLE, _WHOLE, format_of(parameter))
+    else:
+        draw = [imgui.drag_float, imgui.drag_float2, imgui.drag_float3, imgui.drag_float4][len(numbers) - 1]
+        single = numbers[0] if len(numbers) == 1 else numbers
+        changed, raw = draw(place.label, single, speed, 0.0, 0.0, "%.6g" + _unit_format(parameter))
+    return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
+
+
+def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    changed, on = imgui.checkbox(place.label, bool(value))
+    return on if changed else None
+
+
+def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    choices = parameter.widget.choices
+    now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
+    changed, index = imgui.combo(place.label, now, list(choices))
+    return index if changed else None
+
+
+# ── places and colours ───────────────────────────────────────────────────────
+
+
+def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    # Linear inside, display-encoded for the eye; alpha is not a light and stays as it is.
+    linear = _as_list(value)
+    flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
+    seen = [*linear_to_srgb([min(max(c, 0.0), 1.0) for c in linear[:3]]).tolist(), *linear[3:]]
+    if len(linear) == 4:
+        changed, raw = imgui.color_edit4(place.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
+    else:
+        changed, raw = imgui.color_edit3(place.label, seen, flags)
+    picked = _as_list(raw)
+    return (*srgb_to_linear(picked[:3]).tolist(), *picked[3:]) if changed else None
+
+
+def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    azimuth, elevation = _as_list(value)
+    wide = imgui.calc_item_width()
+    origin = imgui.get_cursor_screen_pos()
+    side = min(_PAD * place.scale, wide)
+    radius = side / 2
+    dragged = _pad(place, side)
+    draw = imgui.get_window_draw_list()
+    middle = ImVec2(origin.x + radius, origin.y + radius)
+    draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
+    for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
+        draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, place.scale)
+    north = imgui.calc_text_size("N")
+    draw.add_text(
+        ImVec2(middle.x - north.x / 2, origin.y + place.scale), theme.packed(theme.DIM), "N"
+    )
+    right, up = dome.dot_of(azimuth, elevation)
+    dot = ImVec2(middle.x + right * (radius - 1), middle.y - up * (radius - 1))
+    below = elevation < 0
+    draw.add_line(middle, dot, theme.packed(theme.WARM, 0.5), place.scale)
+    draw.add_circle_filled(dot, 5 * place.scale, theme.packed(theme.DIM if below else theme.WARM))
+    result: Value | None = None
+    if dragged is not None:
+        across, down = dragged
+        found = dome.direction_at(2 * across - 1, 1 - 2 * down)
+        result = (round(found[0], 1), round(found[1], 1))
+    imgui.same_line()
+    imgui.begin_group()
+    imgui.set_next_item_width(-1)
+    turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
+    imgui.set_item_tooltip("Azimuth: clockwise from north")
+    imgui.set_next_item_width(-1)
+    raised, elevation = imgui.drag_float(f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP)
+    imgui.set_item_tooltip("Elevation above the horizon")
+    imgui.end_group()
+    return (azimuth, elevation) if turned or raised else result
+
+
+def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    x, y = _as_list(value)
+    origin = imgui.get_cursor_screen_pos()
+    side = min(_PAD * place.scale, imgui.calc_item_width())
+    dragged = _pad(place, side)
+    draw = imgui.get_window_draw_list()
+    corner = ImVec2(origin.x + side, origin.y + side)
+    draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * place.scale)
+    dot = ImVec2(origin.x + x * side, origin.y + (1 - y) * side)
+    draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), place.scale)
+    draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), place.scale)
+    draw.add_circle_filled(dot, 5 * place.scale, theme.packed(theme.WARM))
+    result: Value | None = None
+    if dragged is not None:
+        result = (round(dragged[0], 4), round(1 - dragged[1], 4))
+    imgui.same_line()
+    imgui.begin_group()
+    imgui.set_next_item_width(-1)
+    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f east", _CLAMP)
+    imgui.set_next_item_width(-1)
+    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f north", _CLAMP)
+    imgui.end_group()
+    return (x, y) if east or north else result
+
+
+def _pad(place: Place, side: float) -> tuple[float, float] | None:
+    """Make a square to drag in; return the mouse's share of it, right and down, while it is dragged."""
+    origin = imgui.get_cursor_screen_pos()
+    imgui.invisible_button(place.label, ImVec2(side, side))
+    if not imgui.is_item_active():
+        return None
+    mouse = imgui.get_io().mouse_pos
+    across, down = (mouse.x - origin.x) / side, (mouse.y - origin.y) / side
+    return min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0)
+
+
+def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    """A path to type, and a list of the images and elevation files in the sketch's folder."""
+    text = str(value)
+    button = imgui.get_frame_height()
+    imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
+    changed, typed = imgui.input_text(place.label, text, imgui.InputTextFlags_.enter_returns_true)
+    if not changed and imgui.is_item_deactivated_after_edit():
+        changed = True
+    if text:
+        imgui.set_item_tooltip(text)
+    imgui.same_line(0, 0)
+    chosen: str | None = None
+    imgui.set_next_item_width(button)
+    if imgui.begin_combo(f"{place.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left):
+        names = _files_in(place.folder)
+        for name in names:
+            if imgui.selectable(name, name == text)[0]:
+                chosen = name
+        if not names:
+            imgui.text_disabled("no images or elevation files beside the sketch")
+        imgui.end_combo()
+    if chosen is not None:
+        return chosen
+    return typed if changed and typed != text else None
+
+
+def _files_in(folder: Path) -> list[str]:
+    inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in _IMAGES)[:200]
+
+
+# ── between imgui's lists and parameters' values ─────────────────────────────
+
+
+def _as_list(value: object) -> list[float]:
+    if isinstance(value, bool):
+        return [float(value)]
+    if isinstance(value, int | float):
+        return [float(value)]
+    return [float(v) for v in value] if isinstance(value, Sequence) and not isinstance(value, str) else [0.0]
+
+
+def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
+    if is_whole(parameter.type):
+        whole = tuple(round(n) for n in numbers)
+        return whole[0] if length_of(parameter.type) == 1 else whole
+    found = tuple(float(n) for n in numbers)
+    return found[0] if length_of(parameter.type) == 1 else found
+
+
+def _unit_format(parameter: Parameter) -> str:
+    return unit_of(parameter).replace("%", "%%")
+
+
+WIDGETS: dict[str, Draw] = {
+    "number": _number,
+    "slider": _slider,
+    "log_slider": _slider,
+    "angle": _slider,
+    "direction": _direction,
+    "colour": _colour,
+    "menu": _menu,
+    "checkbox": _checkbox,
+    "point": _point,
+    "file": _file,
+}
+"""How each widget of an annotation is drawn, by its name there."""

@@ -1,0 +1,178 @@
+"""A GLFW window with an OpenGL context and Dear ImGui in it: the one place that knows about pixels and screens.
+
+``imgui_bundle`` is imported before ``glfw``, so that both use one GLFW library.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import imgui_bundle  # noqa: I001 - before glfw, which it brings along
+from imgui_bundle import imgui
+
+import glfw
+
+from playground.errors import ContextError
+from playground.gpu.context import adopt_context
+from playground.gpu.mend import mend
+from playground.live.theme import Theme
+
+if TYPE_CHECKING:
+    import moderngl
+
+_VERSIONS = ((4, 3), (4, 1), (3, 3))
+_SMALLEST = (480, 320)
+
+
+class Window:
+    """An open window. Use it with ``with``, or call ``close()``."""
+
+    def __init__(self, title: str, size: tuple[int, int]) -> None:
+        glfw.ERROR_REPORTING = "ignore"  # what failed is asked for below, and said in a sentence
+        if not glfw.init():
+            raise _refused("glfw.init failed")
+        self._handle = _create(title, size)
+        try:
+            glfw.make_context_current(self._handle)
+            glfw.swap_interval(1)
+            glfw.set_window_size_limits(self._handle, *_SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
+            self.ctx: moderngl.Context = _adopt()
+            self.theme = self._start_imgui()
+        except BaseException:
+            glfw.terminate()
+            raise
+        self._screen_size = (0, 0)
+        self._screen: moderngl.Framebuffer | None = None
+
+    def __enter__(self) -> Window:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def open(self) -> bool:
+        """Whether nobody has asked it to close."""
+        return not glfw.window_should_close(self._handle)
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Width and height of what is drawn [pixels]; (0, 0) while it is minimised."""
+        width, height = glfw.get_framebuffer_size(self._handle)
+        return (0, 0) if glfw.get_window_attrib(self._handle, glfw.ICONIFIED) else (width, height)
+
+    @property
+    def density(self) -> float:
+        """Pixels in one of the window's own units: 2 on a Retina screen, 1 on Windows and X11."""
+        wide, _ = glfw.get_window_size(self._handle)
+        return float(self.pixels[0] / wide) if wide and self.pixels[0] else 1.0
+
+    @property
+    def scale(self) -> float:
+        """How much larger text and margins are drawn, in the window's own units."""
+        return float(max(glfw.get_window_content_scale(self._handle)[0] / self.density, 0.5))
+
+    @property
+    def screen(self) -> moderngl.Framebuffer:
+        """The window's own framebuffer, at its present size."""
+        if self._screen is None or self._screen_size != self.pixels:
+            glfw.make_context_current(self._handle)
+            self.ctx.detect_framebuffer(0).use()
+            self._screen, self._screen_size = self.ctx.detect_framebuffer(0), self.pixels
+        return self._screen
+
+    def ask_to_close(self) -> None:
+        """Close it at the end of this turn."""
+        glfw.set_window_should_close(self._handle, True)
+
+    def wait(self, seconds: float) -> None:
+        """Sleep until something happens or ``wake`` is called, no longer than ``seconds``; then take it in."""
+        if seconds <= 0:
+            glfw.poll_events()
+        else:
+            glfw.wait_events_timeout(seconds)
+
+    def begin(self) -> None:
+        """Begin a turn of the interface."""
+        self.theme.rescale(self.scale)
+        imgui.backends.opengl3_new_frame()
+        imgui.backends.glfw_new_frame()
+        imgui.new_frame()
+
+    def end(self) -> None:
+        """Draw the interface over what is on the screen, and show it."""
+        imgui.render()
+        self.screen.use()
+        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+        glfw.swap_buffers(self._handle)
+
+    def close(self) -> None:
+        """Close the window and end GLFW."""
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        imgui.destroy_context()
+        self.ctx.release()
+        glfw.destroy_window(self._handle)
+        glfw.terminate()
+
+    def _start_imgui(self) -> Theme:
+        imgui.create_context()
+        io = imgui.get_io()
+        io.set_ini_filename("")  # nothing is left in the current folder
+        io.config_windows_move_from_title_bar_only = True
+        address = ctypes.cast(self._handle, ctypes.c_void_p).value
+        assert address is not None
+        imgui.backends.glfw_init_for_opengl(address, True)
+        imgui.backends.opengl3_init("#version 330 core")
+        return Theme(Path(imgui_bundle.__file__).parent / "assets" / "fonts")
+
+
+def wake() -> None:
+    """Wake a window that waits; may be called from any thread."""
+    glfw.post_empty_event()
+
+
+def _create(title: str, size: tuple[int, int]) -> Any:
+    complaints = []
+    for major, minor in _VERSIONS:
+        glfw.default_window_hints()
+        glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, major)
+        glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, minor)
+        glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+        glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
+        glfw.window_hint(glfw.DEPTH_BITS, 0)
+        glfw.window_hint(glfw.STENCIL_BITS, 0)
+        glfw.window_hint_string(glfw.WAYLAND_APP_ID, "terrain-shader-playground")
+        glfw.window_hint_string(glfw.X11_CLASS_NAME, "terrain-shader-playground")
+        handle = glfw.create_window(*size, title, None, None)
+        if handle:
+            return handle
+        complaints.append(_complaint() or f"no window with OpenGL {major}.{minor}")
+    glfw.terminate()
+    raise ContextError(mend(complaints[0], sys.platform, os.environ))
+
+
+def _adopt() -> moderngl.Context:
+    try:
+        return adopt_context(glfw.get_proc_address)
+    except Exception as error:  # moderngl raises bare Exception and ValueError
+        raise ContextError(mend(str(error), sys.platform, os.environ)) from None
+
+
+def _refused(otherwise: str) -> ContextError:
+    return ContextError(mend(_complaint() or otherwise, sys.platform, os.environ))
+
+
+def _complaint() -> str:
+    """Return what GLFW last complained of."""
+    code, text = glfw.get_error()
+    said = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text or "")
+    return f"{said} (GLFW error {code:#x})" if code else ""

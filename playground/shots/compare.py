@@ -1,0 +1,156 @@
+"""Compare a picture with the one expected: a verdict, how much, how many pixels, and where.
+
+The one idea: the difference is the larger byte less the smaller one. So it never wraps
+round, and darker counts as much as brighter. Alpha counts like a colour, and a picture of
+one colour never passes: that is what most broken renders look like.
+
+It reads no files, and does not judge what an eye would see: a level is a level.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError
+
+TOLERANCE = 1
+"""[levels of 255] What may differ on the reference renderer: a rounding the other way."""
+
+AMPLIFIED = 16
+"""How many times brighter `difference_picture` shows a difference: two levels can then be seen."""
+
+Colour = tuple[int, int, int, int]
+
+_OUTSIDE = (255, 0, 255, 255)  # where one of the two pictures has no pixel
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What came of comparing two pictures."""
+
+    verdict: str  # same | differs | size | blank | missing (there is nothing to compare with)
+    tolerance: int  # [levels of 255] that a channel may differ
+    size: tuple[int, int]  # [pixels] width and height of the actual picture
+    expected_size: tuple[int, int] | None = None  # [pixels] None: missing
+    channels: Colour = (0, 0, 0, 0)  # [levels] largest difference in red, green, blue, alpha
+    over: int = 0  # [pixels] with a channel beyond the tolerance
+    place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the first worst one
+    actual: Colour | None = None  # what is at that place; of a blank picture, its colour
+    expected: Colour | None = None  # what should be there
+
+    @property
+    def ok(self) -> bool:
+        """Whether the picture is the one expected."""
+        return self.verdict == "same"
+
+    @property
+    def most(self) -> int:
+        """Largest difference in any channel, in levels of 255."""
+        return max(self.channels)
+
+    def __str__(self) -> str:
+        width, height = self.size
+        if self.verdict == "missing":
+            return "missing: there is no reference to compare with"
+        if self.verdict == "blank":
+            return f"blank: all {width} × {height} pixels are {self.actual}"
+        if self.verdict == "size":
+            assert self.expected_size is not None
+            wanted = " × ".join(map(str, self.expected_size))
+            return f"size: {width} × {height} pixels where {wanted} were expected"
+        if self.place is None:
+            return "same: every pixel"
+        x, y = self.place
+        most = f"max difference {self.most} of 255, at x = {x}, y = {y} from the top left"
+        if self.ok:
+            return f"same: {most}"
+        share = 100.0 * self.over / (width * height)
+        counted = f"{self.over} of {width * height} pixels ({share:.3g} %) over {self.tolerance}"
+        return f"differs: {most}, {self.actual} where {self.expected} was expected; {counted}"
+
+
+def compare(
+    actual: NDArray[np.uint8], expected: NDArray[np.uint8] | None, tolerance: int = TOLERANCE
+) -> Comparison:
+    """Compare two pictures, uint8 (height, width, 4), top row first.
+
+    With ``expected`` None the verdict is "missing"; "blank" goes before that and before
+    "size". Raises ``DataError`` for another dtype or shape.
+    """
+    actual = _picture(actual)
+    expected = None if expected is None else _picture(expected)
+    size = _size(actual)
+    expected_size = None if expected is None else _size(expected)
+    # A pixel as one number of 32 bits: four times fewer comparisons than by channel.
+    whole = actual.view(np.uint32)
+    if bool((whole == whole[0, 0]).all()):
+        return Comparison("blank", tolerance, size, expected_size, actual=_colour(actual, 0, 0))
+    if expected is None:
+        return Comparison("missing", tolerance, size)
+    if size != expected_size:
+        return Comparison("size", tolerance, size, expected_size)
+    difference = _difference(actual, expected)
+    # Down the columns first: long runs in memory, where axis 2 would be runs of four.
+    channels = difference.reshape(size[1], -1).max(axis=0).reshape(-1, 4).max(axis=0)
+    most = int(channels.max())
+    if most == 0:
+        return Comparison("same", tolerance, size, expected_size)
+    y, x = divmod(int(difference.argmax()) // 4, size[0])
+    over = int(np.count_nonzero((difference > tolerance).view(np.uint32))) if most > tolerance else 0
+    return Comparison(
+        "differs" if over else "same",
+        tolerance,
+        size,
+        expected_size,
+        _four(channels),
+        over,
+        (x, y),
+        _colour(actual, x, y),
+        _colour(expected, x, y),
+    )
+
+
+def difference_picture(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a picture of the difference, 16 times as strong: opaque uint8 (height, width, 4).
+
+    A difference in alpha shows as grey. Where sizes differ, the top left corners lie on each
+    other and what only one of the two has is magenta. Raises ``DataError`` as `compare` does.
+    """
+    actual, expected = _picture(actual), _picture(expected)
+    (width, height), (other_width, other_height) = _size(actual), _size(expected)
+    picture = np.full((max(height, other_height), max(width, other_width), 4), _OUTSIDE, np.uint8)
+    both = np.s_[: min(height, other_height), : min(width, other_width)]
+    difference = _difference(actual[both], expected[both])
+    seen = np.maximum(difference[..., :3], difference[..., 3:])
+    picture[both][..., :3] = np.minimum(seen.astype(np.uint16) * AMPLIFIED, 255)
+    picture[both][..., 3] = 255
+    return picture
+
+
+def _difference(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    # Subtracting bytes the other way wraps round: 0 - 2 is 254, and as a signed byte 255 - 0 is -1.
+    larger = np.maximum(actual, expected)
+    return np.subtract(larger, np.minimum(actual, expected), out=larger)
+
+
+def _picture(array: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != 4 or 0 in array.shape:
+        found = f"{array.dtype} {array.shape}"
+        raise DataError(f"a picture to compare is uint8 (height, width, 4); found {found}")
+    return np.ascontiguousarray(array)
+
+
+def _size(array: NDArray[np.uint8]) -> tuple[int, int]:
+    return array.shape[1], array.shape[0]
+
+
+def _colour(array: NDArray[np.uint8], x: int, y: int) -> Colour:
+    return _four(array[y, x])
+
+
+def _four(values: NDArray[np.uint8]) -> Colour:
+    red, green, blue, alpha = (int(v) for v in values)
+    return red, green, blue, alpha

@@ -1,0 +1,85 @@
+"""Read calls as they stand in a ``//!`` annotation or in the brackets of a ``#pragma``.
+
+``slider(0, 1) step(0.01) The tooltip`` becomes calls with their arguments, and a tooltip.
+Which calls there are, and what their arguments mean, is known elsewhere.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+
+from playground.errors import nearest
+from playground.sketch.source import Line
+
+_ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
+_WORD = re.compile(r"\s*([A-Za-z_]\w*)(\s*\()?")
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+
+Argument = tuple[str, str]
+"""A name, "" where there is none, and a text."""
+
+
+def arguments(text: str, line: Line) -> list[Argument]:
+    """Split what stands in brackets at its commas; texts lose their quotes. Raises ``ShaderError``."""
+    found: list[Argument] = []
+    position, end = 0, len(text.rstrip())
+    while position < end:
+        match = _ARGUMENT.match(text, position, end)
+        if not match or not match.group(2).strip():
+            rest = text[position:end].strip()
+            raise line.error(f"cannot read '{rest}'; expected values parted by commas, text in quotes")
+        raw = match.group(2).strip()
+        if raw.startswith('"'):
+            raw = re.sub(r"\\(.)", r"\1", raw[1:-1])
+        found.append((match.group(1) or "", raw))
+        position = match.end()
+    return found
+
+
+def calls(
+    note: str, line: Line, words: Collection[str], bare: Collection[str]
+) -> tuple[dict[str, list[str]], str]:
+    """Return (the calls of a note with their arguments, the tooltip that follows them).
+
+    ``words`` may be called; those of ``bare`` may also stand alone, as the first word.
+    Raises ``ShaderError`` for a word in brackets that is nearly one of ``words``.
+    """
+    found: dict[str, list[str]] = {}
+    position = 0
+    while match := _WORD.match(note, position):
+        word, opens = match.group(1), bool(match.group(2))
+        column = line.text.find(word) + 1
+        if word not in words:
+            hint = nearest(word, words)
+            if opens and (position == 0 or "did you mean" in hint):
+                raise line.error(f"no widget '{word}'{hint}", column)
+            break
+        if not opens:
+            if position or word not in bare:
+                break
+            found[word] = []
+            position = match.end()
+            continue
+        if word in found:
+            raise line.error(f"'{word}' stands twice", column)
+        end = _closing(note, match.end())
+        if end < 0:
+            raise line.error(f"'{word}(' is not closed", column)
+        pairs = arguments(note[match.end() : end], line)
+        for name, _ in pairs:
+            if name:
+                raise line.error(f"{word}() takes no '{name} ='", column)
+        found[word] = [value for _, value in pairs]
+        position = end + 1
+    return found, note[position:].strip()
+
+
+def _closing(text: str, position: int) -> int:
+    """Return where a bracket closes, brackets in quotes apart; -1 if it does not."""
+    while position < len(text):
+        if text[position] == ")":
+            return position
+        string = _STRING.match(text, position)
+        position = string.end() if string else position + 1
+    return -1

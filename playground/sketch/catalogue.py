@@ -1,0 +1,189 @@
+"""Say what there is to choose from: sketches, techniques, and the parameters of each.
+
+Reads text only. A file that is wrong has its place here too, with what is wrong with it,
+so that one mistake does not hide the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from playground.errors import PlaygroundError, SketchError, nearest
+from playground.paths import GLSL, SKETCHES
+from playground.sketch.assign import LAND, Shown, shown_parameters, value_of, values_of
+from playground.sketch.flatten import input_names, output_names
+from playground.sketch.load import load, read_technique, shipped_names, shipped_sketches
+from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
+from playground.sketch.values import write
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A parameter, and the value it has."""
+
+    path: str  # as ``--set`` takes it: "height.smoothing" in a sketch, "smoothing" in a technique
+    parameter: Parameter
+    value: Value  # in a sketch what its file sets, in a technique the default
+    exported: bool  # False: inside a technique of several passes, which does not show it
+
+    @property
+    def text(self) -> str:
+        """The value as ``--set`` would take it."""
+        return write(self.parameter, self.value)
+
+    @property
+    def range(self) -> str:
+        """What values there may be, in a few words; "" where anything of its type will do."""
+        widget = self.parameter.widget
+        if widget.kind == "menu":
+            return ", ".join(widget.choices)
+        if widget.kind == "direction":
+            return "azimuth, elevation"
+        if widget.low is None or widget.high is None:
+            return ""
+        return f"{widget.low:g} to {widget.high:g}"
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as JSON takes it; a menu's values are names, a colour's linear numbers."""
+        parameter, widget = self.parameter, self.parameter.widget
+        bounded = widget.low is not None and widget.high is not None
+        return {
+            "path": self.path,
+            "type": parameter.type,
+            "widget": widget.kind,
+            "value": _plain(parameter, self.value),
+            "default": _plain(parameter, parameter.default),
+            "range": [widget.low, widget.high] if bounded else None,
+            "choices": list(widget.choices),
+            "step": parameter.step,
+            "unit": parameter.unit,
+            "group": parameter.group,
+            "title": parameter.title,
+            "tooltip": parameter.tooltip,
+            "exported": self.exported,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A sketch or a technique."""
+
+    name: str  # as ``render`` or ``use`` takes it
+    kind: str  # sketch | kernel | draw | source | plain_fragment | plain_compute | several passes
+    title: str = ""
+    file: str = ""
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    parameters: tuple[Choice, ...] = ()
+    shots: tuple[str, ...] = ()
+    presets: tuple[str, ...] = ()
+    error: str = ""  # what is wrong with it
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as JSON takes it."""
+        return {
+            "name": self.name,
+            "kind": self.kind,
+            "title": self.title,
+            "file": self.file,
+            "inputs": list(self.inputs),
+            "outputs": list(self.outputs),
+            "shots": list(self.shots),
+            "presets": list(self.presets),
+            "parameters": [choice.as_json() for choice in self.parameters],
+            "error": self.error,
+        }
+
+
+def sketches() -> list[Entry]:
+    """List the sketches that ship."""
+    found = []
+    for name in shipped_sketches():
+        try:
+            found.append(_of_sketch(name, load(name)))
+        except PlaygroundError as error:
+            found.append(Entry(name, "sketch", file=str(SKETCHES / f"{name}.toml"), error=str(error)))
+    return found
+
+
+def techniques(within: str = "") -> list[Entry]:
+    """List the techniques in ``glsl/``, or in one of its folders; library files are none."""
+    found = []
+    for name in shipped_names():
+        if within and not name.startswith(f"{within.rstrip('/')}/"):
+            continue
+        try:
+            found.append(_of_technique(name, read_technique(name, GLSL, GLSL)))
+        except PlaygroundError as error:
+            if "is a library file" not in str(error):
+                found.append(Entry(name, "technique", error=str(error)))
+    return found
+
+
+def one(name: str) -> list[Entry]:
+    """Return what a name stands for: a sketch, a technique, or all techniques of a folder of ``glsl/``.
+
+    A path stands for the sketch or the shader there. Raises ``SketchError`` with the nearest name.
+    """
+    if Path(name).is_file() or (Path(name) / "sketch.toml").is_file():
+        sketch = load(name)
+        return [_of_sketch(sketch.name, sketch)]
+    if name in shipped_sketches():
+        return [_of_sketch(name, load(name))]
+    if name in shipped_names():
+        return [_of_technique(name, read_technique(name, GLSL, GLSL))]
+    if within := techniques(name):
+        return within
+    known = [entry.name for entry in techniques()]
+    folders = {entry.rpartition("/")[0] for entry in known}
+    known += [*shipped_sketches(), *folders, "sketches", "techniques"]
+    raise SketchError(f"there is no sketch and no technique '{name}'{nearest(name, known)}")
+
+
+def settable(sketch: Sketch) -> list[str]:
+    """List every path that ``--set`` shows for a sketch."""
+    return [*(shown.path for shown in shown_parameters(sketch)), *LAND]
+
+
+def _of_sketch(name: str, sketch: Sketch) -> Entry:
+    values = values_of(sketch)
+    return Entry(
+        name,
+        "sketch",
+        sketch.title,
+        sketch.file,
+        outputs=tuple(spec.name for spec in sketch.graph.passes),
+        parameters=tuple(_choice(sketch, shown, values) for shown in shown_parameters(sketch)),
+        shots=tuple(shot.name for shot in sketch.shots),
+        presets=tuple(preset.name for preset in sketch.presets),
+    )
+
+
+def _of_technique(name: str, technique: Technique) -> Entry:
+    # A sketch of this one pass knows how its parameters are shown.
+    stage = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
+    values = values_of(stage)
+    choices = []
+    for shown in shown_parameters(stage):
+        choice = _choice(stage, shown, values)
+        choices.append(replace(choice, path=choice.path.removeprefix("it.")))
+    return Entry(
+        name,
+        technique.kind if isinstance(technique, Kernel) else "several passes",
+        technique.title,
+        technique.path,
+        input_names(technique),
+        output_names(technique),
+        tuple(choices),
+    )
+
+
+def _choice(sketch: Sketch, shown: Shown, values: dict[str, Value]) -> Choice:
+    return Choice(shown.path, shown.parameter, value_of(sketch, shown.path, values), shown.exported)
+
+
+def _plain(parameter: Parameter, value: Value) -> object:
+    if parameter.widget.kind == "menu" and isinstance(value, int):
+        return parameter.widget.choices[value]
+    return list(value) if isinstance(value, tuple) else value

@@ -1,0 +1,76 @@
+"""Say which files a sketch may read: those in its own folder and in ``glsl/``, wherever links lead.
+
+A stranger's sketch is data; nothing it names may come from elsewhere on the disk. Paths
+that the user types are the user's own affair and are not judged here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from playground.paths import GLSL
+
+_MOST_FOLDERS = 500
+
+
+def real(path: Path) -> Path | None:
+    """Return a path with its links followed; None for what can name no file (a NUL, links in a circle)."""
+    try:
+        return path.resolve()
+    except (OSError, ValueError, RuntimeError):
+        return None
+
+
+def is_file(path: Path) -> bool:
+    """Say whether a file is there, also for names that no file can have."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def is_inside(path: Path, roots: Iterable[Path]) -> bool:
+    """Say whether a path, its links followed, lies in one of some folders."""
+    found = real(path)
+    return found is not None and any(found.is_relative_to(root) for root in map(real, roots) if root)
+
+
+def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
+    """Say whether a data file that a sketch names lies outside its ``folder`` and ``glsl/``.
+
+    ``declared_in`` is the kernel that has the parameter: files are also looked for beside it.
+    Names of files that are not there are judged by where they would be.
+    """
+    if is_absolute(text):
+        return True
+    roots = (folder, GLSL)
+    places = [folder, *([Path(declared_in).parent] if declared_in else []), GLSL]
+    candidates = [place / text for place in places]
+    there = [candidate for candidate in candidates if is_file(candidate)]
+    return not any(is_inside(candidate, roots) for candidate in there or candidates)
+
+
+def is_absolute(text: str) -> bool:
+    """Say whether a path is absolute on any system, so that a sketch means the same on all of them."""
+    windows = PureWindowsPath(text)
+    return PurePosixPath(text).is_absolute() or bool(windows.drive or windows.root) or text.startswith("~")
+
+
+def names_below(roots: Sequence[Path], suffixes: tuple[str, ...]) -> list[str]:
+    """List the files with some endings below some folders, from each folder, for a hint.
+
+    Stops after some hundred folders: a sketch may lie in a home folder or in the root.
+    """
+    found: list[str] = []
+    visited = 0
+    for root in roots:
+        for folder, inner, files in os.walk(root):
+            visited += 1
+            if visited > _MOST_FOLDERS:
+                return found
+            inner[:] = sorted(name for name in inner if not name.startswith("."))
+            here = Path(folder).relative_to(root)
+            found += [(here / name).as_posix() for name in files if name.endswith(suffixes)]
+    return found

@@ -1,0 +1,26 @@
+"""Let a cache ask whether it is the very same object, which is cheap, not whether it is an equal one.
+
+Techniques are frozen and large: a slider makes a new sketch around the same graph, so
+what is worked out from the graph alone can be kept.
+"""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Same(Generic[T]):
+    """A key that equals only a key of the same object, which it keeps alive."""
+
+    __slots__ = ("object",)
+
+    def __init__(self, given: T) -> None:
+        self.object = given
+
+    def __hash__(self) -> int:
+        return id(self.object)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.object is self.object

@@ -1,0 +1,268 @@
+"""Read a kernel's uniforms from its text: parameters with their ``//!`` annotations, inputs.
+
+They are read from the text, never from the driver, where a uniform that is optimised
+away vanishes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection
+from dataclasses import replace
+
+from playground.errors import ParameterError, nearest
+from playground.sketch import values
+from playground.sketch.annotation import calls as read_calls
+from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
+from playground.sketch.source import Line, SourceText
+from playground.sketch.words import GIVEN, GLSL_WORDS, PREFIX, RESERVED
+
+_UNIFORM = re.compile(
+    r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
+)
+_WORD_UNIFORM = re.compile(r"\buniform\b")
+_IMAGE = re.compile(r"\b[iu]?image[123]D\b")
+_FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
+_WHOLE = re.compile(r"([-+]?)(?:0[xX]([0-9a-fA-F]+)|(\d+))[uU]?")
+_VECTOR = re.compile(r"([iu]?vec[234])\s*\((.*)\)", re.DOTALL)
+_LONGEST_LITERAL = 64
+
+_SCALARS = frozenset({"float", "int", "uint", "bool"})
+_VECTORS = frozenset({"vec2", "vec3", "vec4", "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4"})
+_BARE = frozenset({"angle", "direction", "colour", "checkbox", "point", "file", "input"})
+_RANGED = frozenset({"slider", "log_slider"})
+_WIDGETS = _BARE | _RANGED | {"menu"}
+_MODIFIERS = frozenset({"step", "unit", "group", "label"})
+_FITS = {
+    "direction": ("vec2",),
+    "point": ("vec2",),
+    "colour": ("vec3", "vec4"),
+    "menu": ("int",),
+    "checkbox": ("bool",),
+    "angle": ("float",),
+    "log_slider": ("float", "int", "uint"),
+    "slider": tuple(sorted((_SCALARS | _VECTORS) - {"bool"})),
+}
+_FIXED_RANGE = {"angle": (-360.0, 360.0), "point": (0.0, 1.0)}
+
+Calls = dict[str, list[str]]
+
+
+def read_uniforms(
+    source: SourceText, *, plain: bool = False, skip: Collection[str] = ()
+) -> tuple[tuple[Parameter, ...], tuple[Input, ...]]:
+    """Return the parameters and the inputs of a file with its includes, in the order of their lines.
+
+    Of a ``plain`` shader only what can be understood is taken, ``skip`` left out; in any
+    other, raises ``ShaderError`` for a declaration that cannot be.
+    """
+    parameters: list[Parameter] = []
+    inputs: list[Input] = []
+    seen: dict[str, Line] = {}
+    for line in source.lines:
+        match = _UNIFORM.match(line.code)
+        if not plain:
+            _check_declaration(line, match)
+        if not match:
+            continue
+        glsl_type, name, array, initial = match.groups()
+        if name in skip or (plain and (array or glsl_type not in _SCALARS | _VECTORS)):
+            continue
+        if array:
+            raise line.error(f"'{name}' is an array; parameters are scalars and vectors")
+        if not plain:
+            check_name(name, line, "parameter")
+        if name in seen:
+            # A file that is included twice stands here twice; its guard leaves one to the driver.
+            if (seen[name].file, seen[name].number) == (line.file, line.number):
+                continue
+            raise line.error(f"'{name}' is declared twice")
+        seen[name] = line
+        note = line.comment[1:] if line.comment.startswith("!") else ""
+        calls, tooltip = read_calls(note, line, _WIDGETS | _MODIFIERS, _BARE)
+        if glsl_type == "sampler2D":
+            item = _sampler(name, calls, tooltip, line)
+            if isinstance(item, Input):
+                inputs.append(item)
+            else:
+                parameters.append(item)
+        elif glsl_type in _SCALARS | _VECTORS:
+            parameters.append(_parameter(name, glsl_type, initial, calls, tooltip, line))
+        else:
+            raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
+    return tuple(parameters), tuple(inputs)
+
+
+def check_name(name: str, line: Line, what: str) -> None:
+    """Raise ``ShaderError`` for a name that GLSL or the engine has taken."""
+    found = re.search(rf"\b{re.escape(name)}\b", line.code)
+    column = found.start() + 1 if found else 0
+    if name in GIVEN or name in RESERVED or name.startswith("previous_"):
+        raise line.error(f"'{name}' is given to every kernel; name the {what} something else", column)
+    if name.startswith((PREFIX, "gl_")) or "__" in name:
+        raise line.error(f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved", column)
+    if name in GLSL_WORDS:
+        raise line.error(f"'{name}' is a word of GLSL itself; name the {what} something else", column)
+
+
+def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
+    words = _WORD_UNIFORM.findall(line.code)
+    if words and not line.code.lstrip().startswith("#") and not _IMAGE.search(line.code) and (not match or len(words) > 1):
+        raise line.error("a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation")
+
+
+def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
+    wrong = sorted(set(calls) & _WIDGETS - {"file", "input"})
+    if wrong:
+        raise line.error(f"{wrong[0]} is not for a sampler2D; '{name}' may be an input or a file")
+    if "file" in calls and "input" in calls:
+        raise line.error(f"'{name}' has two widgets: file and input")
+    is_file = "file" in calls
+    words = list(calls.get("file" if is_file else "input", []))
+    path = words.pop(0) if is_file and words else ""
+    if "\0" in path:
+        raise line.error(f"the path of '{name}' holds a zero byte")
+    valid = {"nearest", "linear", "clamp", "repeat", "mipmap"} | (set() if is_file else {"white", "black"})
+    for word in words:
+        if word not in valid:
+            raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
+    for pair in (("nearest", "linear"), ("clamp", "repeat"), ("white", "black")):
+        if set(pair) <= set(words):
+            raise line.error(f"'{name}' is both {pair[0]} and {pair[1]}")
+    sampling = Sampling(
+        "linear" if "linear" in words else "nearest",
+        "repeat" if "repeat" in words else "clamp",
+        "mipmap" in words,
+    )
+    if not is_file:
+        fallback = next((word for word in ("white", "black") if word in words), "")
+        return Input(name, sampling, fallback, line.number)
+    return Parameter(
+        name,
+        "sampler2D",
+        path,
+        Widget("file"),
+        group=_text(calls, "group", line),
+        label=_text(calls, "label", line),
+        tooltip=tooltip,
+        sampling=sampling,
+        file=line.file,
+        line=line.number,
+    )
+
+
+def _parameter(
+    name: str, glsl_type: str, initial: str | None, calls: Calls, tooltip: str, line: Line
+) -> Parameter:
+    widgets = [word for word in calls if word in _WIDGETS]
+    if len(widgets) > 1:
+        raise line.error(f"'{name}' has two widgets: {' and '.join(widgets)}")
+    kind = widgets[0] if widgets else ("checkbox" if glsl_type == "bool" else "number")
+    if kind in ("file", "input"):
+        raise line.error(f"{kind} is for a sampler2D; '{name}' is a {glsl_type}")
+    fits = _FITS.get(kind)
+    if fits and glsl_type not in fits:
+        wanted = " or ".join(fits) if len(fits) <= 3 else "numbers"
+        raise line.error(f"{kind} is for {wanted}; '{name}' is a {glsl_type}")
+    step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
+    if step is not None and step <= 0:
+        raise line.error(f"step of '{name}': expected a number above 0")
+    parameter = Parameter(
+        name,
+        glsl_type,
+        0,
+        _widget(name, kind, calls.get(kind, []), line),
+        step,
+        _text(calls, "unit", line),
+        _text(calls, "group", line),
+        _text(calls, "label", line),
+        tooltip,
+        file=line.file,
+        line=line.number,
+    )
+    default = _literal(name, glsl_type, initial, line)
+    try:
+        return replace(parameter, default=values.coerce(parameter, default))
+    except ParameterError as error:
+        raise line.error(f"the default of {error.diagnostics[0].message}") from None
+
+
+def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
+    if kind in _RANGED or (kind == "angle" and arguments):
+        low, high = _numbers(name, kind, arguments, 2, line)
+        if kind == "log_slider" and low <= 0:
+            raise line.error(f"log_slider of '{name}': its range must lie above 0")
+        return Widget(kind, low, high)
+    if kind == "menu":
+        if len(arguments) < 2:
+            raise line.error(f"the menu of '{name}' needs its choices, as menu(\"linear\", \"smooth\")")
+        if len(set(arguments)) < len(arguments):
+            raise line.error(f"the menu of '{name}' has a choice twice")
+        return Widget(kind, choices=tuple(arguments))
+    if arguments:
+        raise line.error(f"{kind} of '{name}' takes nothing in brackets")
+    return Widget(kind, *_FIXED_RANGE.get(kind, (None, None)))
+
+
+def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line) -> tuple[float, ...]:
+    try:
+        numbers = tuple(float(a) for a in arguments)
+    except ValueError:
+        numbers = ()
+    ordered = count == 1 or (len(numbers) == 2 and numbers[0] < numbers[1])
+    if len(numbers) != count or not ordered or not all(map(math.isfinite, numbers)):
+        wanted = f"two numbers, the lower first, as {word}(0, 1)" if count == 2 else "one number, as step(0.01)"
+        raise line.error(f"{word} of '{name}': expected {wanted}")
+    return numbers
+
+
+def _text(calls: Calls, word: str, line: Line) -> str:
+    if word in calls and len(calls[word]) != 1:
+        raise line.error(f"{word}() takes one text in quotes, as {word}(\"m\")")
+    return calls[word][0] if word in calls else ""
+
+
+def _literal(name: str, glsl_type: str, initial: str | None, line: Line) -> Value | list[float]:
+    length = values.length_of(glsl_type)
+    if initial is None:
+        return False if glsl_type == "bool" else (0 if length == 1 else [0] * length)
+    text = initial.strip()
+    column = line.code.find(text) + 1
+    if glsl_type == "bool":
+        if text in ("true", "false"):
+            return text == "true"
+        raise line.error(f"'{name}' is a bool; expected true or false, found {text}", column)
+    parts = [text]
+    if length > 1:
+        vector = _VECTOR.fullmatch(text)
+        if not vector or vector.group(1) != glsl_type:
+            raise line.error(f"the initialiser of '{name}' must be a literal, as {glsl_type}(…)", column)
+        parts = [part.strip() for part in vector.group(2).split(",")]
+        if len(parts) == 1:
+            parts *= length
+    # A constructor takes any numbers, a scalar is converted from whole to real alone.
+    fractions = length > 1 or not values.is_whole(glsl_type)
+    numbers = [_number(part, fractions=fractions) for part in parts]
+    if len(parts) != length or any(number is None for number in numbers):
+        wanted = "" if fractions else "whole "
+        raise line.error(f"the initialiser of '{name}' must be a {wanted}literal, found {text}", column)
+    found = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
+    return found if length > 1 else found[0]
+
+
+def _number(text: str, *, fractions: bool) -> float | int | None:
+    """Read a number as GLSL writes it: 0x1F and 017 have the bases 16 and 8."""
+    if len(text) > _LONGEST_LITERAL:
+        return None
+    if whole := _WHOLE.fullmatch(text):
+        sign, sixteen, digits = whole.groups()
+        base = 16 if sixteen else 8 if digits.startswith("0") else 10
+        try:
+            return int(sixteen or digits, base) * (-1 if sign == "-" else 1)
+        except ValueError:  # 089 is neither
+            return None
+    if not fractions or not _FLOAT.fullmatch(text):
+        return None
+    number = float(text.rstrip("fF"))
+    return number if math.isfinite(number) else None

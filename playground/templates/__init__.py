@@ -1,0 +1,45 @@
+"""Make a fresh sketch folder from the files in ``new/``; it never overwrites anything."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+from playground.errors import SketchError
+from playground.paths import shown
+
+_NEW = Path(__file__).resolve().parent / "new"
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
+_TITLE = "@TITLE@"
+
+
+def make_sketch(folder: Path) -> Path:
+    """Make the folder with ``sketch.toml`` and a kernel, and return it.
+
+    Its last part is the sketch's name; the folder it lies in must exist. Raises
+    ``SketchError`` where the name cannot be one, or something is there already.
+    """
+    name = folder.name
+    if not _NAME.fullmatch(name):
+        message = "cannot name a sketch: a letter, then letters, digits, - and _, as my-land"
+        raise SketchError(f"'{name or folder}' {message}")
+    if folder.exists() or folder.is_symlink():
+        raise SketchError("there is something of that name already; choose another name", file=shown(folder))
+    if not folder.parent.is_dir():
+        raise SketchError(f"there is no folder '{folder.parent}' to make it in", file=shown(folder))
+    try:
+        folder.mkdir()
+        for template in sorted(_NEW.iterdir()):
+            if template.suffix == ".toml":
+                text = template.read_text(encoding="utf-8").replace(_TITLE, _title(name))
+                (folder / template.name).write_text(text, encoding="utf-8")
+            elif template.suffix == ".glsl":
+                shutil.copyfile(template, folder / template.name)
+    except OSError as error:
+        raise SketchError(f"cannot be made: {error.strerror}", file=shown(folder)) from None
+    return folder
+
+
+def _title(name: str) -> str:
+    return re.sub(r"[-_]+", " ", name).strip().capitalize()

@@ -1,0 +1,93 @@
+"""Print for a person at a terminal, or for a program at the other end of a pipe.
+
+Colour only on a terminal, and not where NO_COLOR is set; bars and spinners only on
+standard error. Tables are drawn on a terminal; in a pipe each row is a line, its columns
+parted by tabs.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def has_colour(stream: TextIO) -> bool:
+    """Say whether colour belongs on a stream."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def painted(text: str, code: str, stream: TextIO) -> str:
+    """Return text in a colour, an ANSI code as "1;31", where colour belongs on the stream."""
+    return f"\033[{code}m{text}\033[0m" if has_colour(stream) else text
+
+
+def complain(text: str, severity: str = "error") -> None:
+    """Print a mistake on standard error."""
+    print(f"{painted(f'{severity}:', '1;31', sys.stderr)} {text}", file=sys.stderr)
+
+
+def note(text: str) -> None:
+    """Print a note on standard error."""
+    print(text, file=sys.stderr)
+
+
+def count(number: int, noun: str) -> str:
+    """Return "1 file", "2 files"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def console_for(stream: TextIO) -> Console:
+    """Return rich's console for a stream."""
+    from rich.console import Console
+
+    return Console(file=stream, highlight=False, no_color=not has_colour(stream))
+
+
+def print_table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table on standard output."""
+    if not sys.stdout.isatty():
+        for row in rows:
+            print("\t".join(" ".join(cell.split()) for cell in row))
+        return
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    for index, heading in enumerate(headings):
+        table.add_column(heading, style="bold" if index == 0 else None, overflow="fold")
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console_for(sys.stdout).print(table)
+
+
+@contextmanager
+def busy(text: str) -> Iterator[None]:
+    """Show on a terminal that something is being done."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    with console_for(sys.stderr).status(f"{text} …"):
+        yield
+
+
+@contextmanager
+def progress(text: str, total: int) -> Iterator[Callable[[], None]]:
+    """Show a bar on a terminal; yields a function that moves it on by one."""
+    if not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn(text), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    console = console_for(sys.stderr)
+    # What is printed meanwhile goes above the bar, but only where both go to the terminal.
+    with Progress(*columns, console=console, transient=True, redirect_stdout=sys.stdout.isatty()) as bar:
+        task = bar.add_task(text, total=total)
+        yield lambda: bar.advance(task)

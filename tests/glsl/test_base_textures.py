@@ -1,0 +1,82 @@
+"""texturing/grass, rock and snow: seamless, of the colour they are named for, as many as there are seeds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+# Features large enough for a small tile, so that neighbours are alike and a seam would stand out.
+COARSE = {
+    "grass": "blades = 8, clumps = 2",
+    "rock": "blocks = 2",
+    "snow": "drifts = 2",
+}
+NAMES = sorted(COARSE)
+
+
+@pytest.fixture
+def tile(make_sketch):
+    def sketch(name, size=96, seed=1, more=""):
+        text = f'[[pass]]\nname = "colour"\nuse = "texturing/{name}"\n'
+        return make_sketch(f"{text}set = {{ {COARSE[name]}, seed = {seed}{more} }}\n", size=size)
+
+    return sketch
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("size", [96, 61])
+def test_a_tile_meets_its_own_copy_as_smoothly_as_it_goes_on_inside(any_engine, tile, name, size):
+    colour = any_engine.read(tile(name, size), "colour")[..., :3].astype(float)
+    for axis in (0, 1):
+        steps = np.abs(colour - np.roll(colour, 1, axis)).mean(axis=(1 - axis, 2))
+        inside, seam = steps[1:], steps[0]
+        assert seam <= inside.mean() + 3 * inside.std()
+        # Were the tile not seamless, the step would be as large as between places far apart.
+        apart = np.abs(colour - np.roll(colour, size // 2, axis)).mean()
+        assert seam < 0.8 * apart
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_mean_is_the_colour_that_the_name_promises(any_engine, tile, name):
+    colour = any_engine.read(tile(name), "colour").astype(float)
+    assert np.isfinite(colour).all()
+    assert (colour[..., 3] == 1).all()
+    assert colour.min() > 0
+    assert colour.max() <= 1
+    red, green, blue = colour[..., :3].mean(axis=(0, 1))
+    if name == "grass":
+        assert green > red > blue
+        assert 0.03 < green < 0.2
+    elif name == "rock":
+        assert red >= green >= blue
+        assert red < 1.6 * blue
+        assert 0.1 < green < 0.4
+    else:
+        assert blue > red
+        assert 0.6 < red < 0.9
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_another_seed_is_another_tile_of_the_same_kind(any_engine, tile, name):
+    one, other = (any_engine.read(tile(name, seed=s), "colour").astype(float)[..., :3] for s in (1, 2))
+    spread = one.std(axis=(0, 1)).mean()
+    assert np.abs(one - other).mean() > 0.3 * spread
+    np.testing.assert_allclose(one.mean(axis=(0, 1)), other.mean(axis=(0, 1)), rtol=0.15)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_larger_tile_is_the_same_picture_in_more_texels(any_engine, tile, name):
+    small = any_engine.read(tile(name, 64), "colour").astype(float)[..., :3]
+    large = any_engine.read(tile(name, 192), "colour").astype(float)[..., :3]
+    shrunk = large.reshape(64, 3, 64, 3, 3).mean(axis=(1, 3))
+    correlation = np.corrcoef(small.sum(-1).ravel(), shrunk.sum(-1).ravel())[0, 1]
+    assert correlation > 0.85
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_tint_dyes_the_tile(any_engine, tile, name):
+    plain, dyed = (
+        any_engine.read(tile(name, more=more), "colour").astype(float)[..., :3].mean(axis=(0, 1))
+        for more in ("", ', tint = "#ff0000"')
+    )
+    assert dyed[0] / dyed.sum() > plain[0] / plain.sum()

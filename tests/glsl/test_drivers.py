@@ -1,0 +1,146 @@
+"""One text, two drivers, the same bits: every kernel there is, under every choice of its menus.
+
+A kernel's inputs are wired to random textures. A compute companion is held against the
+kernel or technique beside it, to the bound that its header states.
+"""
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.paths import GLSL
+from playground.sketch.expressions import accepted_sizes
+from playground.sketch.flatten import input_names, outputs_with_formats
+from playground.sketch.load import load, read_technique, shipped_techniques
+from playground.sketch.model import Graph, Kernel, kernels_of
+
+RANDOM = """
+#include "noise/hash.glsl"
+#pragma kernel(output = "given:rgba32f")
+uniform uint seed = 0u;
+vec4 kernel(ivec2 texel) { return vec4(random_pair(texel, seed), random_pair(texel, seed + 1000u)); }
+"""
+SIZE = (37, 22)
+
+
+@cache
+def techniques():
+    return {name: read_technique(name, GLSL, GLSL) for name in shipped_techniques()}
+
+
+KERNELS = [n for n, t in techniques().items() if isinstance(t, Kernel) and t.kind == "kernel"]
+WITH_COMPANION = [n for n, t in techniques().items() if t.companion]
+
+
+@pytest.fixture
+def engines(ctx):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
+        yield fragment, compute
+
+
+def sketch_of(folder, name):
+    """Return a sketch of one technique, a random texture for each of its inputs."""
+    technique = techniques()[name]
+    (folder / "random.glsl").write_text(RANDOM)
+    sizes = [k.accepts for _, k in kernels_of(technique) if k.accepts]
+    size = SIZE
+    if sizes:
+        axes = accepted_sizes(sizes[0])
+        size = tuple(min((s for s in axis if s >= 33), default=axis[-1]) for axis in axes)
+    lines = [f"format = 1\nsize = {list(size)}\nextent = [700.0, 900.0]\nrelief = 150.0\n"]
+    for seed, given in enumerate(input_names(technique)):
+        lines.append(f'[[pass]]\nname = "in_{given}"\nuse = "./random"\nset = {{ seed = {seed} }}\n')
+    wires = ", ".join(f'{given} = "in_{given}"' for given in input_names(technique))
+    lines.append(f'[[pass]]\nname = "under_test"\nuse = "{name}"\ninputs = {{ {wires} }}\n')
+    path = folder / "sketch.toml"
+    path.write_text("".join(lines))
+    return load(path)
+
+
+def variants(sketch, technique):
+    """Yield the sketch as it is, then with each other choice of each menu and checkbox."""
+    yield "defaults", sketch
+    if isinstance(technique, Graph):
+        return
+    for parameter in technique.parameters:
+        choices = range(len(parameter.widget.choices)) if parameter.widget.kind == "menu" else ()
+        if parameter.type == "bool":
+            choices = (False, True)
+        for choice in choices:
+            if choice != parameter.default:
+                yield (
+                    f"{parameter.name} = {choice}",
+                    sketch.with_values({f"under_test.{parameter.name}": choice}),
+                )
+
+
+def without_companions(sketch):
+    passes = tuple(
+        replace(p, technique=replace(p.technique, companion=None)) if p.technique.companion else p
+        for p in sketch.graph.passes
+    )
+    return replace(sketch, graph=replace(sketch.graph, passes=passes))
+
+
+def assert_same_bits(found, wanted, what):
+    assert found.shape == wanted.shape, what
+    nan = np.isnan(found) & np.isnan(wanted)
+    same = (found.view(np.uint32) == wanted.view(np.uint32)) | nan
+    assert same.all(), (
+        f"{what}: {np.count_nonzero(~same)} of {same.size} numbers differ, first at {np.argwhere(~same)[0]}"
+    )
+
+
+def outputs_of(technique):
+    return technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_both_drivers_give_the_same_bits(engines, tmp_path, name):
+    technique = techniques()[name]
+    sketch = without_companions(sketch_of(tmp_path, name))
+    fragment, compute = engines
+    for what, variant in variants(sketch, technique):
+        for output in outputs_of(technique):
+            values = [
+                engine.read(variant, f"under_test:{output.name}", time=1.5) for engine in (fragment, compute)
+            ]
+            assert_same_bits(values[1], values[0], f"{name}:{output.name} with {what}")
+
+
+@pytest.mark.parametrize("name", WITH_COMPANION)
+def test_a_companion_agrees_within_its_bound(engines, tmp_path, name):
+    technique = techniques()[name]
+    text = (GLSL / f"{name}.comp").read_text(encoding="utf-8")
+    stated = re.search(r"//   agrees +(?:to the last bit|.*?within ([\d.e+-]*\d))", text)
+    assert stated, "its header says: agrees to the last bit, or: agrees within 1e-5"
+    sketch = sketch_of(tmp_path, name)
+    fragment, compute = engines
+    for what, variant in variants(sketch, technique):
+        for output in outputs_of(technique):
+            values = [engine.read(variant, f"under_test:{output.name}") for engine in (fragment, compute)]
+            if stated.group(1):
+                np.testing.assert_allclose(values[1], values[0], atol=float(stated.group(1)), err_msg=what)
+            else:
+                assert_same_bits(values[1], values[0], f"{name}:{output.name} with {what}")
+
+
+def test_nothing_is_left_out():
+    texts = {
+        p.relative_to(GLSL).with_suffix("").as_posix()
+        for p in GLSL.rglob("*.glsl")
+        if "#pragma kernel" in p.read_text()
+    }
+    assert {n for n in texts if not n.startswith("sketches/")} == set(KERNELS)
+    companions = {
+        p.relative_to(GLSL).with_suffix("").as_posix()
+        for p in GLSL.rglob("*.comp")
+        if "#pragma compute" in p.read_text()
+    }
+    assert companions == set(WITH_COMPANION)

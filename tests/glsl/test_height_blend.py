@@ -1,0 +1,141 @@
+"""texturing/height_blend: the thesis's weights (section 2.3.2), and images of any size in their places."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+# Terrain_RemplitPerc as a table: heights where a weight begins or ends to change.
+BYTES = [0, 60, 130, 180, 220, 255]
+TABLE = {"grass": [1, 1, 0, 0, 0, 0], "rock": [0, 0, 1, 1, 0, 0], "snow": [0, 0, 0, 0, 1, 1]}
+
+IMAGE = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return vec4({}); }}\n'
+RAMP = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+EASTWARD = RAMP.format("float(texel.x) / float(size.x - 1)")
+IMAGES = {
+    "meadow": IMAGE.format("1.0, 0.0, 0.0, 1.0"),
+    "stone": IMAGE.format("0.0, 1.0, 0.0, 1.0"),
+    "ice": IMAGE.format("0.0, 0.0, 1.0, 1.0"),
+}
+PASSES = """
+[[pass]]
+name = "height"
+use = "./ramp"
+[[pass]]
+name = "meadow"
+use = "./meadow"
+size = 4
+[[pass]]
+name = "stone"
+use = "./stone"
+size = 16
+[[pass]]
+name = "ice"
+use = "./ice"
+size = 1
+[[pass]]
+name = "colour"
+use = "texturing/height_blend"
+inputs = {{ "mix.grass" = "meadow", "mix.rock" = "stone", "mix.snow" = "ice" }}
+{}
+"""
+
+
+def thesis(height: np.ndarray) -> np.ndarray:
+    """Weights of grass, rock and snow for heights in bytes."""
+    return np.stack([np.interp(height, BYTES, TABLE[name]) for name in ("grass", "rock", "snow")], axis=-1)
+
+
+THRESHOLDS = "vec4(60.0, 130.0, 180.0, 220.0)"
+
+
+def test_weights_are_the_thesis_s_for_every_byte_and_between(on_gpu):
+    height = np.concatenate([np.arange(256.0), np.random.default_rng(5).uniform(0, 255, 2000)])
+    found = on_gpu("texturing/height_weights.glsl", f"height_weights(h, {THRESHOLDS})", h=height)
+    np.testing.assert_allclose(found, thesis(height), atol=1e-6)
+
+
+def test_weights_sum_to_one_wherever_the_thresholds_are(on_gpu):
+    random = np.random.default_rng(6)
+    height, thresholds = random.uniform(0, 255, 5000), random.uniform(0, 255, (5000, 4))
+    found = on_gpu("texturing/height_weights.glsl", "height_weights(h, t)", h=height, t=thresholds)
+    assert found.min() >= 0
+    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1.2e-7)
+
+
+def test_thresholds_that_meet_make_a_step(on_gpu):
+    found = on_gpu(
+        "texturing/height_weights.glsl", "height_weights(h, vec4(100.0, 100.0, 200.0, 200.0))",
+        h=np.array([99.9, 100.0, 199.9, 200.0]),
+    )  # fmt: skip
+    np.testing.assert_array_equal(found, [[1, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 1]])
+
+
+def test_the_mixture_has_each_image_by_its_weight(engine, make_sketch):
+    sketch = make_sketch(PASSES.format(""), size=[256, 4], ramp=EASTWARD, **IMAGES)
+    colour = engine.read(sketch, "colour").astype(float)
+    np.testing.assert_allclose(colour[2, :, :3], thesis(np.arange(256.0)), atol=6e-4)
+    np.testing.assert_allclose(colour[..., :3].sum(axis=-1), 1.0, atol=1e-3)
+    assert (colour[..., 3] == 1).all()
+
+
+def test_its_texture_may_be_finer_or_coarser_than_the_heights(engine, make_sketch):
+    for size in (511, 33):
+        sketch = make_sketch(PASSES.format(f"size = {size}"), size=[256, 4], ramp=EASTWARD, **IMAGES)
+        colour = engine.read(sketch, "colour").astype(float)
+        assert colour.shape[:2] == (size, size)
+        np.testing.assert_allclose(colour[size // 2, :, :3], thesis(np.linspace(0, 255, size)), atol=2e-3)
+
+
+def test_thresholds_are_parameters(any_engine, make_sketch):
+    given = "set = { grass_below = 10, rock_from = 20, rock_below = 30, snow_from = 40 }"
+    sketch = make_sketch(PASSES.format(given), size=[256, 4], ramp=EASTWARD, **IMAGES)
+    colour = any_engine.read(sketch, "colour").astype(float)[0, :, :3]
+    assert colour[:11, 0].min() == 1
+    assert colour[20:31, 1].min() == 1
+    assert colour[40:, 2].min() == 1
+
+
+def test_ragged_edges_stay_near_the_thresholds_and_keep_the_sum(any_engine, make_sketch):
+    sketch = make_sketch(PASSES.format("set = { ragged = 20 }"), size=[256, 64], ramp=EASTWARD, **IMAGES)
+    colour = any_engine.read(sketch, "colour").astype(float)[..., :3]
+    np.testing.assert_allclose(colour.sum(axis=-1), 1.0, atol=1e-3)
+    assert colour[:, :40, 0].min() == 1
+    assert colour[:, 240:, 2].min() == 1
+    assert colour[:, 95].std(axis=0).max() > 0.01
+
+
+def test_heights_that_are_no_numbers_leave_the_colour_a_number(engine, make_sketch):
+    nowhere = RAMP.format("texel.x > 3 ? uintBitsToFloat(0x7fc00000u) : 0.9")
+    sketch = make_sketch(PASSES.format("set = { ragged = 20 }"), size=[9, 9], ramp=nowhere, **IMAGES)
+    assert np.isfinite(engine.read(sketch, "colour")).all()
+
+
+@pytest.mark.parametrize("repeats", [1, 4])
+def test_an_image_repeats_so_often_over_the_land(any_engine, make_sketch, repeats):
+    files = {**IMAGES, "meadow": IMAGE.format("float(texel.x >= size.x / 2)")}
+    text = PASSES.format(f"set = {{ repeats = {repeats}, variety = 0 }}\nsize = [257, 5]")
+    sketch = make_sketch(text, size=[257, 5], extent=[1000.0, 1000.0], ramp=RAMP.format("0.0"), **files)
+    row = any_engine.read(sketch, "colour").astype(float)[2, :, 0]
+    rising = np.flatnonzero((row[:-1] < 0.5) & (row[1:] >= 0.5))
+    assert len(rising) == repeats
+    np.testing.assert_allclose((rising + 0.5) / 256, (np.arange(repeats) + 0.5) / repeats, atol=0.3 / repeats)
+
+
+def test_far_more_repeats_than_texels_give_the_image_s_mean(any_engine, make_sketch):
+    files = {**IMAGES, "meadow": IMAGE.format("float((texel.x + texel.y) & 1)")}
+    text = PASSES.format("set = { repeats = 256, variety = 0 }").replace("size = 4", "size = 64")
+    sketch = make_sketch(text, size=[65, 65], ramp=RAMP.format("0.0"), **files)
+    colour = any_engine.read(sketch, "colour").astype(float)[..., 0]
+    np.testing.assert_allclose(colour, 0.5, atol=0.02)
+
+
+def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
+    passes = PASSES.format("")
+    begin, end = passes.index("[[pass]]\nname = \"meadow\""), passes.index("[[pass]]\nname = \"colour\"")
+    own = passes[:begin] + passes[end:].split("inputs", maxsplit=1)[0]
+    colour = any_engine.read(make_sketch(own, size=[256, 16], ramp=EASTWARD), "colour").astype(float)
+    grass, rock, snow = (colour[:, a:b, :3].mean(axis=(0, 1)) for a, b in ((0, 50), (135, 175), (225, 256)))
+    assert grass[1] > grass[0] > grass[2]
+    assert grass.sum() < rock.sum() < snow.sum()
+    assert any_engine.ran == ["height", "colour.grass", "colour.rock", "colour.snow", "colour.mix"]

@@ -1,0 +1,204 @@
+"""Layered noise against a twin in Python: the thesis's loops, with exact fractions for its nodes."""
+
+from fractions import Fraction
+from functools import lru_cache
+from math import floor
+
+import numpy as np
+import pytest
+
+SEED = 7
+
+
+def curve(y1, y2, n, delta, smooth):
+    """Return section 1.3.9's two interpolations, without the slip at delta 0."""
+    if n == 0:
+        return y1
+    if not smooth:
+        return y1 + delta * (y2 - y1) / n
+    a = delta / n
+    return y1 * (3 * (1 - a) ** 2 - 2 * (1 - a) ** 3) + y2 * (3 * a**2 - 2 * a**3)
+
+
+def bounds(place, size, frequency):
+    """Return the nodes before and after a place: exact where the thesis rounds."""
+    step = Fraction(size, frequency)
+    q = floor(place / step)
+    return floor(q * step), min(floor((q + 1) * step), size - 1)
+
+
+def one_layer(size, frequencies, drawn, smooth):
+    nx, ny = size
+    land = np.zeros((ny, nx))
+    for j in range(ny):
+        y1, y2 = bounds(j, ny, frequencies[1])
+        for i in range(nx):
+            x1, x2 = bounds(i, nx, frequencies[0])
+            v1 = curve(drawn[y1, x1], drawn[y2, x1], y2 - y1, j - y1, smooth)
+            v2 = curve(drawn[y1, x2], drawn[y2, x2], y2 - y1, j - y1, smooth)
+            land[j, i] = curve(v1, v2, x2 - x1, i - x1, smooth)
+    return land
+
+
+def frequencies_of(k, frequency, size):
+    """Return the intervals along x and y: no more than gaps between texels, and as long as they are wide."""
+    most = max(size[0] - 1, 1), max(size[1] - 1, 1)
+    along = min(frequency ** (k + 1), most[0])
+    upright = floor(Fraction(along * most[1], most[0]) + Fraction(1, 2))
+    return along, min(max(upright, 1), most[1])
+
+
+@pytest.fixture
+def twin(python_random):
+    @lru_cache
+    def drawn(size, seed):
+        y, x = np.mgrid[0 : size[1], 0 : size[0]]
+        return python_random(x, y, seed)
+
+    def make(
+        size=(33, 33),
+        frequency=4,
+        octaves=2,
+        persistence=0.2,
+        smooth=True,
+        independent=False,
+        overflow="divide",
+        layer=0,
+    ):
+        def at(k):
+            seed = (SEED + k * 2654435769) % 2**32 if independent else SEED
+            return one_layer(size, frequencies_of(k, frequency, size), drawn(size, seed), smooth)
+
+        if layer:
+            return at(layer - 1)
+        weights = [persistence ** (k + 1) for k in range(octaves)]
+        if sum(weights) == 0:
+            return np.zeros(size[::-1])
+        total = sum(w * at(k) for k, w in enumerate(weights))
+        if overflow == "divide":
+            return total / sum(weights)
+        return np.minimum(total, 1) if overflow == "clamp" else np.where(total > 1, np.mod(total, 1), total)
+
+    return make
+
+
+@pytest.fixture
+def sketch_of(make_sketch):
+    def make(size=(33, 33), **values):
+        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        use = f'[[pass]]\nname = "land"\nuse = "generation/layered_noise"\n[pass.set]\nseed = {SEED}\n{given}'
+        return make_sketch(use, size=list(size))
+
+    return make
+
+
+def raw(engine, sketch):
+    return engine.read(sketch, "land.sum")
+
+
+@pytest.mark.parametrize("size", [(33, 33), (32, 32), (65, 65), (7, 7), (40, 23), (23, 40)], ids=str)
+@pytest.mark.parametrize("interpolation", ["linear", "smooth"])
+def test_it_is_the_thesis_land(engine, sketch_of, twin, size, interpolation):
+    found = raw(engine, sketch_of(size, interpolation=interpolation))
+    np.testing.assert_allclose(found, twin(size, smooth=interpolation == "smooth"), atol=1e-6)
+
+
+@pytest.mark.parametrize("frequency", [1, 2, 3, 5, 31, 32, 33, 1000])
+@pytest.mark.parametrize("octaves", [1, 3])
+def test_every_frequency_even_above_the_size(engine, sketch_of, twin, frequency, octaves):
+    found = raw(engine, sketch_of(frequency=frequency, octaves=octaves, persistence=0.5))
+    np.testing.assert_allclose(found, twin(frequency=frequency, octaves=octaves, persistence=0.5), atol=1e-6)
+    assert found.min() >= 0 and found.max() <= 1 and found.std() > 0.01
+
+
+def test_as_many_intervals_as_gaps_give_each_texel_its_own_number(engine, sketch_of, python_random):
+    found = raw(engine, sketch_of(frequency=32, octaves=1))
+    y, x = np.mgrid[0:33, 0:33]
+    np.testing.assert_allclose(found, python_random(x, y, SEED), atol=1e-7)
+
+
+@pytest.mark.parametrize("random_layers", ["one", "independent"])
+@pytest.mark.parametrize("layer", [1, 2, 3])
+def test_single_layers(engine, sketch_of, twin, random_layers, layer):
+    values = {"random_layers": random_layers, "layer": layer, "frequency": 3, "octaves": 2}
+    truth = twin(frequency=3, layer=layer, independent=random_layers == "independent")
+    np.testing.assert_allclose(raw(engine, sketch_of(**values)), truth, atol=1e-6)
+
+
+def test_independent_layers_add_up(engine, sketch_of, twin):
+    values = {"octaves": 3, "persistence": 0.6, "frequency": 3}
+    found = raw(engine, sketch_of(random_layers="independent", **values))
+    np.testing.assert_allclose(found, twin(independent=True, **values), atol=1e-6)
+
+
+@pytest.mark.parametrize("overflow", ["divide", "clamp", "wrap"])
+def test_what_exceeds_1(engine, sketch_of, twin, overflow):
+    """Figure 1.34's weights, 0.9 and 0.81."""
+    values = {"persistence": 0.9, "overflow": overflow}
+    truth = twin(**values)
+    found = raw(engine, sketch_of(**values))
+    apart = np.abs(found - truth)
+    # A sum within rounding of 1 may fall on either side of the wrap.
+    np.testing.assert_array_less(np.minimum(apart, 1 - apart) if overflow == "wrap" else apart, 2e-6)
+    assert 0 <= found.min() and found.max() <= 1
+    assert (twin(**values | {"overflow": "divide"}) * (0.9 + 0.81)).max() > 1, "nothing here exceeds 1"
+
+
+def test_wrapping_tears_and_dividing_does_not(any_engine, sketch_of):
+    steps = {
+        overflow: np.abs(
+            np.diff(raw(any_engine, sketch_of((129, 129), persistence=0.9, overflow=overflow)))
+        ).max()
+        for overflow in ("divide", "clamp", "wrap")
+    }
+    assert steps["wrap"] > 0.8 and steps["divide"] < 0.2 and steps["clamp"] < 0.35
+
+
+def test_nothing_to_add_is_flat_land(engine, sketch_of):
+    for values in ({"octaves": 0}, {"persistence": 0.0}):
+        for overflow in ("divide", "clamp", "wrap"):
+            sketch = sketch_of(overflow=overflow, **values)
+            for ref in ("land.sum", "land"):
+                np.testing.assert_array_equal(engine.read(sketch, ref), 0)
+
+
+@pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
+def test_tiny_lands_are_numbers(engine, sketch_of, twin, size):
+    np.testing.assert_allclose(raw(engine, sketch_of(size)), twin(size), atol=1e-6)
+    assert np.isfinite(engine.read(sketch_of(size), "land")).all()
+
+
+def test_extremes_of_every_slider_are_numbers(engine, sketch_of):
+    for frequency in (1, 1024):
+        for octaves in (1, 8):
+            for persistence in (0.01, 1.0):
+                land = engine.read(
+                    sketch_of(frequency=frequency, octaves=octaves, persistence=persistence), "land"
+                )
+                assert np.isfinite(land).all() and land.min() == 0 and land.max() == 1
+
+
+def test_the_smooth_curve_is_level_at_nodes(any_engine, sketch_of):
+    land = raw(any_engine, sketch_of((257, 257), octaves=1, interpolation="smooth")).astype(np.float64)
+    creases = raw(any_engine, sketch_of((257, 257), octaves=1, interpolation="linear")).astype(np.float64)
+    node = 257 // 4
+    assert np.abs(land[:, node + 1] - land[:, node]).max() < 0.1 * np.abs(np.diff(land, axis=1)).max()
+    bend = np.abs(np.diff(creases, 2, axis=1)).max(axis=0)
+    assert bend[node - 1] > 20 * bend[node // 2]
+
+
+def test_it_is_normalised_by_default_and_not_when_asked(engine, sketch_of):
+    land = engine.read(sketch_of(), "land")
+    assert land.min() == 0 and land.max() == 1
+    sketch = sketch_of(normalise="none")
+    np.testing.assert_array_equal(engine.read(sketch, "land"), raw(engine, sketch))
+    sketch = sketch_of(normalise="max")
+    assert engine.read(sketch, "land").max() == 1 and engine.read(sketch, "land").min() > 0
+
+
+def test_smaller_weights_make_smoother_land(any_engine, sketch_of):
+    rough = [
+        np.abs(np.diff(any_engine.read(sketch_of((129, 129), persistence=p, octaves=3), "land"))).mean()
+        for p in (0.05, 0.2, 0.6)
+    ]
+    assert rough[0] < rough[1] < rough[2]

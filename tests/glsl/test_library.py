@@ -1,0 +1,99 @@
+"""Each library file introduces itself, compiles alone in every stage, and is pure."""
+
+import re
+
+import moderngl
+import pytest
+
+from playground.paths import GLSL, SKETCHES
+from playground.sketch.header import parse_kernel
+from playground.sketch.source import read_source
+
+TEXTS = sorted(
+    p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp") and not p.is_relative_to(SKETCHES)
+)
+NAMES = [p.relative_to(GLSL).as_posix() for p in TEXTS]
+LIBRARY = [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
+FACTS = ("gives", "needs", "units", "source", "tested")
+PURE = ("maths", "noise", "colour")
+
+
+def test_there_is_a_library():
+    assert "noise/hash.glsl" in LIBRARY and len(LIBRARY) >= 5
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_introduces_itself(name):
+    lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith(f"// {name} -- ") and lines[0].endswith((".", "?")), (
+        "the file's own name, then its sentence"
+    )
+    comment = []
+    for line in lines:
+        if not line.startswith("//"):
+            break
+        comment.append(line)
+    facts = [m.group(1) for line in comment if (m := re.match(r"//   (\w+) +\S", line))]
+    assert [f for f in facts if f in FACTS] == list(FACTS)
+    if name.endswith(".comp"):
+        assert "agrees" in facts, "a companion states how closely it agrees with the kernel beside it"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_tests_are_there(name):
+    tested = re.search(r"//   tested +(tests/\S+?\.py)", (GLSL / name).read_text(encoding="utf-8"))
+    assert tested, "names the file that tests it"
+    root = GLSL.parent
+    if not (root / "tests").is_dir():
+        pytest.skip("not a checkout")
+    assert (root / tested.group(1)).is_file()
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_it_holds_no_state(name):
+    """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
+    source = read_source(GLSL / name, (GLSL,))
+    depth = 0
+    for line in source.lines:
+        if depth == 0:
+            words = re.match(
+                r"\s*(?:layout\s*\([^)]*\)\s*)?(uniform|in|out|buffer|shared|attribute|varying)\b", line.code
+            )
+            assert not words, f"{line.file}:{line.number}: {line.text}"
+        depth += line.code.count("{") - line.code.count("}")
+    if name.split("/")[0] in PURE:
+        assert not any(word.startswith("sampler") for word in source.names)
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_it_is_guarded(name):
+    """Including it twice is including it once."""
+    text = (GLSL / name).read_text(encoding="utf-8")
+    guard = re.search(r"^#ifndef (\w+)\n#define \1$", text, re.MULTILINE)
+    assert guard and text.rstrip().endswith("#endif")
+    assert guard.group(1) == re.sub(r"\W", "_", name.removesuffix(".glsl")).upper()
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_it_compiles_alone(ctx, name):
+    code = read_source(GLSL / name, (GLSL,)).code
+    quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
+    for version in ("330", "430"):
+        if ctx.version_code < int(version):
+            continue
+        fragment = f"#version {version}\n{code}\nout vec4 k_out;\nvoid main() {{ k_out = vec4(1.0); }}\n"
+        ctx.program(vertex_shader=quad.replace("330", version), fragment_shader=fragment).release()
+        vertex = f"#version {version}\n{code}\nvoid main() {{ gl_Position = vec4(0.0); }}\n"
+        ctx.program(vertex_shader=vertex, varyings=["gl_Position"]).release()
+    if ctx.version_code >= 430:
+        compute = f"#version 430\nlayout(local_size_x = 1) in;\n{code}\nvoid main() {{ }}\n"
+        ctx.compute_shader(compute).release()
+
+
+def test_a_driver_takes_what_this_asks_of_it(ctx):
+    """The check above can fail: a library file with a slip is refused."""
+    with pytest.raises(moderngl.Error):
+        ctx.program(
+            vertex_shader="#version 330\nfloat f() { return g(); }\nvoid main() { gl_Position = vec4(f()); }"
+        )
+    _ = ctx.error

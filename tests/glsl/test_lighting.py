@@ -1,0 +1,419 @@
+"""L·N and the ray cast: closed forms, symmetries, a slow march in float64, shadows in metres.
+
+``light`` is rgba16f: comparisons allow a half float's rounding, 2^-11 of the value.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.ndimage import map_coordinates
+
+HALF = 2.0**-11
+BOTH = pytest.mark.parametrize("method", ["l_dot_n", "ray_cast"])
+
+PLANE = """
+#pragma kernel(output = "height:r32f")
+uniform vec2 rise = vec2(0.0);   // heights a texel
+uniform float base = 0.0;
+float kernel(ivec2 texel) { return base + dot(vec2(texel), rise); }
+"""
+ROUGH = """
+#include "noise/hash.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float scale = 1.0;
+uniform float base = 0.0;
+uniform int turned = 0;   //! menu("no", "quarter", "mirrored")
+float value(ivec2 texel) {
+    float total = 0.0;
+    for (int k = 0; k < 4; k++) {
+        float cell = float(16 >> k);
+        vec2 place = vec2(texel) / cell;
+        ivec2 low = ivec2(place);
+        vec2 part = place - vec2(low);
+        part = part * part * (3.0 - 2.0 * part);
+        float south = mix(random(low, uint(k)), random(low + ivec2(1, 0), uint(k)), part.x);
+        float north = mix(random(low + ivec2(0, 1), uint(k)), random(low + 1, uint(k)), part.x);
+        total += mix(south, north, part.y) * cell / 30.0;
+    }
+    return total;
+}
+float kernel(ivec2 texel) {
+    ivec2 from = texel;
+    if (turned == 1) from = ivec2(texel.y, size.x - 1 - texel.x);
+    if (turned == 2) from.x = size.x - 1 - texel.x;
+    return base + scale * value(from);
+}
+"""
+WALL = """
+#pragma kernel(output = "height:r32f")
+uniform ivec2 at = ivec2(-1);   // the column or row that stands up
+uniform float high = 1.0;
+float kernel(ivec2 texel) { return texel.x == at.x || texel.y == at.y ? high : 0.0; }
+"""
+
+
+@pytest.fixture
+def lit(make_sketch):
+    """Give a sketch of a land and its light: sun in degrees, sizes in texels, metres."""
+
+    def make(land, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values):
+        values = {"sun": list(sun), "gain": 1.0, **values}
+        setting = "".join(f"{k} = {_toml(v)}\n" for k, v in values.items())
+        land_setting = "".join(f"{k} = {_toml(v)}\n" for k, v in (given or {}).items())
+        at = f"size = {light_size}\n" if light_size else ""
+        passes = (
+            f'[[pass]]\nname = "height"\nuse = "./land"\n[pass.set]\n{land_setting}'
+            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{setting}'
+        )
+        return make_sketch(passes, size=size, extent=extent, relief=relief, land=land)
+
+    return make
+
+
+def _toml(value):
+    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
+
+
+def sun_vector(azimuth, elevation):
+    a, e = np.radians([azimuth, elevation])
+    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
+
+
+def shade(heights, sun, spacing):
+    """Return max(0, N·L) with normals from cross products of the surface's two tangents, float64."""
+    north, east = np.gradient(heights, *spacing[::-1])
+    tangent_x = np.stack([np.ones_like(east), np.zeros_like(east), east], axis=-1)
+    tangent_y = np.stack([np.zeros_like(east), np.ones_like(east), north], axis=-1)
+    normal = np.cross(tangent_x, tangent_y)
+    return np.maximum((normal @ sun) / np.linalg.norm(normal, axis=-1), 0)
+
+
+def clearance(heights, sun, spacing, stride=1.0):
+    """Return how far above the land each ray passes at its nearest step [m]: no early end, float64."""
+    ny, nx = heights.shape
+    y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
+    texels = sun[:2] / spacing  # a metre along the ray, in texels
+    length = stride / np.abs(texels).max()
+    least = np.full(heights.shape, np.inf)
+    for k in range(1, int((nx + ny) / stride) + 2):
+        px, py, ray = x + k * length * texels[0], y + k * length * texels[1], heights + k * length * sun[2]
+        inside = (px >= -1e-6) & (px <= nx - 1 + 1e-6) & (py >= -1e-6) & (py <= ny - 1 + 1e-6)
+        land = map_coordinates(heights, [np.clip(py, 0, ny - 1), np.clip(px, 0, nx - 1)], order=1)
+        least = np.where(inside, np.minimum(least, ray - land), least)
+    return least
+
+
+def assert_same_light(found, wanted):
+    """Allow a half float's rounding, and one grazing ray in a thousand."""
+    same = found[..., 3] == wanted[..., 3]
+    assert same.mean() > 0.999
+    np.testing.assert_allclose(found[same], wanted[same], rtol=2 * HALF, atol=1e-5)
+
+
+# The sun
+
+
+def test_the_sun_stands_where_the_compass_says(on_gpu):
+    places = {
+        (0, 0): (0, 1, 0),
+        (90, 0): (1, 0, 0),
+        (180, 0): (0, -1, 0),
+        (270, 0): (-1, 0, 0),
+        (45, 90): (0, 0, 1),
+    }
+    found = on_gpu("lighting/sun.glsl", "to_sun(place)", place=np.array(list(places), np.float64))
+    np.testing.assert_array_equal(found, list(places.values()))
+
+
+def test_the_sun_is_a_unit_vector_at_its_angles(on_gpu):
+    places = np.random.default_rng(1).uniform((-720, -90), (720, 90), (500, 2)).astype(np.float32)
+    found = on_gpu("lighting/sun.glsl", "to_sun(place)", place=places).astype(np.float64)
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-6)
+    np.testing.assert_allclose(np.degrees(np.arcsin(np.clip(found[:, 2], -1, 1))), places[:, 1], atol=0.03)
+    np.testing.assert_allclose(found, [sun_vector(*p) for p in places.astype(np.float64)], atol=2e-6)
+
+
+def test_a_normal_stands_square_on_its_slope(on_gpu):
+    slopes = np.random.default_rng(2).normal(0, 2, (300, 2))
+    found = on_gpu("lighting/sun.glsl", "normal_of_slope(slope)", slope=slopes).astype(np.float64)
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-6)
+    east = np.stack([np.ones(300), np.zeros(300), slopes[:, 0]], axis=1)
+    north = np.stack([np.zeros(300), np.ones(300), slopes[:, 1]], axis=1)
+    for tangent in (east, north):
+        np.testing.assert_allclose((found * tangent).sum(axis=1), 0, atol=2e-6)
+
+
+# Both methods
+
+
+@BOTH
+@pytest.mark.parametrize("elevation", [1.0, 25.0, 60.0, 90.0])
+@pytest.mark.parametrize("azimuth", [0.0, 90.0, 137.0])
+def test_flat_land_is_lit_evenly(engine, lit, method, azimuth, elevation):
+    sketch = lit(PLANE, method, (azimuth, elevation), given={"base": 0.37})
+    light = engine.read(sketch, "light")
+    np.testing.assert_array_equal(light, np.broadcast_to(light[0, 0], light.shape))
+    assert (
+        light[0, 0, 0] == pytest.approx(np.sin(np.radians(elevation)), rel=1.5 * HALF) and light[0, 0, 3] == 1
+    )
+
+
+@BOTH
+@pytest.mark.parametrize("normal", ["central differences", "one triangle"])
+@pytest.mark.parametrize("sun", [(135, 25), (300, 50), (90, 10), (0, 90)], ids=str)
+def test_an_inclined_plane_is_the_cosine_of_its_angle(engine, lit, method, normal, sun):
+    rise = (0.012, -0.007)  # 100 m of relief; 10 m a texel east, 25 m north
+    sketch = lit(PLANE, method, sun, size=[41, 17], extent=[400, 400], given={"rise": rise}, normal=normal)
+    light = engine.read(sketch, "light")[..., :3]
+    normal = np.cross([1, 0, rise[0] * 100 / 10], [0, 1, rise[1] * 100 / 25])
+    truth = max(0, normal @ sun_vector(*sun) / np.linalg.norm(normal))
+    np.testing.assert_allclose(light, truth, rtol=1.5 * HALF, atol=1e-4)
+
+
+@BOTH
+def test_a_slope_turned_away_is_dark(engine, lit, method):
+    sketch = lit(PLANE, method, (90, 20), given={"rise": (0.2, 0.0)})
+    np.testing.assert_array_equal(engine.read(sketch, "light")[..., :3], 0)
+
+
+@BOTH
+@pytest.mark.parametrize("sun", [(135, 25), (0, 30), (211, 8)], ids=str)
+def test_rough_land_is_shaded_by_its_own_normals(engine, lit, method, sun):
+    sketch = lit(ROUGH, method, sun, size=[65, 49], extent=[640, 960], relief=300.0)
+    heights = engine.read(sketch, "height").astype(np.float64) * 300
+    light = engine.read(sketch, "light").astype(np.float64)
+    truth = shade(heights, sun_vector(*sun), (10.0, 20.0))
+    inner = light[1:-1, 1:-1]
+    np.testing.assert_allclose(inner[..., 0], truth[1:-1, 1:-1] * inner[..., 3], rtol=2 * HALF, atol=1e-3)
+    np.testing.assert_allclose(light[..., 0], truth * light[..., 3], rtol=2 * HALF, atol=1e-3)
+
+
+@BOTH
+def test_lifting_the_land_changes_nothing(engine, lit, method):
+    lights = [
+        engine.read(lit(ROUGH, method, (135, 25), relief=300.0, given={"base": base}), "light")
+        for base in (0.0, 3.0, -2.0)
+    ]
+    for other in lights[1:]:
+        assert (other[..., 3] != lights[0][..., 3]).mean() < 1e-3
+        same = other[..., 3] == lights[0][..., 3]
+        np.testing.assert_allclose(other[same], lights[0][same], atol=1e-3)
+
+
+@BOTH
+@pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
+def test_turned_land_under_a_turned_sun_has_turned_light(engine, lit, method, sun):
+    straight = engine.read(lit(ROUGH, method, sun, relief=300.0), "light")
+    turned = engine.read(
+        lit(ROUGH, method, (sun[0] - 90, sun[1]), relief=300.0, given={"turned": "quarter"}), "light"
+    )
+    y, x = np.mgrid[0:65, 0:65]
+    assert_same_light(turned, straight[64 - x, y])
+
+
+@BOTH
+@pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
+def test_mirrored_land_under_a_mirrored_sun_has_mirrored_light(engine, lit, method, sun):
+    straight = engine.read(lit(ROUGH, method, sun, relief=300.0), "light")
+    mirrored = engine.read(
+        lit(ROUGH, method, (-sun[0], sun[1]), relief=300.0, given={"turned": "mirrored"}), "light"
+    )
+    assert_same_light(mirrored, straight[:, ::-1])
+
+
+@pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
+def test_the_thesis_one_triangle_is_not_symmetric(any_engine, lit, sun):
+    straight = any_engine.read(lit(ROUGH, "l_dot_n", sun, relief=300.0, normal="one triangle"), "light")
+    given = {"turned": "mirrored"}
+    mirrored = any_engine.read(
+        lit(ROUGH, "l_dot_n", (-sun[0], sun[1]), relief=300.0, normal="one triangle", given=given), "light"
+    )
+    assert np.abs(mirrored - straight[:, ::-1]).max() > 0.05
+
+
+def test_the_one_triangle_is_the_thesis_triangle(engine, lit):
+    sun = (135, 25)
+    sketch = lit(ROUGH, "l_dot_n", sun, relief=300.0, extent=640.0, normal="one triangle")
+    h = engine.read(sketch, "height").astype(np.float64) * 300
+    south_west, south_east, north_east = h[:-2, :-2], h[:-2, 2:], h[2:, 2:]
+    flat = np.zeros_like(south_west)
+    normal = np.cross(
+        np.stack([flat + 20, flat, south_east - south_west], axis=-1),
+        np.stack([flat, flat + 20, north_east - south_east], axis=-1),
+    )
+    truth = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
+    found = engine.read(sketch, "light")[1:-1, 1:-1, 0]
+    np.testing.assert_allclose(found, truth, rtol=2 * HALF, atol=1e-3)
+
+
+@BOTH
+@pytest.mark.parametrize("elevation", [-0.01, -5.0, -90.0])
+def test_a_sun_below_the_horizon_leaves_the_sky_only(engine, lit, method, elevation):
+    sketch = lit(ROUGH, method, (135, elevation), relief=3000.0, ambient=0.25, sky_colour=(0.5, 1.0, 2.0))
+    light = engine.read(sketch, "light")[..., :3]
+    np.testing.assert_array_equal(light, np.broadcast_to(np.float32([0.125, 0.25, 0.5]), light.shape))
+
+
+@BOTH
+def test_a_sun_on_the_horizon_lights_what_faces_it(engine, lit, method):
+    light = engine.read(lit(ROUGH, method, (90, 0), relief=300.0), "light")
+    assert np.isfinite(light).all() and light[..., 0].max() > 0.1
+    flat = engine.read(lit(PLANE, method, (90, 0)), "light")
+    np.testing.assert_array_equal(flat[..., :3], 0)
+
+
+@BOTH
+def test_colours_gain_and_ambient(engine, lit, method):
+    values = {"gain": 2.0, "sun_colour": (1.0, 0.5, 0.25), "sky_colour": (0.0, 0.5, 1.0), "ambient": 0.2}
+    light = engine.read(lit(PLANE, method, (0, 90), **values), "light")
+    np.testing.assert_allclose(light[3, 3], [2.0, 1.1, 0.7, 1.0], rtol=2 * HALF)
+
+
+@BOTH
+def test_gain_is_not_cut_at_1_and_is_2_by_default(engine, lit, method, make_sketch):
+    passes = (
+        f'[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
+    )
+    sketch = make_sketch(passes, land=PLANE)
+    light = engine.read(sketch.with_values({"light.sun": (0, 90)}), "light")
+    np.testing.assert_array_equal(light, [[[2, 2, 2, 1]] * 33] * 33)
+
+
+@BOTH
+@pytest.mark.parametrize("size", [[1, 1], [2, 2], [1, 20], [20, 1]], ids=str)
+def test_tiny_lands_are_numbers(engine, lit, method, size):
+    light = engine.read(lit(ROUGH, method, (135, 25), size=size), "light")
+    assert np.isfinite(light).all()
+
+
+@BOTH
+def test_a_land_without_relief_is_flat(engine, lit, method):
+    light = engine.read(lit(ROUGH, method, (135, 30), relief=0.0), "light")
+    np.testing.assert_allclose(light[..., 0], 0.5, rtol=HALF)
+
+
+@BOTH
+def test_a_finer_light_map_agrees_where_they_meet(engine, lit, method):
+    values = {"size": [65, 49], "extent": [640, 960], "relief": 300.0}
+    same = engine.read(lit(ROUGH, method, (135, 25), **values), "light")
+    fine = engine.read(
+        lit(ROUGH, method, (135, 25), light_size='["2*size.x-1", "2*size.y-1"]', **values), "light"
+    )
+    np.testing.assert_array_equal(fine[::2, ::2], same)
+    coarse = engine.read(lit(ROUGH, method, (135, 25), light_size="[33, 25]", **values), "light")
+    np.testing.assert_array_equal(coarse, same[::2, ::2])
+
+
+@BOTH
+def test_a_light_map_of_any_size_sees_the_same_slopes(engine, lit, method):
+    values = {"size": 65, "relief": 100.0, "given": {"rise": (0.01, 0.004)}}
+    for size in ("[65, 65]", "[130, 33]", "[17, 201]"):
+        light = engine.read(lit(PLANE, method, (200, 35), light_size=size, **values), "light")
+        # Texels of the border see the plane from one side only, which is the same plane.
+        np.testing.assert_allclose(light, np.broadcast_to(light[5, 5], light.shape), rtol=2 * HALF)
+
+
+# The ray cast
+
+
+@pytest.mark.parametrize("stride", [1.0, 0.5, 2.0, 0.75])
+@pytest.mark.parametrize("sun", [(135, 25), (90, 15), (0, 5), (317, 40), (45, 10), (222.5, 60)], ids=str)
+def test_shadows_are_those_of_a_slow_march(engine, lit, sun, stride):
+    sketch = lit(ROUGH, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, stride=stride)
+    heights = engine.read(sketch, "height").astype(np.float64) * 300
+    visible = engine.read(sketch, "light")[..., 3]
+    direction = sun_vector(*sun)
+    room = clearance(heights, direction, np.array([10.0, 20.0]), stride)
+    facing = shade(heights, direction, (10.0, 20.0))
+    sure = (np.abs(room) > 0.01) & (np.abs(facing) > 1e-4)
+    assert sure.mean() > 0.5
+    truth = (room > 0) & (facing > 0)
+    np.testing.assert_array_equal(visible[sure & (facing > 0)] > 0, truth[sure & (facing > 0)])
+    np.testing.assert_array_equal(visible[facing == 0], 0)
+
+
+@pytest.mark.parametrize(("scale", "base"), [(3.0, -1.0), (0.5, 10.0), (1.0, -20.0)])
+def test_heights_beyond_0_to_1_throw_their_shadows(engine, lit, scale, base):
+    sun = (120, 20)
+    sketch = lit(ROUGH, "ray_cast", sun, extent=640.0, relief=200.0, given={"scale": scale, "base": base})
+    heights = engine.read(sketch, "height").astype(np.float64) * 200
+    visible = engine.read(sketch, "light")[..., 3]
+    room = clearance(heights, sun_vector(*sun), np.array([10.0, 10.0]))
+    facing = shade(heights, sun_vector(*sun), (10.0, 10.0)) > 1e-4
+    sure = (np.abs(room) > 0.05) & facing
+    assert (room[sure] < 0).any()
+    np.testing.assert_array_equal(visible[sure] > 0, room[sure] > 0)
+
+
+@pytest.mark.parametrize("azimuth", [90.0, 270.0, 70.0, 300.0])
+@pytest.mark.parametrize("elevation", [15.0, 30.0, 50.0])
+def test_a_wall_throws_its_shadow_in_metres_to_the_west_and_east(engine, lit, azimuth, elevation):
+    """High 100 m on column 64; texels are 10 m by 20 m."""
+    sun = (azimuth, elevation)
+    sketch = lit(WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (64, -1)})
+    row = engine.read(sketch, "light")[32, :, 3]
+    length = 100 / np.tan(np.radians(elevation)) * abs(np.sin(np.radians(azimuth)))
+    away = (np.arange(129) - 64) * 10.0 * (-1 if azimuth < 180 else 1)  # metres behind the wall
+    behind = (away > 10) & (np.abs(away - length) > 0.5)
+    np.testing.assert_array_equal(row[behind] == 0, away[behind] < length)
+    np.testing.assert_array_equal(row[away < -10], 1)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 180.0, 30.0, 200.0])
+def test_a_wall_throws_its_shadow_in_metres_to_the_north_and_south(engine, lit, azimuth):
+    sun = (azimuth, 25.0)
+    sketch = lit(
+        WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, stride=0.25
+    )
+    column = engine.read(sketch, "light")[:, 64, 3]
+    length = 100 / np.tan(np.radians(25)) * abs(np.cos(np.radians(azimuth)))
+    away = (np.arange(65) - 32) * 20.0 * (-1 if np.cos(np.radians(azimuth)) > 0 else 1)
+    # A stride that is not whole may miss the crest itself, which is one texel sharp.
+    behind = (away > 20) & (np.abs(away - length) > 20)
+    np.testing.assert_array_equal(column[behind] == 0, away[behind] < length)
+    np.testing.assert_array_equal(column[away < -20], 1)
+
+
+def test_under_the_zenith_there_is_no_shadow(engine, lit):
+    light = engine.read(lit(ROUGH, "ray_cast", (77, 90), relief=3000.0), "light")
+    np.testing.assert_array_equal(light[..., 3], 1)
+    assert light[..., 0].min() > 0
+
+
+def test_its_light_is_that_of_l_dot_n_or_none(engine, lit):
+    values = {"size": 65, "relief": 300.0}
+    ray = engine.read(lit(ROUGH, "ray_cast", (135, 15), **values), "light")
+    plain = engine.read(lit(ROUGH, "l_dot_n", (135, 15), **values), "light")
+    shadow = ray[..., 3] == 0
+    assert 0.05 < shadow.mean() < 0.95
+    np.testing.assert_array_equal(ray[~shadow, :3], plain[~shadow, :3])
+    np.testing.assert_array_equal(ray[shadow, :3], 0)
+
+
+def test_a_lower_sun_never_takes_a_shadow_away(any_engine, lit):
+    """A ray that is lower everywhere is blocked wherever the higher one is."""
+    values = {"size": 129, "relief": 300.0, "extent": 1280.0}
+    shadows = [
+        any_engine.read(lit(ROUGH, "ray_cast", (135, e), **values), "light")[..., 3] == 0
+        for e in (40, 25, 15, 5)
+    ]
+    for high, low in pairwise(shadows):
+        assert not (high & ~low).any() and low.sum() > high.sum()
+
+
+def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit):
+    values = {"size": 65, "relief": 300.0, "extent": 640.0}
+    ways = [
+        any_engine.read(lit(ROUGH, "ray_cast", (30, 25), reading=r, **values), "light")
+        for r in ("interpolated", "cut down")
+    ]
+    assert 0 < (ways[0][..., 3] != ways[1][..., 3]).mean() < 0.2
+
+
+def test_moving_the_sun_leaves_the_land_and_its_range_alone(any_engine, lit):
+    sketch = lit(ROUGH, "ray_cast", (135, 25))
+    any_engine.read(sketch, "light")
+    assert len(any_engine.ran) == 4
+    any_engine.read(sketch.with_values({"light.sun": (140, 25)}), "light")
+    assert any_engine.ran == ["light.march"]

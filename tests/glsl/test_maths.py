@@ -1,0 +1,88 @@
+"""The library's plain mathematics, against Python's own."""
+
+import math
+
+import numpy as np
+import pytest
+
+RNG = np.random.default_rng(3)
+
+
+def test_cosine_and_sine_are_pythons(on_gpu):
+    angles = RNG.uniform(-1000, 1000, 5000).astype(np.float32)
+    found = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=angles)
+    truth = [(math.cos(a), math.sin(a)) for a in np.radians(angles.astype(np.float64))]
+    np.testing.assert_allclose(found, truth, atol=2e-6)
+
+
+def test_quarter_turns_are_exact(on_gpu):
+    turns = np.arange(-8, 9)
+    found = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=turns * 90.0)
+    truth = [((1, 0), (0, 1), (-1, 0), (0, -1))[t % 4] for t in turns]
+    np.testing.assert_array_equal(found, truth)
+
+
+def test_a_turned_angle_is_a_turned_vector_to_the_last_bit(on_gpu):
+    angles = np.arange(-44, 45) + 0.25
+    first = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=angles)
+    turned = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=angles + 90.0)
+    np.testing.assert_array_equal(turned, np.stack([-first[:, 1], first[:, 0]], axis=1))
+
+
+def test_quotient_is_pythons(on_gpu):
+    divisors = RNG.integers(1, 16385, 20000)
+    quotients = np.minimum(RNG.integers(0, 2**21, 20000), (2**31 - 20000) // divisors - 1)
+    for rest in (0, 1, -1):
+        a = np.maximum(quotients * divisors + rest, 0)
+        found = on_gpu("maths/whole.glsl", "quotient(a, b)", a=a, b=divisors)
+        np.testing.assert_array_equal(found, [int(x) // int(y) for x, y in zip(a, divisors, strict=True)])
+
+
+def test_small_quotients_are_pythons(on_gpu):
+    a, b = (grid.ravel() for grid in np.meshgrid(np.arange(200), np.arange(1, 100)))
+    np.testing.assert_array_equal(on_gpu("maths/whole.glsl", "quotient(a, b)", a=a, b=b), a // b)
+
+
+@pytest.mark.parametrize(
+    ("small", "large"), [((5, 9), (129, 65)), ((344, 403), (1025, 1025)), ((1, 1), (7, 3))]
+)
+def test_corners_stand_on_corners(on_gpu, small, large):
+    corners = np.array([[x, y] for x in (0, small[0] - 1) for y in (0, small[1] - 1)])
+    found = on_gpu("maths/land.glsl", "place_on(to, texel, grid)", to=large, texel=corners, grid=small)
+    truth = [[(large[i] - 1 if c[i] else 0) for i in (0, 1)] for c in corners]
+    np.testing.assert_array_equal(found, truth)
+
+
+def test_a_place_on_another_grid_is_the_same_share_of_the_land(on_gpu):
+    texels = np.stack([np.arange(344), np.arange(344) % 403], axis=1)
+    places = on_gpu(
+        "maths/land.glsl", "place_on(to, texel, grid)", to=(1025, 77), texel=texels, grid=(344, 403)
+    )
+    shares = on_gpu("maths/land.glsl", "share_of_texel(texel, grid)", texel=texels, grid=(344, 403))
+    np.testing.assert_allclose(places, texels / (343.0, 402.0) * (1024.0, 76.0), rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(shares, texels / (343.0, 402.0), rtol=1e-6, atol=1e-7)
+    assert places.max(axis=0).tolist() <= [1024.0, 76.0]
+
+
+def test_a_grid_on_itself_stays_where_it_is(on_gpu):
+    texels = np.stack([np.arange(344), np.arange(344)], axis=1)
+    places = on_gpu("maths/land.glsl", "place_on(grid, texel, grid)", texel=texels, grid=(344, 403))
+    np.testing.assert_array_equal(places, texels)
+
+
+def test_spacing_counts_the_gaps(on_gpu):
+    found = on_gpu("maths/land.glsl", "spacing_of(grid, metres)", grid=(11, 1), metres=(50.0, 7.0))
+    np.testing.assert_array_equal(found, [[5.0, 7.0]])
+
+
+def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
+    corners, part = RNG.uniform(-5, 5, (500, 4)), RNG.random((500, 2))
+    found = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=corners, part=part)
+    truth = [
+        np.interp(v, [0, 1], [np.interp(u, [0, 1], c[:2]), np.interp(u, [0, 1], c[2:])])
+        for c, (u, v) in zip(corners, part, strict=True)
+    ]
+    np.testing.assert_allclose(found, truth, atol=2e-6)
+    level = np.repeat(corners[:, :1], 4, axis=1)
+    found = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=level, part=part)
+    np.testing.assert_array_equal(found, level[:, 0].astype(np.float32))

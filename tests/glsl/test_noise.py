@@ -1,0 +1,98 @@
+"""Random numbers: the same whole numbers as in Python, and the statistics they must have."""
+
+import numpy as np
+import pytest
+
+RNG = np.random.default_rng(5)
+SIDE = 256
+Y, X = (a.ravel() for a in np.mgrid[0:SIDE, 0:SIDE])
+
+
+def pcg3d(key):
+    """Return pcg3d of one key, in the notation of Jarzynski and Olano's paper."""
+    m = 0xFFFFFFFF
+    x, y, z = ((int(k) * 1664525 + 1013904223) & m for k in key)
+    x = (x + y * z) & m
+    y = (y + z * x) & m
+    z = (z + x * y) & m
+    x, y, z = x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)
+    x = (x + y * z) & m
+    y = (y + z * x) & m
+    return x, y, (z + x * y) & m
+
+
+def test_the_hash_is_pcg3d(on_gpu):
+    keys = RNG.integers(0, 2**32, (400, 3), dtype=np.uint32)
+    keys[:3] = [[0, 0, 0], [1, 0, 0], [2**32 - 1] * 3]
+    found = on_gpu("noise/hash.glsl", "hash3(key)", key=keys)
+    np.testing.assert_array_equal(found, [pcg3d(key) for key in keys])
+
+
+def test_its_values_are_pinned(on_gpu):
+    found = on_gpu("noise/hash.glsl", "hash3(key)", key=np.array([[0, 0, 0], [1, 2, 3]], np.uint32))
+    np.testing.assert_array_equal(found, [pcg3d((0, 0, 0)), pcg3d((1, 2, 3))])
+    assert found[0].tolist() == [2611992518, 2833812075, 1058359340]
+
+
+def test_a_number_is_the_upper_24_bits(on_gpu, python_random):
+    points = RNG.integers(-(2**31), 2**31, (400, 2))
+    found = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(9))
+    np.testing.assert_array_equal(found, [python_random(x, y, 9) for x, y in points])
+    assert found.min() >= 0 and found.max() < 1
+
+
+def test_the_largest_and_smallest_numbers(on_gpu):
+    bits = np.array([0, 255, 256, 2**32 - 1], np.uint32)
+    found = on_gpu("noise/hash.glsl", "unit_from_bits(bits)", bits=bits)
+    np.testing.assert_array_equal(found, [0, 0, 2.0**-24, 1 - 2.0**-24])
+
+
+def test_signed_and_paired_numbers(on_gpu):
+    points = np.stack([X, Y], axis=1)[:2000]
+    single = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(1))
+    signed = on_gpu("noise/hash.glsl", "random_signed(point, seed)", point=points, seed=np.uint32(1))
+    pair = on_gpu("noise/hash.glsl", "random_pair(point, seed)", point=points, seed=np.uint32(1))
+    np.testing.assert_array_equal(signed, 2 * single.astype(np.float64) - 1)
+    np.testing.assert_array_equal(pair[:, 0], single)
+    assert abs(np.corrcoef(pair.T)[0, 1]) < 4 / np.sqrt(len(points))
+
+
+@pytest.fixture
+def field(on_gpu):
+    """Give random numbers on a square, float64, by seed."""
+
+    def make(seed):
+        points = np.stack([X, Y], axis=1)
+        found = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(seed))
+        return found.astype(np.float64).reshape(SIDE, SIDE)
+
+    return make
+
+
+@pytest.mark.parametrize("seed", [0, 7, 9999])
+def test_numbers_are_even(field, seed):
+    values = field(seed)
+    spread = 1 / SIDE  # one standard error of a mean of SIDE² numbers, times their deviation
+    assert abs(values.mean() - 1 / 2) < 4 * spread / np.sqrt(12)
+    assert abs(values.var() - 1 / 12) < 4 * spread / np.sqrt(180)
+    counts = np.histogram(values, 64, (0, 1))[0]
+    chi = ((counts - SIDE**2 / 64) ** 2 / (SIDE**2 / 64)).sum()
+    assert 63 - 4 * np.sqrt(126) < chi < 63 + 5 * np.sqrt(126)
+
+
+@pytest.mark.parametrize("seed", [0, 7, 9999])
+def test_neighbours_know_nothing_of_each_other(field, seed):
+    values = field(seed) - 0.5
+    power = np.abs(np.fft.fft2(values)) ** 2
+    correlation = np.fft.ifft2(power).real / power.mean()
+    correlation[0, 0] = 0
+    assert (
+        np.abs([correlation[0, 1], correlation[1, 0], correlation[1, 1], correlation[1, -1]]).max() < 4 / SIDE
+    )
+    assert np.abs(correlation).max() < 6 / SIDE
+
+
+def test_seeds_know_nothing_of_each_other(field):
+    lands = np.stack([field(s).ravel() for s in (0, 1, 2, 3, 1000)])
+    correlations = np.corrcoef(lands)[np.triu_indices(5, 1)]
+    assert np.abs(correlations).max() < 4 / SIDE

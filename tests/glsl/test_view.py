@@ -1,0 +1,323 @@
+"""view/: what stands where in the picture, and what its colours are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from playground.sketch.model import Camera
+
+HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
+WHITE = COLOUR.format("vec4(1.0)")
+PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\nuse = "./cover"\n'
+NAN = "uintBitsToFloat(0x7fc00000u)"
+MAGENTA = (255, 0, 255)
+
+
+@pytest.fixture
+def terrain(make_sketch):
+    def make(height="0.0", colour="vec4(1.0)", size=33, given="", **more):
+        view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {given or "grid = 33"} }}\n'
+        files = {"land": HEIGHT.format(height), "cover": COLOUR.format(colour)}
+        return make_sketch(PASSES + view, size=size, **files, **more)
+
+    return make
+
+
+def above(sketch, azimuth=180.0, elevation=60.0, **more):
+    return sketch.with_camera(Camera(azimuth=azimuth, elevation=elevation, **more))
+
+
+def pixels_of(engine, points):
+    """Where points of the land stand in the last picture: column and row from the top left."""
+    plan = engine.plan
+    clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
+    place = clip[:, :2] / clip[:, 3:]
+    width, height = plan.frame_size
+    return np.stack([(place[:, 0] + 1) / 2 * width, (1 - place[:, 1]) / 2 * height], axis=1)
+
+
+# ── the land ─────────────────────────────────────────────────────────────────
+
+CORNERS = {"south-west": (0, 0), "south-east": (1, 0), "north-west": (0, 1), "north-east": (1, 1)}
+# From each side: which corner is to the upper left, upper right, lower left, lower right.
+SEEN = {
+    180: ("north-west", "north-east", "south-west", "south-east"),
+    270: ("north-east", "south-east", "north-west", "south-west"),
+    0: ("south-east", "south-west", "north-east", "north-west"),
+    90: ("south-west", "north-west", "south-east", "north-east"),
+}
+
+
+@pytest.mark.parametrize("azimuth", SEEN)
+@pytest.mark.parametrize("corner", CORNERS)
+def test_a_marked_corner_stands_where_someone_on_that_side_sees_it(any_engine, terrain, azimuth, corner):
+    east, north = CORNERS[corner]
+    there = f"((texel.x > 24) == bool({east}) && (texel.y > 24) == bool({north})"
+    there += f" && (texel.x < 8) != bool({east}) && (texel.y < 8) != bool({north}))"
+    sketch = above(terrain(colour=f"{there} ? vec4(1.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 1.0)"), azimuth)
+    picture = any_engine.render(sketch, size=(120, 90)).array.astype(int)
+    rows, columns = np.nonzero((picture[..., 0] > 200) & (picture[..., 2] < 60))
+    assert len(rows) > 20
+    left, upper = columns.mean() < 60, rows.mean() < 45
+    assert SEEN[azimuth][(not left) + 2 * (not upper)] == corner
+
+
+def test_a_summit_rises_above_the_flat_land_in_the_picture(any_engine, terrain):
+    red = "texel == ivec2(16) ? vec4(1.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 1.0)"
+    rows = []
+    for height in ("0.0", "texel == ivec2(16) ? 1.0 : 0.0"):
+        sketch = above(terrain(height=height, colour=red, relief=300.0), elevation=30.0, target=(500, 500, 0))
+        picture = any_engine.render(sketch, size=(160, 120)).array.astype(int)
+        rows.append(np.nonzero(picture[..., 0] > picture[..., 2])[0].min())
+    assert rows[1] < rows[0] - 5
+
+
+def test_vertices_stand_where_the_camera_s_matrix_says(any_engine, terrain):
+    mark = "texel == ivec2(8, 24) ? vec4(1.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 1.0)"
+    sketch = above(terrain(height="0.5", colour=mark), azimuth=205, elevation=50)
+    picture = any_engine.render(sketch, size=(300, 200)).array.astype(float)
+    red = np.clip(picture[..., 0] - picture[..., 2], 0, None)
+    rows, columns = np.indices(red.shape)
+    middle = np.array([(columns + 0.5).ravel() @ red.ravel(), (rows + 0.5).ravel() @ red.ravel()]) / red.sum()
+    expected = pixels_of(any_engine, np.array([[250.0, 750.0, 50.0]]))[0]
+    np.testing.assert_allclose(middle, expected, atol=1.0)
+
+
+def test_colour_and_light_of_other_sizes_share_the_land_s_corners(on_gpu):
+    for texels in (2, 33, 1025):
+        ends = on_gpu("maths/drape.glsl", f"drape_uv(s, ivec2({texels}))", s=np.array([[0.0] * 2, [1.0] * 2]))
+        np.testing.assert_allclose(ends * texels - 0.5, [[0, 0], [texels - 1, texels - 1]], atol=1e-4)
+
+
+@pytest.mark.parametrize("azimuth", [45.0, 135.0, 225.0, 315.0])
+def test_the_sun_lights_the_slopes_that_face_it(any_engine, make_sketch, azimuth):
+    cone = HEIGHT.format("1.0 - length(vec2(texel) - 16.0) / 23.0")
+    sun = f'[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\nset = {{ sun = [{azimuth}, 30.0] }}\n'
+    view = '[view]\nuse = "view/terrain"\nsamples = 1\nset = { grid = 33 }\n'
+    sketch = make_sketch(PASSES + sun + view, relief=400.0, land=cone, cover=WHITE)
+    any_engine.render(above(sketch, elevation=88.0), size=(100, 100))
+    frame = any_engine.read(above(sketch, elevation=88.0), "view.land", size=(100, 100))[..., 0]
+    towards = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth)), 0.0])
+    for side, lit in ((1, True), (-1, False)):
+        place = np.array([500.0, 500.0, 200.0]) + side * 220 * towards
+        column, row = pixels_of(any_engine, place[None])[0].astype(int)
+        assert (frame[99 - row, column] > 1.0) == lit
+
+
+def test_no_colour_and_no_light_is_white_land(any_engine, make_sketch):
+    text = '[[pass]]\nname = "height"\nuse = "./land"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
+    picture = any_engine.render(above(make_sketch(text, land=HEIGHT.format("0.0"))), size=(64, 64)).array
+    assert (picture[32, 32] == 255).all()
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_a_hole_in_the_numbers_shows_and_harms_nothing_else(any_engine, terrain, samples):
+    hole = f"all(lessThan(abs(texel - 16), ivec2(2))) ? {NAN} : 0.0"
+    whole, broken = (replace(above(terrain(height=h)), samples=samples) for h in ("0.0", hole))
+    one, other = (any_engine.render(s, size=(160, 120)).array for s in (whole, broken))
+    changed = (one != other).any(axis=-1)
+    magenta = (other[..., :3] == MAGENTA).all(axis=-1)
+    assert magenta.sum() > 20
+    assert changed.mean() < 0.1
+    assert (other[..., 3] == 255).all()
+    assert not (one[..., :3] == MAGENTA).all(axis=-1).any()
+
+
+def test_heights_of_any_size_leave_the_picture_opaque(any_engine, terrain):
+    wild = "texel.x == 3 ? 1e30 : texel.x == 9 ? -1e30 : texel.x == 20 ? 1.0 / float(texel.y - 5) : 0.5"
+    picture = any_engine.render(above(terrain(height=wild)), size=(64, 48)).array
+    assert (picture[..., 3] == 255).all()
+
+
+def test_the_cut_is_earth_and_the_land_is_not(any_engine, terrain):
+    given = 'grid = 33, earth = "#804020", skirt = 0.2'
+    sketch = above(terrain(height="0.5", given=given), elevation=10.0, azimuth=180.0)
+    any_engine.render(sketch, size=(200, 150))
+    frame = any_engine.read(sketch, "view.land", size=(200, 150))
+    column, row = pixels_of(any_engine, np.array([[500.0, 0.0, 0.0]]))[0].astype(int)
+    red, green, blue, _ = frame[149 - row, column].astype(float)
+    assert red > 2 * green > 2 * blue
+    column, row = pixels_of(any_engine, np.array([[500.0, 300.0, 50.0]]))[0].astype(int)
+    np.testing.assert_array_equal(frame[149 - row, column], 1.0)
+
+
+# ── wires ────────────────────────────────────────────────────────────────────
+
+
+def test_wires_change_pixels_of_the_land_alone(any_engine, terrain):
+    hills = "0.5 + 0.4 * sin(float(texel.x) * 0.6) * sin(float(texel.y) * 0.5)"
+    green = "vec4(0.2, 0.3, 0.1, 1.0)"
+    sketch = above(terrain(height=hills, colour=green, given="grid = 17"), elevation=30.0)
+    wired = sketch.with_values({"view.wireframe": True})
+    plain, lines = (any_engine.render(s, size=(240, 160)).array.astype(int) for s in (sketch, wired))
+    sky, land = (any_engine.read(sketch, f"view.{p}", size=(240, 160))[::-1] for p in ("sky", "land"))
+    on_land = (np.abs(sky - land) > 1e-3).any(axis=-1)
+    changed = (plain != lines).any(axis=-1)
+    assert changed.sum() > 1000
+    assert not (changed & ~on_land).any()
+
+
+def test_wires_run_along_the_mesh_s_edges(any_engine, terrain):
+    given = 'grid = 5, wireframe = true, wire = "#ff0000", faces = 0.0'
+    sketch = above(terrain(given=given), elevation=89.0)
+    any_engine.render(sketch, size=(400, 400))
+    frame = any_engine.read(sketch, "view.land", size=(400, 400))[..., 0].astype(float)
+    cell = 1000.0 / 4
+    on = np.array([[1, 1.5], [1.5, 2], [2.5, 2.5], [3, 2.2]])  # two sides, a diagonal, a side
+    off = np.array([[1.7, 1.3], [0.25, 0.75], [2.3, 3.7]])
+    for places, expected in ((on, True), (off, False)):
+        for column, row in pixels_of(any_engine, np.c_[places * cell, np.zeros(len(places))]).astype(int):
+            near = frame[398 - row : 401 - row, column - 1 : column + 2]
+            assert (near.max() > 0.5) == expected
+
+
+def test_wires_closer_than_pixels_become_their_mean_grey(any_engine, terrain):
+    given = 'grid = 1025, wireframe = true, wire = "#ffffff", faces = 0.0'
+    sketch = above(terrain(given=given), elevation=89.0)
+    any_engine.render(sketch, size=(100, 100))
+    frame = any_engine.read(sketch, "view.land", size=(100, 100))[..., 0].astype(float)
+    middle = frame[40:60, 40:60]
+    assert middle.std() < 0.02
+
+
+# ── sky ──────────────────────────────────────────────────────────────────────
+
+
+def test_where_there_is_no_land_there_is_sky(any_engine, terrain):
+    sketch = above(terrain(), elevation=40.0)
+    sky, land = (any_engine.read(sketch, f"view.{p}", size=(96, 64)) for p in ("sky", "land"))
+    corners = np.ix_([0, -1], [0, -1])
+    np.testing.assert_array_equal(sky[corners], land[corners])
+    assert (sky != land).any()
+
+
+def test_the_horizon_s_colour_is_level_with_the_eye(engine, terrain):
+    given = 'zenith = "#0000ff", horizon = "#00ff00", nadir = "#ff0000"'
+    sketch = above(terrain(given=given), elevation=0.0)
+    sky = engine.read(sketch, "view.sky", size=(9, 101)).astype(float)
+    assert sky[50, 4, 1] > 0.97
+    assert (np.diff(sky[50:, 4, 2]) > 0).all()  # bluer and bluer upwards
+    assert (np.diff(sky[:51, 4, 0]) < 0).all()  # redder and redder downwards
+    assert sky[50:, :, 0].max() < 0.02
+
+
+# ── sea ──────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(("level", "base"), [(25.0, 0.0), (70.0, 0.0), (170.0, 100.0)])
+def test_the_sea_drowns_the_land_below_its_level_and_no_other(any_engine, terrain, level, base):
+    ramp = "float(texel.x) / float(size.x - 1)"
+    given = f'grid = 33, sea = true, sea_level = {level}, water = "#0000ff", horizon = "#0000ff"'
+    sketch = above(terrain(height=ramp, given=given), elevation=89.0).with_values({"base_elevation": base})
+    any_engine.render(sketch, size=(200, 200))
+    before, after = (any_engine.read(sketch, f"view.{p}", size=(200, 200))[::-1] for p in ("land", "sea"))
+    drowned = (np.abs(after - before) > 0.05).any(axis=-1)
+    shares = np.array([(i, j) for i in np.arange(1, 32) / 32 for j in np.arange(1, 32) / 32])
+    heights = shares[:, 0] * 100.0
+    places = pixels_of(any_engine, np.c_[shares * 1000.0, np.maximum(heights, level - base)]).astype(int)
+    clear = np.abs(heights - (level - base)) > 1.0
+    found = drowned[places[clear, 1], places[clear, 0]]
+    np.testing.assert_array_equal(found, heights[clear] < level - base)
+
+
+def test_a_hill_hides_the_sea_behind_it(any_engine, terrain):
+    wall = "texel.y == 8 ? 1.0 : 0.0"
+    given = "grid = 33, sea = true, sea_level = 10"
+    sketch = above(terrain(height=wall, given=given, relief=400.0), elevation=5.0)
+    any_engine.render(sketch, size=(200, 150))
+    before, after = (any_engine.read(sketch, f"view.{p}", size=(200, 150))[::-1] for p in ("land", "sea"))
+    column, row = pixels_of(any_engine, np.array([[500.0, 250.0, 200.0]]))[0].astype(int)
+    np.testing.assert_array_equal(after[row, column], before[row, column])
+    column, row = pixels_of(any_engine, np.array([[500.0, 100.0, 10.0]]))[0].astype(int)
+    assert (after[row, column] != before[row, column]).any()
+
+
+def test_no_sea_costs_nothing(any_engine, terrain):
+    any_engine.render(above(terrain()), size=(40, 30))
+    assert "view.sea" not in any_engine.ran
+    any_engine.render(above(terrain()).with_values({"view.sea": True}), size=(40, 30))
+    assert any_engine.ran == ["view.sea", "view.present"]
+
+
+# ── the last pass ────────────────────────────────────────────────────────────
+
+
+def encoded(linear):
+    """IEC 61966-2-1, piece by piece."""
+    kept = np.clip(linear, 0, 1)
+    return np.where(kept <= 0.0031308, 12.92 * kept, 1.055 * kept ** (1 / 2.4) - 0.055)
+
+
+@pytest.fixture
+def presented(make_sketch):
+    ramp = COLOUR.replace("16f", "32f").format("vec4(float(texel.x) / 63.0 * vec3(1.0, 0.1, 2.0), 0.25)")
+
+    def make(given):
+        view = f'[view]\nuse = "view/present"\ninputs = {{ picture = "ramp" }}\nset = {{ {given} }}\n'
+        return make_sketch(f'[[pass]]\nname = "ramp"\nuse = "./ramp"\n{view}', size=[64, 4], ramp=ramp)
+
+    return make
+
+
+@pytest.mark.parametrize("stops", [-1.0, 0.0, 1.0])
+def test_the_picture_is_encoded_by_the_srgb_curve(engine, presented, stops):
+    picture = engine.render(presented(f"exposure = {stops}"), size=(64, 4)).array
+    light = np.arange(64)[:, None] / 63 * np.array([1.0, 0.1, 2.0]) * 2.0**stops
+    assert np.abs(picture[2, :, :3] - encoded(light) * 255).max() <= 0.51
+    assert (picture[..., 3] == 255).all()
+
+
+@pytest.mark.parametrize("tone", ["Reinhard", "film"])
+def test_a_tone_curve_keeps_order_and_brings_bright_light_in(engine, presented, tone):
+    bright = presented("exposure = 1.0")
+    both = (bright, bright.with_values({"view.tone": tone}))
+    cut, bent = (engine.render(sketch, size=(64, 4)).array[0] for sketch in both)
+    assert (np.diff(bent[:, 2].astype(int)) >= 0).all()
+    assert (bent[:, 2] == 255).sum() < (cut[:, 2] == 255).sum()
+
+
+# ── the map ──────────────────────────────────────────────────────────────────
+
+
+@pytest.fixture
+def shown(make_sketch):
+    def make(height, size, given='channel = "red"'):
+        view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {given} }}\n'
+        passes = '[[pass]]\nname = "height"\nuse = "./land"\n'
+        return make_sketch(passes + view, size=size, land=HEIGHT.format(height))
+
+    return make
+
+
+def test_the_map_shows_each_value_in_its_place_north_on_top(engine, shown):
+    sketch = shown("(float(texel.x) + 40.0 * float(texel.y)) / 1280.0", [40, 32])
+    picture = engine.render(sketch, size=(40, 32)).array
+    values = (np.arange(40) + 40 * np.arange(32)[::-1, None]) / 1280
+    assert np.abs(picture[..., 0] - values * 255).max() <= 0.51
+    assert (picture[..., 3] == 255).all()
+
+
+def test_an_enlarged_map_has_squares(engine, shown):
+    sketch = shown("float((texel.x + texel.y) & 1)", [4, 4])
+    picture = engine.render(sketch, size=(32, 32)).array[..., 0]
+    assert set(np.unique(picture)) == {0, 255}
+    np.testing.assert_array_equal(picture[::8, ::8], picture[7::8, 7::8])
+
+
+def test_a_shrunk_map_shows_means_or_single_texels_as_asked(engine, shown):
+    board = "float((texel.x + texel.y) & 1)"
+    mean = engine.render(shown(board, [64, 64]), size=(16, 16)).array[..., 0]
+    assert np.abs(mean.astype(int) - 128).max() <= 1
+    given = 'channel = "red", shrunk = "nearest"'
+    nearest = engine.render(shown(board, [64, 64], given), size=(16, 16)).array[..., 0]
+    assert set(np.unique(nearest)) <= {0, 255}
+
+
+def test_what_is_not_a_number_has_a_colour_of_its_own_on_the_map(engine, shown):
+    picture = engine.render(shown(f"texel.x == 3 ? {NAN} : 0.5", [8, 8]), size=(8, 8)).array
+    magenta = (picture[..., :3] == MAGENTA).all(axis=-1)
+    np.testing.assert_array_equal(magenta, np.arange(8)[None] * np.ones((8, 1)) == 3)

@@ -1,0 +1,328 @@
+"""A session without a window: what is saved is shown, what is broken is said, and the last good picture stays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.engine.trial import TrialReport, TrySketch
+from playground.errors import SketchError, TrialTimeout
+from playground.live.files import files_of
+from playground.live.session import Session, Stage
+from playground.sketch.assign import values_of
+
+SIZE = (64, 48)
+KERNEL = """// land.glsl -- a slope
+#include "inc/tilt.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.25; //! slider(0, 1)
+float kernel(ivec2 texel) {
+    return level * tilt(texel, size);
+}
+"""
+TILT = "// tilt.glsl -- a slope\nfloat tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }\n"
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+set = { channel = "red" }
+[[preset]]
+name = "high"
+set = { "height.level" = 1.0 }
+"""
+
+
+class Bench:
+    """A sketch's folder and a session on it."""
+
+    def __init__(self, folder: Path, engine: Engine, trial: FakeTrial | None = None) -> None:
+        self.folder = folder
+        (folder / "inc").mkdir()
+        self.write("land.glsl", KERNEL)
+        self.write("inc/tilt.glsl", TILT)
+        self.write("sketch.toml", SKETCH)
+        self.session = Session(engine, folder, trial=trial)
+
+    def write(self, name: str, text: str) -> None:
+        (self.folder / name).write_text(text, encoding="utf-8")
+
+    def change(self, name: str, old: str, new: str) -> None:
+        text = (self.folder / name).read_text(encoding="utf-8")
+        assert old in text
+        self.write(name, text.replace(old, new))
+        self.session.reload()
+
+    def picture(self) -> np.ndarray:
+        self.session.frame(SIZE)
+        frame = self.session.read()
+        assert frame is not None
+        return frame.array
+
+
+class FakeTrial:
+    """A trial that answers when it is told to."""
+
+    def __init__(self) -> None:
+        self.requests: list[TrySketch] = []
+        self.answer: TrialReport | None = None
+
+    def submit(self, request: TrySketch) -> None:
+        self.requests.append(request)
+
+    def poll(self) -> TrialReport | None:
+        answer, self.answer = self.answer, None
+        return answer
+
+
+@pytest.fixture
+def bench(tmp_path: Path, any_engine: Engine) -> Iterator[Bench]:
+    made = Bench(tmp_path, any_engine)
+    yield made
+    made.session.release()
+
+
+@pytest.fixture
+def tried(tmp_path: Path, any_engine: Engine) -> Iterator[tuple[Bench, FakeTrial]]:
+    trial = FakeTrial()
+    made = Bench(tmp_path, any_engine, trial)
+    yield made, trial
+    made.session.release()
+
+
+def test_the_picture_is_the_engines(bench: Bench) -> None:
+    picture = bench.picture()
+    assert bench.session.sketch is not None
+    expected = bench.session.engine.render(bench.session.sketch, size=SIZE)
+    np.testing.assert_array_equal(picture[..., :3], expected.array[..., :3])
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("land.glsl", "level * tilt", "1.0 - level * tilt"),
+        ("inc/tilt.glsl", "texel.x", "texel.y"),
+        ("sketch.toml", 'channel = "red"', 'channel = "red", highest = 0.5'),
+    ],
+)
+def test_a_save_shows(bench: Bench, name: str, old: str, new: str) -> None:
+    before = bench.picture()
+    bench.change(name, old, new)
+    assert not np.array_equal(bench.picture(), before)
+    assert bench.session.error is None and bench.session.last_reload is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "place"),
+    [
+        ("land.glsl", "level * tilt", "levle * tilt", "land.glsl:6:"),
+        ("inc/tilt.glsl", "float(texel.x)", "float(texle.x)", "tilt.glsl:2:"),
+        ("land.glsl", "//! slider", "//! slidder", "land.glsl:4"),
+        ("sketch.toml", "[view]", "[view", "sketch.toml:6:"),
+        ("sketch.toml", "./land", "./lnad", "sketch.toml:5"),
+        ("land.glsl", "inc/tilt", "inc/tlit", "land.glsl:2"),
+    ],
+)
+def test_what_is_broken_is_said_and_the_last_good_picture_stays_until_it_is_mended(
+    bench: Bench, name: str, old: str, new: str, place: str
+) -> None:
+    before = bench.picture()
+    bench.change(name, old, new)
+    np.testing.assert_array_equal(bench.picture(), before)
+    assert place in str(bench.session.error)
+    assert bench.folder / name in bench.session.files
+    bench.change(name, new, old)
+    assert bench.session.error is None
+    np.testing.assert_array_equal(bench.picture(), before)
+
+
+def test_the_last_good_sketch_can_still_be_changed_by_hand(bench: Bench) -> None:
+    before = bench.picture()
+    bench.change("land.glsl", "level * tilt", "levle * tilt")
+    bench.picture()
+    bench.session.set("height.level", 0.75)
+    assert not np.array_equal(bench.picture(), before)
+    assert bench.session.error is not None
+    bench.change("land.glsl", "levle * tilt", "level * tilt")
+    bench.picture()
+    assert values_of(bench.session.sketch)["height.level"] == 0.75
+
+
+def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_mended(tmp_path: Path, any_engine: Engine) -> None:
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    session = Session(any_engine, tmp_path)
+    assert session.frame(SIZE) is None and session.sketch is None
+    assert "./land" in str(session.error)
+    (tmp_path / "inc").mkdir()
+    (tmp_path / "inc" / "tilt.glsl").write_text(TILT, encoding="utf-8")
+    (tmp_path / "land.glsl").write_text(KERNEL, encoding="utf-8")
+    session.reload()
+    assert session.frame(SIZE) is not None and session.error is None
+    session.release()
+
+
+def test_a_sketch_that_is_not_there_is_refused(tmp_path: Path, any_engine: Engine) -> None:
+    with pytest.raises(SketchError, match="there is no file"):
+        Session(any_engine, tmp_path / "none.toml")
+
+
+def test_nothing_is_drawn_while_nothing_changes(bench: Bench) -> None:
+    bench.picture()
+    draws = bench.session.draws
+    assert not bench.session.stale(SIZE)
+    bench.session.clock.advance(1.0)
+    bench.picture()
+    assert bench.session.draws == draws, "nothing in it names time"
+    bench.session.set("height.level", 0.5)
+    assert bench.session.stale(SIZE)
+    bench.picture()
+    assert bench.session.draws == draws + 1
+
+
+def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
+    before = bench.picture()
+    bench.change("land.glsl", "level * tilt", "fract(time) * tilt")
+    still = bench.picture()
+    bench.session.clock.advance(0.5)
+    moved = bench.picture()
+    assert bench.session.animated and not np.array_equal(still, moved)
+    bench.session.clock.toggle()
+    bench.session.clock.advance(0.5)
+    np.testing.assert_array_equal(bench.picture(), moved)
+    bench.change("land.glsl", "fract(time)", "fract(time) * 1.0")
+    np.testing.assert_array_equal(bench.picture(), moved)
+    assert not np.array_equal(before, moved) and bench.session.clock.time == 0.5
+
+
+def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
+    bench.session.set("height.level", 0.75)
+    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
+    bench.picture()
+    assert values_of(bench.session.sketch)["height.level"] == 0.75
+    bench.change("land.glsl", "uniform float level = 0.25; //! slider(0, 1)", "uniform bool level = true; //! checkbox")
+    bench.change("land.glsl", "1.0 - level", "1.0 - float(level)")
+    bench.picture()
+    assert values_of(bench.session.sketch)["height.level"] is True
+    assert any("height.level" in note for note in bench.session.notes)
+
+
+def test_a_value_that_does_not_fit_becomes_a_note(bench: Bench) -> None:
+    bench.picture()
+    bench.session.set("height.level", 7.0)
+    bench.session.set("height.levle", 0.5)
+    assert values_of(bench.session.sketch)["height.level"] == 0.25
+    assert "outside its range" in bench.session.notes[0] and "did you mean" in bench.session.notes[1]
+
+
+def test_presets_and_resets(bench: Bench) -> None:
+    before = bench.picture()
+    bench.session.apply_preset("high")
+    assert not np.array_equal(bench.picture(), before)
+    bench.session.reset_values()
+    np.testing.assert_array_equal(bench.picture(), before)
+    bench.session.set("height.level", 0.5)
+    bench.session.unset("height.level")
+    np.testing.assert_array_equal(bench.picture(), before)
+
+
+def test_another_technique_and_back(bench: Bench) -> None:
+    before = bench.picture()
+    bench.session.choose("height", "generation/diamond_square")
+    assert not np.array_equal(bench.picture(), before)
+    assert bench.session.sketch.graph.find("height").use == "generation/diamond_square"
+    bench.session.reset_values()
+    np.testing.assert_array_equal(bench.picture(), before)
+
+
+def test_a_technique_that_does_not_draw_leaves_the_one_there_was(bench: Bench) -> None:
+    bench.change("sketch.toml", "size = 33", "size = 32")
+    before = bench.picture()
+    bench.session.choose("height", "generation/diamond_square")
+    np.testing.assert_array_equal(bench.picture(), before)
+    assert "33 x 33" in str(bench.session.error)
+    bench.session.dismiss()
+    assert bench.session.error is None and bench.session.stage is Stage.NONE
+
+
+def test_any_texture_is_shown_as_a_map_fitted_to_its_values(bench: Bench) -> None:
+    own = bench.picture()
+    assert bench.session.refs == ["height:height"]
+    bench.session.show("height:height")
+    picture = bench.picture()
+    assert picture[..., 0].max() > 250, "the highest value there is is white"
+    assert not np.array_equal(picture, own)
+    bench.session.show(None)
+    np.testing.assert_array_equal(bench.picture(), own)
+
+
+def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
+    bench.picture()
+    bench.session.show("height:height")
+    bench.picture()
+    bench.change("sketch.toml", 'name = "height"', 'name = "land"')
+    bench.change("sketch.toml", '"height.level"', '"land.level"')
+    bench.picture()
+    bench.picture()
+    assert bench.session.map is None and bench.session.error is None
+
+
+def test_the_trial_comes_first(tried: tuple[Bench, FakeTrial]) -> None:
+    bench, trial = tried
+    assert bench.session.frame(SIZE) is None and bench.session.testing
+    trial.answer = TrialReport(True, seconds=0.01)
+    before = bench.picture()
+    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
+    np.testing.assert_array_equal(bench.picture(), before)
+    assert bench.session.testing and len(trial.requests) == 2
+    trial.answer = TrialReport(True)
+    assert not np.array_equal(bench.picture(), before)
+    assert not bench.session.testing
+
+
+def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -> None:
+    bench, trial = tried
+    trial.answer = TrialReport(True)
+    before = bench.picture()
+    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
+    trial.answer = TrialReport(False, TrialTimeout("the trial took longer than 10 s"))
+    np.testing.assert_array_equal(bench.picture(), before)
+    assert "longer than 10 s" in str(bench.session.error)
+    bench.session.set("height.level", 0.5)
+    assert not np.array_equal(bench.picture(), before), "the last good sketch goes on"
+    bench.change("land.glsl", "1.0 - level * tilt", "level * tilt")
+    assert bench.session.error is None, "it is the sketch that is shown already"
+    assert len(trial.requests) == 2
+
+
+def test_a_fault_of_the_playground_itself_does_not_end_the_session(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    before = bench.picture()
+
+    def fails(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("oh")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(bench.session.engine, "draw", fails)
+        bench.session.set("height.level", 0.5)
+        np.testing.assert_array_equal(bench.picture(), before)
+        assert "a fault of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
+    assert "the playground itself failed" in caplog.text
+    bench.session.set("height.level", 0.6)
+    bench.picture()
+    assert bench.session.error is None
+
+
+def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
+    bench.change("land.glsl", "uniform float level", 'uniform sampler2D grass; //! file("grass.png")\nuniform float level')
+    bench.session.frame(SIZE)
+    names = {path.name for path in bench.session.files}
+    assert {"sketch.toml", "land.glsl", "tilt.glsl", "map.glsl"} <= names
+    assert "grass.png" in names or bench.session.error is not None
+    assert bench.session.sketch is not None
+    assert {p.name for p in files_of(bench.session.sketch)} <= names

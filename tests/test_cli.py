@@ -1,0 +1,637 @@
+"""The command line as a user meets it: what it prints where, its exit status, its sentences.
+
+What draws runs in a process of its own, as it does for the user; what only reads text is
+called here, which is faster.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import playground
+import pytest
+import tifffile
+from playground import cli
+from playground.engine.check import find_files
+from playground.errors import DataError
+from playground.gpu.doctor import where_to_show
+from playground.images.files import read_png, read_samples
+from playground.paths import DEFAULT_SKETCH, GLSL
+from playground.sketch.load import shipped_sketches
+
+ROOT = Path(__file__).resolve().parent.parent
+COMMANDS = ["live", "render", "check", "list", "doctor", "new"]
+
+PLAIN_FRAGMENT = """#version 330
+uniform vec3 iResolution;
+uniform float iTime;
+out vec4 fragColor;
+void main() {
+    fragColor = vec4(gl_FragCoord.xy / iResolution.xy, iTime / 4.0, 1.0);
+}
+"""
+PLAIN_COMPUTE = """#version 430
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba8, binding = 0) uniform writeonly image2D picture;
+uniform vec2 u_resolution;
+uniform float u_time;
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    imageStore(picture, texel, vec4((vec2(texel) + 0.5) / u_resolution, u_time / 4.0, 1.0));
+}
+"""
+SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as it is told.
+#pragma kernel(output = "height:r32f")
+uniform float rise = 1.0;  //! slider(0, 4) unit("m") How high the eastern edge is
+float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
+"""
+SLOPE_SKETCH = """format = 1
+title = "A slope"
+size = 33
+[[pass]]
+name = "height"
+use = "./slope"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+set = { channel = "red" }
+[[preset]]
+name = "half"
+set = { "height.rise" = 0.5 }
+[[shot]]
+name = "dark"
+size = [40, 20]
+set = { "height.rise" = 0.25 }
+"""
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    """Run the command in a process of its own, in an empty folder, as a script would."""
+
+    def start(*arguments: str, cwd: Path = tmp_path, **environ: str) -> subprocess.CompletedProcess[str]:
+        clean = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        command = [sys.executable, "-m", "playground", *arguments]
+        variables = clean | {"PYTHONPATH": str(ROOT)} | environ
+        return subprocess.run(
+            command, cwd=cwd, env=variables, capture_output=True, text=True, timeout=60, check=False
+        )
+
+    return start
+
+
+@pytest.fixture
+def slope(tmp_path: Path) -> Path:
+    folder = tmp_path / "slope"
+    folder.mkdir()
+    (folder / "slope.glsl").write_text(SLOPE)
+    (folder / "sketch.toml").write_text(SLOPE_SKETCH)
+    return folder
+
+
+def well(done: subprocess.CompletedProcess[str]) -> subprocess.CompletedProcess[str]:
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+# ── what it must not cost ────────────────────────────────────────────────────
+
+
+def test_importing_is_fast_and_opens_nothing():
+    heavy = ("moderngl", "glcontext", "glfw", "imgui_bundle", "numpy", "typer", "rich", "PIL")
+    code = (
+        "import sys, time; start = time.perf_counter(); import playground; spent = time.perf_counter() - start;"
+        f"print(spent, [name for name in {heavy!r} if name in sys.modules])"
+    )
+    times = []
+    for _ in range(3):
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=30
+        )
+        spent, _, loaded = done.stdout.partition(" ")
+        assert loaded.strip() == "[]"
+        times.append(float(spent))
+    assert min(times) < 0.15
+
+
+@pytest.mark.parametrize("arguments", [["--version"], ["--help"], ["render", "--help"], ["list", "--json"]])
+def test_what_only_tells_loads_no_opengl(arguments: list[str]):
+    code = (
+        "import sys; from playground.cli import main; status = main(sys.argv[1:]);"
+        "print([n for n in ('moderngl', 'glfw', 'numpy', 'PIL') if n in sys.modules], file=sys.stderr); sys.exit(status)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=30
+    )
+    assert (done.returncode, done.stderr.strip()) == (0, "[]")
+
+
+# ── help ─────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_every_help_has_examples_and_fits_eighty_columns(
+    command: str | None, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert cli.main([command, "--help"] if command else ["--help"]) == 0
+    out = capsys.readouterr().out
+    assert max(map(len, out.splitlines())) <= 80
+    assert re.search(rf"Examples:\n\s+playground{f' {command}' if command else ''}\b", out)
+
+
+def test_every_example_in_a_help_is_a_command_with_options_that_exist(capsys: pytest.CaptureFixture[str]):
+    helps = {}
+    for command in COMMANDS:
+        cli.main([command, "--help"])
+        helps[command] = capsys.readouterr().out
+    for text in helps.values():
+        for line in re.findall(r"^\s+playground (\w+.*)$", text.partition("Examples:")[2], re.MULTILINE):
+            command, *words = line.split("|")[0].split()
+            for word in words:
+                if word.startswith("--"):
+                    assert f" {word} " in helps[command], line
+
+
+def test_the_version_is_the_packages():
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "--version"],
+        cwd=ROOT, capture_output=True, text=True, check=True, timeout=30,
+    )  # fmt: skip
+    assert done.stdout == f"playground {playground.__version__}\n"
+
+
+def test_completion_offers_the_shipped_sketches(run: Run):
+    done = run(
+        "render", "",
+        _PLAYGROUND_COMPLETE="complete_bash", COMP_WORDS="playground render ", COMP_CWORD="2",
+    )  # fmt: skip
+    assert set(shipped_sketches()) <= set(done.stdout.split())
+    done = run(
+        _PLAYGROUND_COMPLETE="complete_bash", COMP_WORDS="playground render --set light.su", COMP_CWORD="3"
+    )
+    assert "light.sun=" in done.stdout.split()
+
+
+# ── mistakes ─────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["render", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
+        (["render", "no/such.toml"], "there is no file and no shipped sketch 'no/such.toml'"),
+        (["render", "empty"], "this folder holds no sketch.toml"),
+        (["render", "--size", "12"], "--size 12: expected width and height, 1 to 16384 pixels, as 1280x720"),
+        (["render", "--size", "0x20"], "--size 0x20: expected"),
+        (["render", "--size", "-3x20"], "--size -3x20: expected"),
+        (["render", "--size", "99999x2"], "--size 99999x2: expected"),
+        (["live", "--size", "wide"], "--size wide: expected"),
+        (["render", "--time", "noon"], "--time noon: expected a number of seconds, as 2.5"),
+        (["render", "--time", "nan"], "--time nan: expected a number of seconds"),
+        (["render", "--set", "seed"], "--set seed: expected PATH=VALUE"),
+        (["render", "--set", "=3"], "--set =3: expected PATH=VALUE"),
+        (["render", "--set", "light.sum=1,2"], "no parameter 'light.sum' in sketch jacksboro; did you mean"),
+        (["render", "--set", "light.sun=noon"], "light.sun = 'noon': expected azimuth and elevation in degrees"),
+        (["render", "--set", "size=0"], "size = '0': expected 1 to 16384 texels a side"),
+        (["render", "--driver", "metal"], "--driver metal: expected auto, fragment or compute"),
+        (["render", "--device", "first"], "--device first: expected the number of an EGL device"),
+        (["--device", "-1", "render"], "--device -1: expected the number of an EGL device"),
+        (["render", "--shot", "nigth"], "no shot 'nigth' in sketch jacksboro"),
+        (["render", "--preset", "nigth"], "no preset 'nigth'"),
+        (["render", "-o", "land.jpg"], "land.jpg: a picture is written to a name ending in .png"),
+        (["render", "-o", "no/land.png"], "no/land.png: there is no folder 'no' to write into"),
+        (["render", "-o", "empty"], "empty: is a folder; expected the name of a file to write"),
+        (["render", "--texture", "height", "-o", "h.jpg"], "h.jpg: values are written to a name ending in .npy"),
+        (["render", "--texture", "height", "-o", "-"], "--texture needs a file"),
+        (["render", "--sise", "3x3"], "no such option: --sise"),
+        (["render", "one", "two"], "unexpected extra argument"),
+        (["rendre"], "no command 'rendre'; did you mean 'render'?"),
+        (["jacksboro"], "'jacksboro' is no command; did you mean: playground live jacksboro"),
+        (["check"], "missing argument 'PATH...'; see playground check --help"),
+        (["check", "nothere"], "nothere: there is no such file or folder"),
+        (["check", "empty"], "nothing to check in empty"),
+        (["check", "note.txt"], "note.txt: cannot be checked; expected a folder or .glsl"),
+        (["list", "lighting/l_dot"], "no sketch and no technique 'lighting/l_dot'; did you mean 'lighting/l_dot_n'?"),
+        (["new"], "missing argument 'NAME'"),
+        (["new", "1st"], "'1st' cannot name a sketch"),
+        (["new", "a b"], "'a b' cannot name a sketch"),
+        (["new", ""], "cannot name a sketch"),
+        (["new", "empty"], "empty: there is something of that name already"),
+        (["new", "no/land"], "no/land: there is no folder 'no' to make it in"),
+    ],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_mistake_is_one_sentence_and_status_2(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "note.txt").write_text("a note")
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(arguments) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.startswith("error: ") and said in error
+    assert len(error.splitlines()) == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["empty", "note.txt"]
+
+
+def test_a_mistake_in_a_shader_names_its_line(run: Run, slope: Path):
+    (slope / "slope.glsl").write_text(SLOPE.replace("return rise *", "return ryse *"))
+    done = run("render", "slope")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("error: slope/slope.glsl:4:")
+    assert "Traceback" not in done.stderr
+
+
+def test_a_file_that_is_not_there_is_one_sentence(run: Run):
+    done = run("render", "--set", "height.elevation=nowhere.npz")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(r"error: nowhere\.npz: .*there is no such file.*\n", done.stderr)
+
+
+def test_live_without_a_display_says_what_to_do(run: Run):
+    done = run("live")
+    assert done.returncode == 2
+    assert re.fullmatch(r"error: There is no screen to open a window on\. .*\n", done.stderr)
+
+
+def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "playground", "check", str(GLSL)],
+        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert process.stdout is not None
+    process.stdout.readline()  # the first file is checked: it is in the middle of its work
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=20)
+    assert (process.returncode, error) == (130, b"")
+
+
+def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "list"],
+        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=write_end, stderr=subprocess.PIPE,
+        timeout=30,
+    )  # fmt: skip
+    os.close(write_end)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+# ── colour ───────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no pty")
+@pytest.mark.parametrize("no_colour", [False, True])
+def test_colour_is_for_terminals_that_want_it(no_colour: bool):
+    import pty
+
+    parent, child = pty.openpty()
+    environ = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | {
+        "TERM": "xterm",
+        "PYTHONPATH": str(ROOT),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "rendre"],
+        env=environ | ({"NO_COLOR": "1"} if no_colour else {}), stdout=child, stderr=child, timeout=30,
+    )  # fmt: skip
+    os.close(child)
+    said = os.read(parent, 4096).decode()
+    os.close(parent)
+    assert done.returncode == 2
+    assert ("\033[" in said) is not no_colour
+    assert re.sub(r"\033\[[\d;]*m", "", said).startswith("error: no command 'rendre'")
+
+
+def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["list", "sketches"]) == 0
+    out = capsys.readouterr().out
+    assert "\033" not in out
+    assert [line.split("\t")[0] for line in out.splitlines()] == shipped_sketches()
+
+
+# ── render ───────────────────────────────────────────────────────────────────
+
+
+def test_no_arguments_and_no_display_renders_the_default_sketch_beside_what_is_there(
+    run: Run, tmp_path: Path
+):
+    taken = tmp_path / f"{DEFAULT_SKETCH}.png"
+    taken.write_text("mine")
+    done = well(run())
+    assert done.stdout == f"{DEFAULT_SKETCH}-2.png\n"
+    assert "no display" in done.stderr
+    assert taken.read_text() == "mine"
+    assert read_png(tmp_path / f"{DEFAULT_SKETCH}-2.png")[0].shape == (720, 1280, 4)
+
+
+def test_render_prints_the_path_alone_and_never_overwrites_unasked(run: Run, slope: Path, tmp_path: Path):
+    names = [well(run("render", "slope", "--size", "48x32")).stdout for _ in range(2)]
+    assert names == ["slope.png\n", "slope-2.png\n"]
+    done = well(run("render", "slope", "--size", "20x10", "-o", "slope.png"))
+    assert (done.stdout, done.stderr) == ("slope.png\n", "")
+    assert read_png(tmp_path / "slope.png")[0].shape == (10, 20, 4)
+
+
+def test_settings_presets_and_shots_are_seen_in_the_picture(run: Run, slope: Path, tmp_path: Path):
+    def eastern(*arguments: str) -> tuple[tuple[int, ...], int]:
+        well(run("render", "slope", *arguments, "-o", "east.png"))
+        picture, _ = read_png(tmp_path / "east.png")
+        return picture.shape, int(picture[..., 0].max())
+
+    assert eastern("--size", "33x33", "--set", "height.rise=0.5") == ((33, 33, 4), 128)
+    assert eastern("--size", "33x33", "--preset", "half") == ((33, 33, 4), 128)
+    assert eastern("--shot", "dark") == ((20, 40, 4), 64)
+    assert eastern("--shot", "dark", "--size", "33x33", "--set", "height.rise=1") == ((33, 33, 4), 255)
+
+
+@pytest.mark.parametrize("ending", ["npy", "png", "tif"])
+def test_texture_writes_the_pass_s_own_values(ending: str, run: Run, slope: Path, tmp_path: Path):
+    path = tmp_path / f"values.{ending}"
+    well(run("render", "slope", "--texture", "height", "-o", path.name))
+    expected = np.broadcast_to(np.arange(33, dtype=np.float32) / 32, (33, 33))
+    if ending == "png":
+        found = read_samples(path)
+        assert found.dtype == np.uint16
+        np.testing.assert_array_equal(found[..., 0], np.rint(expected * 65535))
+    else:
+        found = np.load(path) if ending == "npy" else tifffile.imread(path)
+        assert found.dtype == np.float32
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_clamped_values_are_noted_and_still_written(run: Run, slope: Path, tmp_path: Path):
+    done = well(run("render", "slope", "--texture", "height", "--set", "height.rise=2", "-o", "high.png"))
+    assert done.stdout == "high.png\n"
+    assert "clamped" in done.stderr
+
+
+def test_a_plain_fragment_shader_runs_unchanged(run: Run, tmp_path: Path):
+    (tmp_path / "toy.frag").write_text(PLAIN_FRAGMENT)
+    well(run("render", "toy.frag", "--size", "8x4", "--time", "2"))
+    picture, _ = read_png(tmp_path / "toy.png")
+    red = np.rint((np.arange(8) + 0.5) / 8 * 255)
+    np.testing.assert_allclose(picture[..., 0], np.broadcast_to(red, (4, 8)), atol=1)
+    np.testing.assert_allclose(
+        picture[:, 0, 1], np.rint((3.5 - np.arange(4)) / 4 * 255), atol=1
+    )  # north on top
+    np.testing.assert_allclose(picture[..., 2], 127.5, atol=1)
+
+
+def test_a_plain_compute_shader_runs_unchanged(run: Run, tmp_path: Path):
+    (tmp_path / "toy.comp").write_text(PLAIN_COMPUTE)
+    well(run("render", "toy.comp", "--size", "16x8", "--time", "2"))
+    picture, _ = read_png(tmp_path / "toy.png")
+    red = (np.arange(16) + 0.5) / 16 * 255
+    np.testing.assert_allclose(picture[..., 0], np.broadcast_to(red, (8, 16)), atol=1)
+    np.testing.assert_allclose(picture[..., 2], 127.5, atol=1)
+
+
+def test_standard_output_takes_the_png_and_nothing_else(slope: Path, tmp_path: Path):
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "render", "slope", "--size", "8x4", "-o", "-"],
+        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0
+    assert done.stdout.startswith(b"\x89PNG") and done.stdout.endswith(b"IEND\xaeB`\x82")
+    assert struct.unpack(">II", done.stdout[16:24]) == (8, 4)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["slope"]
+
+
+def test_profile_names_every_pass_and_its_clock(run: Run, slope: Path):
+    done = well(run("render", "slope", "--size", "32x32", "--profile"))
+    assert done.stdout == "slope.png\n"
+    assert re.search(r"height\s.*33 x 33.*\b1\b.*\d\.\d\d", done.stderr)
+    assert re.search(r"clock: (wall clock|GPU timer)", done.stderr)
+
+
+def test_files_are_named_from_the_current_folder(run: Run, tmp_path: Path):
+    np.save(tmp_path / "mine.npy", np.tile(np.linspace(0, 9, 40, dtype=np.float32), (30, 1)))
+    arguments = ("--set", "height.elevation=mine.npy", "--texture", "height", "-o", "out.npy")
+    well(run("render", "generation/heightmap", *arguments))
+    assert np.load(tmp_path / "out.npy").shape == (30, 40)
+
+
+def test_without_compute_everything_but_compute_works(run: Run, slope: Path, tmp_path: Path):
+    older = {"MESA_GL_VERSION_OVERRIDE": "4.1"}
+    if "OpenGL 4.1" not in run("doctor", **older).stdout:
+        pytest.skip("this driver cannot pretend to be older")
+    well(run("render", "slope", "--size", "16x16", **older))
+    done = run("render", "slope", "--driver", "compute", **older)
+    assert (done.returncode, done.stderr) == (2, "error: this context is OpenGL 4.1; compute needs 4.3\n")
+    (tmp_path / "toy.comp").write_text(PLAIN_COMPUTE)
+    done = run("check", "--json", "slope", "toy.comp", **older)
+    reports = [json.loads(line) for line in well(done).stdout.splitlines()]
+    assert [(r["ok"], r["skipped"]) for r in reports] == [(True, ["compute"])] * 3
+
+
+# ── check ────────────────────────────────────────────────────────────────────
+
+
+def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Path):
+    files = {
+        "slope/broken.glsl": SLOPE.replace("return rise", "return ryse"),
+        "slope/library.glsl": "float twice(float x) { return 2.0 * x; }\n",
+        "slope/bad_library.glsl": "float twice(float x) { return 2.0 * y; }\n",
+        "slope/uses.glsl": SLOPE.replace("#pragma", '#include "bad_library.glsl"\n#pragma'),
+        "slope/other.toml": SLOPE_SKETCH.replace("./slope", "./slop"),
+        "slope/reads.glsl": '#pragma kernel(output = "colour:rgba8")\nuniform sampler2D height; //! input\n'
+        "vec4 kernel(ivec2 texel) { return texelFetch(height, texel, 0); }\n",
+        "slope/toy.frag": PLAIN_FRAGMENT,
+        "slope/toy.comp": PLAIN_COMPUTE,
+        "slope/bad.frag": PLAIN_FRAGMENT.replace("iTime / 4.0", "iTime / 4.0.0"),
+        "slope/pyproject.toml": "[project]\nname = 'not ours'\n",
+        "slope/.hidden/broken.glsl": "float f(",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    done = run("check", "--json", "slope")
+    assert (done.returncode, done.stderr) == (1, "")
+    reports = {r["path"]: r for r in map(json.loads, done.stdout.splitlines())}
+    assert set(reports) == {name for name in files if "pyproject" not in name and ".hidden" not in name} | {
+        "slope/slope.glsl",
+        "slope/sketch.toml",
+    }
+    wrong = {
+        path: [(e["file"], e["line"]) for e in r["errors"]] for path, r in reports.items() if not r["ok"]
+    }
+    assert wrong == {
+        "slope/broken.glsl": [("slope/broken.glsl", 4)],
+        "slope/bad_library.glsl": [("slope/bad_library.glsl", 1)],
+        "slope/uses.glsl": [("slope/bad_library.glsl", 1)],
+        "slope/other.toml": [("slope/other.toml", 6)],
+        "slope/bad.frag": [("slope/bad.frag", 6)],
+    }
+    assert all(set(e) == {"file", "line", "column", "message"} for r in reports.values() for e in r["errors"])
+    assert all(r["errors"] or r["ok"] for r in reports.values())
+
+    told = run("check", "slope/slope.glsl", "slope/broken.glsl")
+    assert told.returncode == 1
+    assert re.search(r"^ok +slope/slope\.glsl$", told.stdout, re.MULTILINE)
+    assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", told.stdout, re.MULTILINE)
+    assert told.stdout.endswith("2 files checked, 1 failed\n")
+
+
+def test_check_tries_both_drivers(run: Run, tmp_path: Path):
+    # Only the fragment driver has gl_FragCoord; the kernel's own check of its text cannot see it behind ##.
+    (tmp_path / "half.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\n#define place gl_##FragCoord\n'
+        "float kernel(ivec2 texel) { return float(texel.x); }\n"
+        "#ifdef GL_compute_shader\n#endif\n#if __VERSION__ >= 430\nfloat broken() { return nothing; }\n#endif\n"
+    )
+    done = run("check", "--json", "half.glsl")
+    assert done.returncode == 1
+    assert json.loads(done.stdout)["errors"][0]["line"] == 7
+
+
+def test_check_takes_a_companion_with_its_kernel(run: Run, tmp_path: Path):
+    (tmp_path / "fill.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
+    )
+    (tmp_path / "fill.comp").write_text(
+        '#pragma compute(groups = "(size.x + 7) // 8, (size.y + 7) // 8")\nvoid compute() { nonsense; }\n'
+    )
+    done = run("check", "--json", ".")
+    reports = {r["path"]: r for r in map(json.loads, done.stdout.splitlines())}
+    assert done.returncode == 1
+    assert set(reports) == {"fill.glsl", "fill.comp"}
+    assert {e["file"] for e in reports["fill.comp"]["errors"]} == {"fill.comp"}
+
+
+def test_what_ships_passes(run: Run):
+    done = well(run("check", "--json", str(GLSL)))
+    assert len(done.stdout.splitlines()) > 20
+
+
+def test_a_file_is_checked_once_however_often_it_is_named(slope: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(slope)
+    found = find_files(["slope.glsl", slope, "./slope.glsl"])
+    assert sorted(path.name for path, _ in found) == ["sketch.toml", "slope.glsl"]
+    with pytest.raises(
+        DataError, match=r"slop\.glsl: there is no such file or folder; did you mean 'slope\.glsl'"
+    ):
+        find_files(["slop.glsl"])
+
+
+# ── list ─────────────────────────────────────────────────────────────────────
+
+
+def test_list_as_json_holds_every_sketch_and_technique(capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["list", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [s["name"] for s in found["sketches"]] == shipped_sketches()
+    names = {t["name"]: t for t in found["techniques"]}
+    assert "noise/hash" not in names  # a library file
+    sun = {p["path"]: p for p in names["lighting/l_dot_n"]["parameters"]}["sun"]
+    assert (sun["type"], sun["widget"], sun["default"]) == ("vec2", "direction", [135.0, 25.0])
+    assert names["lighting/l_dot_n"]["outputs"] == ["light"]
+    assert not [e for group in found.values() for e in group if e["error"]]
+
+
+def test_list_of_one_sketch_tells_its_parameters(
+    slope: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(slope.parent)
+    assert cli.main(["list", "slope"]) == 0
+    rows = [line.split("\t") for line in capsys.readouterr().out.splitlines()]
+    assert rows[0] == ["height.rise", "float", "1", "0 to 4", "m", "How high the eastern edge is"]
+    assert ["view.channel", "int", "red", "colour, red, green, blue, alpha"] == rows[1][:4]
+
+
+def test_list_of_a_folder_lists_its_techniques(capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["list", "lighting"]) == 0
+    names = [line.split("\t")[0] for line in capsys.readouterr().out.splitlines()]
+    assert "lighting/l_dot_n" in names and all(name.startswith("lighting/") for name in names)
+
+
+# ── doctor ───────────────────────────────────────────────────────────────────
+
+
+def test_doctor_tells_the_context_as_words_and_as_json(run: Run):
+    done = well(run("doctor"))
+    assert re.search(r"^context +OpenGL \d\.\d$", done.stdout, re.MULTILINE)
+    health = json.loads(well(run("doctor", "--json")).stdout)
+    assert health["ok"] and health["context"]["version_code"] >= 330
+    assert health["packages"]["numpy"] == np.__version__
+    assert health["limits"]["texture, texels a side"] >= 4096
+    assert health["display"] == ""
+
+
+def test_doctor_without_a_context_says_the_mend_and_leaves_with_1(run: Run):
+    done = run("doctor", "--json", "--device", "99")
+    assert done.returncode == 1
+    health = json.loads(done.stdout)
+    assert not health["ok"] and health["context"] is None
+    if sys.platform.startswith("linux"):
+        assert "asked for by a number that is not there" in health["trouble"]
+    told = run("--device", "99", "doctor")
+    assert told.returncode == 1
+    assert told.stderr.startswith("error: ")
+
+
+@pytest.mark.parametrize(
+    ("system", "environ", "shown"),
+    [
+        ("linux", {}, ""),
+        ("linux", {"DISPLAY": ":0"}, "X11 :0"),
+        ("linux", {"WAYLAND_DISPLAY": "wayland-1", "DISPLAY": ":0"}, "Wayland wayland-1"),
+        ("darwin", {}, "the desktop"),
+        ("darwin", {"SSH_CONNECTION": "there"}, ""),
+        ("win32", {"CI": "true"}, ""),
+        ("win32", {"CI": "false"}, "the desktop"),
+    ],
+)
+def test_where_a_window_would_open(system: str, environ: dict[str, str], shown: str):
+    assert where_to_show(environ, system) == shown
+
+
+# ── new ──────────────────────────────────────────────────────────────────────
+
+
+def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run, tmp_path: Path):
+    done = well(run("new", "my-land"))
+    made = [tmp_path / line for line in done.stdout.split()]
+    assert [p.name for p in made] == ["my_land.glsl", "sketch.toml"]
+    for command in ("playground live my-land", "playground render my-land", "playground check my-land"):
+        assert command in done.stderr
+    assert 'title  = "My land"' in (tmp_path / "my-land/sketch.toml").read_text()
+
+    well(run("check", "my-land"))
+    assert well(run("render", ".", "--size", "160x90", cwd=tmp_path / "my-land")).stdout == "my-land.png\n"
+    picture, _ = read_png(tmp_path / "my-land/my-land.png")
+    assert picture[..., :3].std() > 15  # land, not one colour
+    well(run("render", "my-land", "--texture", "height", "-o", "height.npy"))
+    height = np.load(tmp_path / "height.npy")
+    assert 0 <= height.min() < 0.3 and 0.6 < height.max() <= 1
+
+    (tmp_path / "my-land/my_land.glsl").write_text("mine")
+    assert run("new", "my-land").returncode == 2
+    assert (tmp_path / "my-land/my_land.glsl").read_text() == "mine"
+
+
+def test_help_and_list_answer_at_once(run: Run):
+    spent = {}
+    for arguments in (("--version",), ("--help",), ("list",)):
+        start = time.perf_counter()
+        well(run(*arguments))
+        spent[arguments] = time.perf_counter() - start
+    assert max(spent.values()) < 2.0, spent  # [s] the whole process, on a busy machine
