@@ -23,7 +23,18 @@ import typer
 
 from playground._version import __version__
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, SketchError, nearest
-from playground.terminal import busy, complain, console_for, count, note, painted, print_table, progress
+from playground.terminal import (
+    busy,
+    complain,
+    console_for,
+    count,
+    note,
+    painted,
+    print_indented,
+    print_rows,
+    print_table,
+    progress,
+)
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -58,6 +69,7 @@ class _Renderer:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
+    output = sys.stdout
     try:
         status = app(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
@@ -74,6 +86,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # What is still in the buffer cannot be written either; without this, Python says so as it ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
+    except SystemExit as left:
+        # Completion leaves so; and typer, having silenced the output, where a pipe has no reader.
+        return BROKEN_PIPE if sys.stdout is not output else int(left.code or 0)
     except MemoryError:
         complain("out of memory; choose a smaller --size, or a smaller land, as --set size=513")
         return MISTAKE
@@ -603,20 +618,20 @@ def _print_entry(entry: Entry) -> None:
     if not entry.parameters:
         note(f"{entry.name} has no parameters")
         return
-    rows = [
-        (
-            choice.path,
-            choice.parameter.type,
-            choice.text,
-            choice.range,
-            choice.parameter.unit,
-            _what(choice),
+    if not sys.stdout.isatty():
+        print_rows(
+            [
+                (c.path, c.parameter.type, c.text, c.range, c.parameter.unit, _what(c))
+                for c in entry.parameters
+            ]
         )
-        for choice in entry.parameters
-    ]
-    heading = "Parameters (--set PATH=VALUE)" if entry.kind == "sketch" else "Parameters"
-    value = "value" if entry.kind == "sketch" else "default"
-    print_table(heading, ("path", "type", value, "range", "unit", "what"), rows)
+        return
+    width = max(len(choice.path) for choice in entry.parameters)
+    for choice in entry.parameters:
+        limits = " ".join(filter(None, (choice.range, choice.parameter.unit)))
+        facts = [choice.parameter.type, choice.text, f"({limits})" if limits else ""]
+        print(painted(f"{choice.path:<{width}}", "1", sys.stdout), "  ".join(filter(None, facts)), sep="  ")
+        print_indented(_what(choice))
 
 
 def _what(choice: Choice) -> str:

@@ -8,7 +8,9 @@ parted by tabs.
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
@@ -29,7 +31,8 @@ def painted(text: str, code: str, stream: TextIO) -> str:
 
 def complain(text: str, severity: str = "error") -> None:
     """Print a mistake on standard error."""
-    print(f"{painted(f'{severity}:', '1;31', sys.stderr)} {text}", file=sys.stderr)
+    colour = "1;31" if severity == "error" else "1;33"
+    print(f"{painted(f'{severity}:', colour, sys.stderr)} {text}", file=sys.stderr)
 
 
 def note(text: str) -> None:
@@ -52,8 +55,7 @@ def console_for(stream: TextIO) -> Console:
 def print_table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Print a table on standard output."""
     if not sys.stdout.isatty():
-        for row in rows:
-            print("\t".join(" ".join(cell.split()) for cell in row))
+        print_rows(rows)
         return
     from rich import box
     from rich.table import Table
@@ -65,6 +67,18 @@ def print_table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     console_for(sys.stdout).print(table)
+
+
+def print_rows(rows: Sequence[Sequence[str]]) -> None:
+    """Print one line a row on standard output, its columns parted by tabs."""
+    for row in rows:
+        print("\t".join(" ".join(cell.split()) for cell in row))
+
+
+def print_indented(text: str) -> None:
+    """Print a paragraph on standard output, set in a little, as wide as the terminal."""
+    width = max(shutil.get_terminal_size().columns, 40)
+    print(textwrap.fill(text, width, initial_indent="    ", subsequent_indent="    "))
 
 
 @contextmanager

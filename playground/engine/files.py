@@ -29,10 +29,14 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
         places = []
     for place in places:
         candidate = (place / path).resolve()
-        if candidate.is_file() and any(candidate.is_relative_to(root.resolve()) for root in (Path(folder), GLSL)):
+        if candidate.is_file() and any(
+            candidate.is_relative_to(root.resolve()) for root in (Path(folder), GLSL)
+        ):
             return candidate
     folders = [(place / path).parent for place in places] or [path.parent]
-    near = sorted({p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _IMAGES})
+    near = sorted(
+        {p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _IMAGES}
+    )
     what = "this is a folder, not a file" if path.is_dir() else "there is no such file"
     raise DataError(f"{parameter}: {what}{nearest(path.name, near)}", file=shown(path))
 

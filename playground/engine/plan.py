@@ -29,7 +29,8 @@ class Step:
     values: Mapping[str, Value]  # files as absolute paths
     inputs: tuple[tuple[str, Source | None], ...]
     size: tuple[int, int]
-    repeat: int
+    repeat: int  # turns to run
+    whole: int  # turns in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
 
 
@@ -38,7 +39,8 @@ class Turns:
     """A loop made concrete."""
 
     path: str
-    repeat: int
+    repeat: int  # turns to run
+    whole: int  # turns in all
     body: tuple[Step | Turns, ...]
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec
@@ -68,6 +70,10 @@ class Plan:
         """Return the step of that path, if there is one."""
         return next((s for s in self.walk() if s.path == path), None)
 
+    def node(self, path: str) -> PlanNode | None:
+        """Return the step or the loop of that path; the loop where it is both."""
+        return next((node for node in every_node(self.nodes) if node.path == path), None)
+
 
 def walk(nodes: tuple[PlanNode, ...]) -> Iterator[Step]:
     """Yield every step of some nodes, those inside loops included."""
@@ -76,6 +82,35 @@ def walk(nodes: tuple[PlanNode, ...]) -> Iterator[Step]:
             yield from walk(node.body)
         else:
             yield node
+
+
+def every_node(nodes: tuple[PlanNode, ...]) -> Iterator[PlanNode]:
+    """Yield every step and loop of some nodes, a loop before what is inside it."""
+    for node in nodes:
+        yield node
+        if isinstance(node, Turns):
+            yield from every_node(node.body)
+
+
+def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
+    """Return the nodes that a texture depends on, in order."""
+    wanted = {ref.path}
+    kept: list[PlanNode] = []
+    for node in reversed(nodes):
+        if wanted & {step.path for step in walk((node,))}:
+            kept.append(node)
+            wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+    return kept[::-1]
+
+
+def sources_of(node: PlanNode) -> list[Source]:
+    """Return what a node reads, what the passes of a loop read from each other included."""
+    if isinstance(node, Step):
+        return [source for _, source in node.inputs if source is not None]
+    found = [first for _, first, _ in node.feedback if first is not None]
+    for inner in node.body:
+        found += sources_of(inner)
+    return found
 
 
 def make_plan(
@@ -92,8 +127,12 @@ def make_plan(
     passes early, by path. Raises ``SketchError`` or ``DataError`` at the pass that is wrong.
     """
     if not (1 <= frame_size[0] <= 16384 and 1 <= frame_size[1] <= 16384):
-        raise SketchError(f"a picture of {frame_size[0]} x {frame_size[1]} pixels; 1 to 16384 a side were expected")
+        raise SketchError(
+            f"a picture of {frame_size[0]} x {frame_size[1]} pixels; 1 to 16384 a side were expected"
+        )
     flat = flatten(sketch, compute=compute)
+    if compute and steps and not all(path in flat.specs for path in steps):
+        flat = flatten(sketch, compute=False)  # what is stopped early is inside what a companion stands for
     return _Planner(sketch, flat, frame_size, time, dict(steps or {})).plan()
 
 
@@ -105,7 +144,7 @@ def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
 
 def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
     for leaf in leaves_of(flat.nodes):
-        at_land_size = leaf.spec.size is None and not leaf.path.startswith("view")
+        at_land_size = leaf.spec.size is None and leaf.path.partition(".")[0] != "view"
         if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
             size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
     return size
@@ -127,8 +166,9 @@ class _Planner:
 
     def plan(self) -> Plan:
         nodes = tuple(self._node(node) for node in self.flat.nodes)
+        known = {node.path for node in every_node(nodes)}
         for path in self.steps:
-            if not any(path in (n.path, *(s.path for s in walk((n,)))) for n in nodes):
+            if path not in known:
                 raise SketchError(f"steps: no repeated pass '{path}' in sketch {self.sketch.name}")
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
@@ -138,8 +178,11 @@ class _Planner:
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
-            count = self._count(node.repeat, node.spec, self._names(prefix, node.spec), node.path)
-            return Turns(node.path, count, tuple(self._node(n) for n in node.body), node.feedback, node.spec)
+            whole = self._count(node.repeat, node.spec, self._names(prefix, node.spec))
+            count = min(whole, self.steps.get(node.path, whole))
+            return Turns(
+                node.path, count, whole, tuple(self._node(n) for n in node.body), node.feedback, node.spec
+            )
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
@@ -147,21 +190,23 @@ class _Planner:
             raise self._refused(node, size)
         names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
-        repeat = self._count(kernel.repeat, node.spec, names, node.path)
-        return Step(node.path, kernel, values, node.inputs, size, repeat, node.spec)
+        whole = self._count(kernel.repeat, node.spec, names)
+        # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
+        repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
+        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec)
 
-    def _count(
-        self, text: str, spec: PassSpec, names: Mapping[str, Number] | object, path: str
-    ) -> int:
-        if text == "1" and path not in self.steps:
+    def _count(self, text: str, spec: PassSpec, names: Mapping[str, Number] | Names) -> int:
+        if text == "1":
             return 1
         try:
-            count = expressions.evaluate(text, names)  # type: ignore[arg-type]
+            count = expressions.evaluate(text, names)
         except ExpressionError as error:
             raise spec.error(f"pass '{spec.name}': repeat {error}") from None
         if not 0 <= count <= MAX_REPEAT:
-            raise spec.error(f"pass '{spec.name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected")
-        return min(count, self.steps.get(path, count))
+            raise spec.error(
+                f"pass '{spec.name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
+            )
+        return count
 
     def _refused(self, leaf: Leaf, size: tuple[int, int]) -> SketchError:
         near = expressions.nearest_accepted(leaf.kernel.accepts, size)
@@ -195,7 +240,9 @@ class _Planner:
             raise leaf.spec.error(str(error)) from None
         missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
         if missing:
-            raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
+            raise leaf.spec.error(
+                f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}"
+            )
 
     def _with_files(self, leaf: Leaf) -> dict[str, Value]:
         values = dict(leaf.values)
@@ -227,7 +274,9 @@ class _Planner:
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
             if not all(1 <= side <= 16384 for side in size):
-                raise spec.error(f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to 16384 a side were expected")
+                raise spec.error(
+                    f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to 16384 a side were expected"
+                )
         self._open.pop()
         self._sizes[path] = size
         return size

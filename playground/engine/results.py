@@ -1,101 +1,150 @@
-"""Keep what passes made, under a bound in bytes; what was used least recently goes first."""
+"""Hold the textures that one pass made, and give those that nobody needs to the next pass.
+
+A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
+"""
 
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+from playground.gpu.textures import bytes_of, make_framebuffer, make_texture
+from playground.sketch.model import Output
 
 if TYPE_CHECKING:
     import moderngl
 
 
 @dataclass(eq=False)
-class Result:
-    """The textures that one pass made."""
+class Surface:
+    """What a draw draws on: samples of colour and depth."""
 
-    key: str
+    framebuffer: moderngl.Framebuffer
+    colour: moderngl.Renderbuffer
+    depth: moderngl.Renderbuffer
     size: tuple[int, int]
-    textures: dict[str, moderngl.Texture]  # by output
-    bytes: int
-    surface: moderngl.Framebuffer | None = None  # a draw's samples and depth, for a draw on top of it
-    mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
-    turn: int = 0  # of a loop's result: how many turns made it
-
-    def release(self) -> None:
-        """Give the textures back to the driver."""
-        for texture in self.textures.values():
-            texture.release()
-        if self.surface is not None:
-            for attachment in self.surface.color_attachments:
-                attachment.release()
-            if self.surface.depth_attachment is not None:
-                self.surface.depth_attachment.release()
-            self.surface.release()
-            self.surface = None
-
-
-class Cache:
-    """Results by key; those of the frame being drawn are never dropped."""
-
-    def __init__(self, limit: int) -> None:
-        self.limit = limit  # [bytes]
-        self.hits = 0
-        self.misses = 0
-        self._kept: OrderedDict[str, Result] = OrderedDict()
-        self._in_use: set[str] = set()
+    format: str
+    samples: int  # 1: without multisampling
 
     @property
     def bytes(self) -> int:
         """Bytes held."""
-        return sum(result.bytes for result in self._kept.values())
+        return (bytes_of(self.size, self.format) + 4 * self.size[0] * self.size[1]) * self.samples
+
+    def release(self) -> None:
+        """Give it back to the driver."""
+        self.framebuffer.release()
+        self.colour.release()
+        self.depth.release()
+
+
+@dataclass(eq=False)
+class Result:
+    """The textures that one pass made."""
+
+    size: tuple[int, int]
+    outputs: tuple[Output, ...]
+    textures: dict[str, moderngl.Texture]  # by output
+    turn: int = 0  # turns done, of a pass that repeats
+    surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
+    mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
+    _framebuffer: moderngl.Framebuffer | None = None
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held, mipmaps and samples included."""
+        total = 0
+        for output in self.outputs:
+            each = bytes_of(self.size, output.format)
+            total += each + (each // 3 if output.name in self.mipmapped else 0)
+        return total + (self.surface.bytes if self.surface else 0)
+
+    def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
+        """Return the framebuffer that draws to all of its textures."""
+        if self._framebuffer is None:
+            self._framebuffer = make_framebuffer(ctx, [self.textures[o.name] for o in self.outputs])
+        return self._framebuffer
+
+    def release(self) -> None:
+        """Give the textures back to the driver."""
+        if self._framebuffer is not None:
+            self._framebuffer.release()
+            self._framebuffer = None
+        for texture in self.textures.values():
+            texture.release()
+        if self.surface is not None:
+            self.surface.release()
+            self.surface = None
+
+
+class Wired(NamedTuple):
+    """What an input reads: a texture, and the result that it is part of; nothing where nothing is wired."""
+
+    result: Result | None = None
+    texture: moderngl.Texture | None = None
+    output: str = ""
+
+
+class Pool:
+    """Results that nobody needs, to be used again: making a texture costs more than filling it."""
+
+    def __init__(self, ctx: moderngl.Context, limit: int) -> None:
+        self.ctx = ctx
+        self.limit = limit  # [bytes]
+        self.made = 0  # how often a texture was made anew
+        self._spare: OrderedDict[int, Result] = OrderedDict()
+        self._bytes = 0
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held."""
+        return self._bytes
 
     def __len__(self) -> int:
-        return len(self._kept)
+        return len(self._spare)
 
-    def begin(self) -> None:
-        """Begin a frame: nothing is in use yet."""
-        self._in_use.clear()
+    def take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
+        """Return a result with undefined texels; raise ``ContextError`` where the driver refuses its size."""
+        wanted = tuple(outputs)
+        formats = [o.format for o in wanted]
+        for number in reversed(self._spare):
+            spare = self._spare[number]
+            if spare.size == size and [o.format for o in spare.outputs] == formats:
+                del self._spare[number]
+                self._bytes -= spare.bytes
+                textures = dict(zip((o.name for o in wanted), spare.textures.values(), strict=True))
+                return Result(size, wanted, textures, _framebuffer=spare._framebuffer)
+        self.made += 1
+        made: dict[str, moderngl.Texture] = {}
+        try:
+            for output in wanted:
+                made[output.name] = make_texture(self.ctx, size, output.format)
+        except Exception:
+            for texture in made.values():
+                texture.release()
+            raise
+        return Result(size, wanted, made)
 
-    def get(self, key: str) -> Result | None:
-        """Return a result and mark it as used; None if it is not kept."""
-        result = self._kept.get(key)
-        if result is None:
-            self.misses += 1
-            return None
-        self.hits += 1
-        self._kept.move_to_end(key)
-        self._in_use.add(key)
-        return result
-
-    def put(self, result: Result) -> None:
-        """Keep a result, used by the current frame; what is over the bound goes."""
-        old = self._kept.pop(result.key, None)
-        if old is not None and old is not result:
-            old.release()
-        self._kept[result.key] = result
-        self._in_use.add(result.key)
-        self.trim()
-
-    def take(self, key: str) -> Result | None:
-        """Hand a result over to the caller, who now owns it."""
-        self._in_use.discard(key)
-        return self._kept.pop(key, None)
-
-    def trim(self) -> None:
-        """Drop what was used least recently until the bound holds or all that is left is in use."""
-        total = self.bytes
-        for key in list(self._kept):
-            if total <= self.limit:
-                return
-            if key not in self._in_use:
-                result = self._kept.pop(key)
-                total -= result.bytes
-                result.release()
+    def give(self, result: Result) -> None:
+        """Take a result that nobody reads any more; it may be released at once."""
+        if result.surface is not None:
+            result.surface.release()
+            result.surface = None
+        if result.mipmapped or result.bytes > self.limit:
+            result.release()  # levels would go stale unseen
+            return
+        self._spare[id(result)] = result
+        self._bytes += result.bytes
+        while self._bytes > self.limit:
+            _, oldest = self._spare.popitem(last=False)
+            self._bytes -= oldest.bytes
+            oldest.release()
 
     def clear(self) -> None:
-        """Drop everything."""
-        for result in self._kept.values():
+        """Release everything."""
+        for result in self._spare.values():
             result.release()
-        self._kept.clear()
-        self._in_use.clear()
+        self._spare.clear()
+        self._bytes = 0

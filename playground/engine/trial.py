@@ -9,6 +9,7 @@ shader cache, so what the child compiled compiles at once for the parent.
 from __future__ import annotations
 
 import contextlib
+import os
 import pickle
 import queue
 import signal
@@ -79,13 +80,16 @@ class Trial:
     ) -> None:
         self.limit_seconds = limit_seconds
         self.memory_bytes = memory_bytes
-        self._arguments = [str(memory_bytes), "software" if software else "any", "" if device is None else str(device)]
-        self._process: subprocess.Popen[bytes] | None = None
-        self._answers: queue.Queue[tuple[int, TrialReport] | None] = queue.Queue()
-        self._errors: IO[bytes] | None = None
-        self._number = 0  # of the newest request
-        self._since: float | None = None  # when it was handed over
-        self._fresh = True  # the child has not answered yet
+        renderer = "software" if software else "any"
+        self._arguments = [
+            str(memory_bytes),
+            renderer,
+            "" if device is None else str(device),
+            str(limit_seconds + 2 * _FIRST_EXTRA),
+        ]
+        self._child: _Child | None = None
+        self._waiting: Request | None = None  # the newest, while the child still works on an older one
+        self._newest = False  # whether what the child works on is the newest
 
     def __enter__(self) -> Trial:
         return self
@@ -98,24 +102,13 @@ class Trial:
     @property
     def busy(self) -> bool:
         """Whether a request waits for its answer."""
-        return self._since is not None
+        return self._newest or self._waiting is not None
 
     def start(self) -> None:
         """Start the child, so that it is warm when it is needed; does nothing if it runs."""
-        if self._process is not None and self._process.poll() is None:
-            return
-        self._forget()
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed in _forget
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "playground.engine.trial_child", *self._arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            start_new_session=True,
-        )
-        self._answers = queue.Queue()
-        self._fresh = True
-        threading.Thread(target=_listen, args=(self._process.stdout, self._answers), daemon=True).start()
+        if self._child is None or not self._child.runs:
+            self._forget()
+            self._child = _Child(self._arguments)
 
     def run(self, request: Request) -> TrialReport:
         """Try something and wait for the answer, no longer than the limit."""
@@ -125,14 +118,14 @@ class Trial:
         return report
 
     def submit(self, request: Request) -> None:
-        """Hand a request to the child; an earlier one that is still open will not be answered."""
-        self.start()
-        self._number += 1
-        self._since = time.monotonic()
-        process = self._process
-        assert process is not None and process.stdin is not None
-        with contextlib.suppress(OSError):  # a child that died is found out by poll
-            send(process.stdin, (self._number, request))
+        """Hand a request to the child; an earlier one that is still open will not be answered.
+
+        Never waits: a child that hangs reads nothing, so it is handed one request at a time.
+        """
+        if self._child is not None and self._child.since is not None and self._child.runs:
+            self._waiting, self._newest = request, False
+            return
+        self._hand_over(request)
 
     def poll(self) -> TrialReport | None:
         """Return the answer to the newest request, once; None while there is none."""
@@ -140,75 +133,148 @@ class Trial:
 
     def close(self) -> None:
         """End the child."""
-        if self._process is not None and self._process.poll() is None:
-            with contextlib.suppress(OSError):
-                self._process.stdin.close()  # type: ignore[union-attr]
-            try:
-                self._process.wait(0.5)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
+        self._waiting, self._newest = None, False
+        if self._child is not None:
+            self._child.ask_to_end()
         self._forget()
+
+    def _hand_over(self, request: Request) -> None:
+        self.start()
+        assert self._child is not None
+        self._waiting, self._newest = None, True
+        self._child.hand_over(request)
 
     def _answer(self, wait: float) -> TrialReport | None:
-        if self._since is None:
+        child = self._child
+        if child is None or child.since is None:
             return None
-        limit = self.limit_seconds + (_FIRST_EXTRA if self._fresh else 0.0)
+        limit = self.limit_seconds + (0.0 if child.is_warm else _FIRST_EXTRA)
         try:
-            found = self._answers.get(timeout=wait) if wait else self._answers.get_nowait()
+            report = child.answers.get(timeout=wait) if wait else child.answers.get_nowait()
         except queue.Empty:
-            if time.monotonic() - self._since < limit:
+            if time.monotonic() - child.since < limit:
                 return None
-            self._kill()
+            self._forget()
             message = f"the trial took longer than {limit:g} s and was stopped; is there an endless loop?"
-            return self._done(TrialReport(False, TrialTimeout(message), seconds=limit))
-        if found is None:
-            return self._done(TrialReport(False, TrialCrash(self._cause()), seconds=time.monotonic() - self._since))
-        self._fresh = False
-        number, report = found
-        if number != self._number:
-            self._since = time.monotonic()  # the child only now begins with the newest
-            return None
-        return self._done(report)
+            return self._told(TrialReport(False, TrialTimeout(message), seconds=limit))
+        if report is None:
+            spent, cause = time.monotonic() - child.since, child.cause_of_death()
+            self._forget()
+            return self._told(TrialReport(False, TrialCrash(cause), seconds=spent))
+        child.since, child.is_warm = None, True
+        return self._told(report)
 
-    def _done(self, report: TrialReport) -> TrialReport:
-        self._since = None
-        return report
-
-    def _cause(self) -> str:
-        process, code = self._process, None
-        if process is not None:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                code = process.wait(2.0)
-        said = ""
-        if self._errors is not None:
-            self._errors.seek(0)
-            lines = self._errors.read().decode("utf-8", "replace").strip().split("\n")
-            said = lines[-1].strip()
-        self._forget()
-        how = "died"
-        if code is not None and code < 0:
-            how = f"was killed by {signal.Signals(-code).name}"
-        elif code:
-            how = f"ended with status {code}"
-        return f"the trial {how}: the driver or its compiler crashed, or memory ran out" + (f" ({said})" if said else "")
-
-    def _kill(self) -> None:
-        if self._process is not None:
-            self._process.kill()
-        self._forget()
+    def _told(self, report: TrialReport) -> TrialReport | None:
+        """Return an answer if it is the newest request's; else hand over the one that waits."""
+        if self._newest:
+            self._newest = False
+            return report
+        if self._waiting is not None:
+            self._hand_over(self._waiting)
+        return None
 
     def _forget(self) -> None:
-        process, self._process = self._process, None
-        if process is not None:
-            for pipe in (process.stdin, process.stdout):
-                if pipe is not None:
-                    with contextlib.suppress(OSError):
-                        pipe.close()
+        child, self._child = self._child, None
+        if child is not None:
+            child.kill()
+
+
+class _Child:
+    """The process, and the thread that talks to it."""
+
+    def __init__(self, arguments: list[str]) -> None:
+        self.since: float | None = None  # when it was handed what it works on
+        self.is_warm = False  # it has answered before
+        self.answers: queue.Queue[TrialReport | None] = queue.Queue()  # None: it is dead
+        self._requests: queue.Queue[Request | None] = queue.Queue()
+        self._errors = tempfile.TemporaryFile()  # closed in kill
+        # -P: what lies in the user's folder is no module of ours, whatever its name.
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "playground.engine.trial_child", *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=_environment(),
+            start_new_session=True,
+        )
+        self._thread = threading.Thread(target=self._talk, daemon=True)
+        self._thread.start()
+
+    @property
+    def runs(self) -> bool:
+        """Whether the process lives."""
+        return self._process.poll() is None
+
+    @property
+    def pid(self) -> int:
+        """The process's number."""
+        return self._process.pid
+
+    def hand_over(self, request: Request) -> None:
+        """Give it a request; never waits."""
+        self.since = time.monotonic()
+        self._requests.put(request)
+
+    def cause_of_death(self) -> str:
+        """Say how the process ended, with the last line that it wrote."""
+        code = None
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            code = self._process.wait(2.0)
+        self._errors.seek(0)
+        said = self._errors.read().decode("utf-8", "replace").strip().split("\n")[-1].strip()
+        how = "died"
+        if code is not None and code < 0:
+            how = f"was killed by {_signal_name(-code)}"
+        elif code:
+            how = f"ended with status {code}"
+        told = f" ({said})" if said else ""
+        return f"the trial {how}: the driver or its compiler crashed, or memory ran out{told}"
+
+    def ask_to_end(self) -> None:
+        """Let it end by itself, if it does so soon."""
+        self._requests.put(None)
+        if self.since is None and self.is_warm:
             with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(2.0)
-        if self._errors is not None:
-            self._errors.close()
-            self._errors = None
+                self._process.wait(1.0)
+
+    def kill(self) -> None:
+        """End it whatever it does."""
+        self._process.kill()
+        self._requests.put(None)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(5.0)
+        self._thread.join(5.0)
+        self._errors.close()
+
+    def _talk(self) -> None:
+        process = self._process
+        assert process.stdin is not None and process.stdout is not None
+        # Its pipes are closed here, where they are used: closing waits for whoever reads.
+        with contextlib.suppress(OSError), process.stdout:
+            with contextlib.suppress(OSError, EOFError, ValueError, pickle.UnpicklingError):
+                while (request := self._requests.get()) is not None:
+                    send(process.stdin, request)
+                    answer = receive(process.stdout)
+                    if answer is None:
+                        break
+                    self.answers.put(answer)  # type: ignore[arg-type]
+            with contextlib.suppress(OSError):
+                process.stdin.close()
+        self.answers.put(None)
+
+
+def _environment() -> dict[str, str]:
+    """Return an environment in which the child finds this package, wherever it was started."""
+    package = str(Path(__file__).resolve().parents[2])
+    known = [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([package, *known])}
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
 
 
 def send(stream: IO[bytes], message: object) -> None:
@@ -226,15 +292,3 @@ def receive(stream: IO[bytes]) -> object | None:
     (length,) = struct.unpack("<Q", head)
     data = stream.read(length)
     return pickle.loads(data) if len(data) == length else None
-
-
-def _listen(stream: IO[bytes], answers: queue.Queue[tuple[int, TrialReport] | None]) -> None:
-    with contextlib.suppress(OSError, ValueError, pickle.UnpicklingError):
-        while (message := receive(stream)) is not None:
-            answers.put(message)  # type: ignore[arg-type]
-    answers.put(None)
-
-
-def folder_of(path: str | Path) -> str:
-    """Return the folder that a file alone may include from."""
-    return str(Path(path).resolve().parent)

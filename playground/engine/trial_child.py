@@ -1,16 +1,17 @@
 """The trial's child process: opens a context, tries what it is handed, answers.
 
-Run by ``engine.trial`` only, as ``python -m playground.engine.trial_child MEMORY RENDERER DEVICE``.
+Run by ``engine.trial`` only, as ``python -m playground.engine.trial_child MEMORY RENDERER DEVICE SECONDS``.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from playground.engine.engine import Engine
 from playground.engine.plan import smallest_land
@@ -18,6 +19,7 @@ from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch,
 from playground.errors import ContextError, PlaygroundError
 from playground.gpu.context import open_context
 from playground.gpu.program import compile_library
+from playground.gpu.textures import drain
 from playground.gpu.wrap import COMPUTE
 from playground.sketch.source import read_source
 
@@ -27,10 +29,11 @@ if TYPE_CHECKING:
 
 def main() -> None:
     """Answer requests until the parent closes its end."""
-    memory, renderer, device = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+    memory, renderer, device, longest = int(sys.argv[1]), sys.argv[2], sys.argv[3], float(sys.argv[4])
     requests = sys.stdin.buffer
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever a driver prints must not get between the answers
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's
     ctx: moderngl.Context | None = None
     failure: ContextError | None = None
     try:
@@ -39,14 +42,21 @@ def main() -> None:
         failure = error
     _limit(memory)
     engines: dict[str, Engine] = {}
-    while (message := receive(requests)) is not None:
-        number, request = message  # type: ignore[misc]
+    while (request := receive(requests)) is not None:
         start = time.perf_counter()
+        _end_yourself_after(longest)
         if ctx is None:
             report = TrialReport(False, failure)
         else:
-            report = _try(ctx, engines, request)
-        send(answers, (number, replace(report, seconds=time.perf_counter() - start)))
+            report = _try(ctx, engines, cast("Request", request))
+        _end_yourself_after(0.0)
+        send(answers, replace(report, seconds=time.perf_counter() - start))
+
+
+def _end_yourself_after(seconds: float) -> None:
+    """Have the system end this process in case it hangs and its parent is gone; 0: no more."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, seconds)  # SIGALRM kills, even in the middle of a draw
 
 
 def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request) -> TrialReport:
@@ -73,6 +83,7 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request) ->
 
 def _draw(engine: Engine, request: TrySketch) -> None:
     small = replace(request.sketch, size=smallest_land(request.sketch), samples=1)
+    drain(engine.ctx)  # what an earlier, failed request left behind
     engine.draw(small, size=request.size, time=request.time)
     engine.ctx.finish()
     fault = engine.ctx.error

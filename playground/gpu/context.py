@@ -39,6 +39,11 @@ class ContextInfo:
     max_samples: int
 
     @property
+    def opengl(self) -> str:
+        """The version in words: "OpenGL 4.5"."""
+        return f"OpenGL {self.version_code // 100}.{self.version_code % 100 // 10}"
+
+    @property
     def compute(self) -> bool:
         """Whether there are compute shaders."""
         return self.version_code >= 430
@@ -76,8 +81,6 @@ def open_context(*, software: bool = False, device: int | None = None) -> modern
     ``software`` asks for the processor's renderer (Mesa llvmpipe); ``device`` picks the
     EGL device by its number. Raises ``ContextError`` with the known failure's mend.
     """
-    import moderngl
-
     if software:
         return _open_software(device)
     return _open(device)
@@ -128,7 +131,9 @@ def _open_software(device: int | None) -> moderngl.Context:
         if context_info(ctx).software:
             return ctx
         ctx.release()
-    raise ContextError(f"--software was asked for, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?")
+    raise ContextError(
+        f"--software was asked for, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?"
+    )
 
 
 def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
@@ -147,7 +152,7 @@ def adopt_context(address_of: Callable[[str], int | None] | None = None) -> mode
     """
     import moderngl
 
-    options = {} if address_of is None else {"context": _Functions(address_of)}
+    options: dict[str, Any] = {} if address_of is None else {"context": _Functions(address_of)}
     ctx = moderngl.create_context(require=330, **options)
     ctx.gc_mode = "auto"
     return ctx
@@ -174,7 +179,7 @@ class _Functions:
 
 
 def prefer_software() -> None:
-    """Ask Mesa for the processor's renderer, for contexts opened from now on in this process and its children."""
+    """Ask Mesa for the processor's renderer, for contexts opened from now on here and in child processes."""
     os.environ["LIBGL_ALWAYS_SOFTWARE"] = "1"
     os.environ.setdefault("GALLIUM_DRIVER", "llvmpipe")
     if _MESA_VENDOR.is_file():

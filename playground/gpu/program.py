@@ -61,12 +61,16 @@ def _diagnostic(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
     message = f"{entry.message}; {more}" if more else entry.message
     line = stage.locate(entry.line) if entry.line else None
     if line is not None:
-        column = source_column(line.code, entry.column) if entry.column else _column_of(entry.message, line.code)
+        column = (
+            source_column(line.code, entry.column) if entry.column else _column_of(entry.message, line.code)
+        )
         return line.diagnostic(message, min(column, len(line.text) + 1), entry.severity)
     if entry.line and entry.line >= stage.first + len(stage.source.lines) - 1:
         # Past the last line: either an unclosed bracket, or the wrapper's call does not fit.
         last = next((ln for ln in reversed(stage.source.lines) if ln.code.strip()), stage.source.lines[-1])
-        return last.diagnostic(f"{message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity)
+        return last.diagnostic(
+            f"{message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
+        )
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
 
 

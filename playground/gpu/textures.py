@@ -1,12 +1,13 @@
 """Make, fill and read textures in the formats a kernel may write.
 
-Arrays have row 0 in the south, as textures have.
+Arrays have row 0 in the south, as textures have. Only what makes an object asks OpenGL for
+errors: asking waits for the driver, so it stays out of what happens every frame.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,13 @@ if TYPE_CHECKING:
     import moderngl
 
 _DTYPES = {"8": "f1", "16": "nu2", "16f": "f2", "32f": "f4"}
-_NUMPY = {"f1": np.dtype("u1"), "nu2": np.dtype("u2"), "f2": np.dtype("f2"), "f4": np.dtype("f4")}
-_BYTES = {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}
+_NUMPY: dict[str, np.dtype[Any]] = {
+    "f1": np.dtype("u1"),
+    "nu2": np.dtype("u2"),
+    "f2": np.dtype("f2"),
+    "f4": np.dtype("f4"),
+}
+_LARGEST_HALF = 65504.0
 
 
 def split_format(form: str) -> tuple[int, str]:
@@ -30,23 +36,37 @@ def split_format(form: str) -> tuple[int, str]:
 def bytes_of(size: tuple[int, int], form: str) -> int:
     """Return the bytes that a texture takes, without mipmaps."""
     components, dtype = split_format(form)
-    return size[0] * size[1] * components * _BYTES[dtype]
+    return size[0] * size[1] * components * _NUMPY[dtype].itemsize
 
 
-def make_texture(ctx: moderngl.Context, size: tuple[int, int], form: str) -> moderngl.Texture:
-    """Make a texture with undefined texels; raise ``ContextError`` where the driver refuses its size."""
+def make_texture(
+    ctx: moderngl.Context, size: tuple[int, int], form: str, data: bytes | None = None
+) -> moderngl.Texture:
+    """Make a texture, its texels undefined without ``data``.
+
+    Raises ``ContextError`` where the driver refuses its size: moderngl returns an object even then.
+    """
     components, dtype = split_format(form)
-    limit = int(ctx.info["GL_MAX_TEXTURE_SIZE"])
-    if max(size) > limit:
-        raise ContextError(f"a texture of {size[0]} x {size[1]} texels; this driver takes no more than {limit} a side")
-    _ = ctx.error
-    texture = ctx.texture(size, components, dtype=dtype)
+    check_size(ctx, size, "a texture")
+    drain(ctx)
+    texture = ctx.texture(size, components, data, alignment=1, dtype=dtype)
     fault = ctx.error
     if fault != "GL_NO_ERROR":
         texture.release()
         megabytes = bytes_of(size, form) / 2**20
-        raise ContextError(f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {fault}")
+        raise ContextError(
+            f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {fault}"
+        )
     return texture
+
+
+def check_size(ctx: moderngl.Context, size: tuple[int, int], what: str) -> None:
+    """Raise ``ContextError`` where a side is larger than this driver takes."""
+    limit = int(ctx.info["GL_MAX_TEXTURE_SIZE"])
+    if max(size) > limit:
+        raise ContextError(
+            f"{what} of {size[0]} x {size[1]} texels; this driver takes no more than {limit} a side"
+        )
 
 
 def make_framebuffer(
@@ -54,42 +74,76 @@ def make_framebuffer(
     attachments: Sequence[moderngl.Texture | moderngl.Renderbuffer],
     depth: moderngl.Renderbuffer | None = None,
 ) -> moderngl.Framebuffer:
-    """Make a framebuffer; raise ``ContextError`` where an OpenGL error stood before.
+    """Make a framebuffer that draws to textures or renderbuffers of one size.
 
     moderngl 5.13 asks Mesa about attachments that are not there, which leaves
     GL_INVALID_OPERATION behind; it is taken away here, so that a real error shows.
     """
-    before = ctx.error
-    if before != "GL_NO_ERROR":
-        raise ContextError(f"OpenGL reports {before}")
     framebuffer = ctx.framebuffer(list(attachments), depth)
-    _ = ctx.error
+    drain(ctx)
     return framebuffer
 
 
-def clear_texture(ctx: moderngl.Context, texture: moderngl.Texture) -> None:
-    """Fill a texture with zeros."""
-    framebuffer = make_framebuffer(ctx, [texture])
-    framebuffer.use()  # clear() binds anew what was bound before, which may have been released by now
-    framebuffer.clear()
-    framebuffer.release()
+def drain(ctx: moderngl.Context) -> None:
+    """Forget the OpenGL errors that stand."""
+    for _ in range(8):  # one flag for each kind of error; a lost context answers forever
+        if ctx.error == "GL_NO_ERROR":
+            return
 
 
-def write_texture(texture: moderngl.Texture, values: NDArray[np.floating | np.uint8]) -> None:
-    """Write an array, (ny, nx) or (ny, nx, components), row 0 south; 0..1 floats or bytes into r8 formats."""
+def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
+    """Write an array, (ny, nx) or (ny, nx, components), row 0 south.
+
+    r8 and r16 formats take 0..1, or whole numbers of their own kind; what is not a number
+    becomes 0 there. Half floats stop at their largest.
+    """
     wanted = _NUMPY[texture.dtype]
-    if wanted.kind == "u" and values.dtype.kind == "f":
-        top = np.iinfo(wanted).max
-        values = np.round(np.clip(values, 0, 1) * top)
-    texture.write(np.ascontiguousarray(values, dtype=wanted).tobytes(), alignment=1)
+    if values.dtype.kind == "f":
+        if wanted.kind == "u":
+            top = np.iinfo(wanted).max
+            values = np.round(np.clip(np.nan_to_num(values, nan=0.0), 0, 1) * top)
+        elif wanted == np.float16:
+            values = np.clip(values, -_LARGEST_HALF, _LARGEST_HALF)
+    with np.errstate(under="ignore"):
+        data = np.ascontiguousarray(values.astype(wanted)).tobytes()
+    texture.write(data, alignment=1)
 
 
 def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
-    """Read a texture as float32, (ny, nx) or (ny, nx, components), row 0 south; r8 and r16 formats give 0..1."""
-    raw = np.frombuffer(texture.read(alignment=1), dtype=_NUMPY[texture.dtype])
-    width, height = texture.size
-    shape = (height, width) if texture.components == 1 else (height, width, texture.components)
-    values = raw.reshape(shape).astype(np.float32)
+    """Read a texture as float32, (ny, nx) or (ny, nx, components), row 0 south.
+
+    r8 and r16 formats give 0..1.
+    """
+    raw = _read(texture)
+    values = np.asarray(raw, np.float32)
     if raw.dtype.kind == "u":
         values /= np.float32(np.iinfo(raw.dtype).max)
     return values
+
+
+def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:
+    """Read a texture as a picture, (height, width, 4) bytes, top row first.
+
+    One channel becomes grey, two red and green; without a fourth it is opaque. Numbers are
+    clamped to 0..1; what is not a number becomes 0.
+    """
+    if texture.dtype == "f1" and texture.components == 4:
+        return np.ascontiguousarray(_read(texture)[::-1])
+    values = read_texture(texture)[::-1]
+    height, width = values.shape[:2]
+    picture = np.zeros((height, width, 4), np.uint8)
+    picture[..., 3] = 255
+    tidy = np.clip(np.nan_to_num(values, nan=0.0), 0, 1)
+    shown = np.round(tidy * np.float32(255)).astype(np.uint8)
+    if shown.ndim == 2:
+        picture[..., :3] = shown[..., None]
+    else:
+        picture[..., : shown.shape[2]] = shown
+    return picture
+
+
+def _read(texture: moderngl.Texture) -> NDArray[Any]:
+    width, height = texture.size
+    shape = (height, width) if texture.components == 1 else (height, width, texture.components)
+    array: NDArray[Any] = np.frombuffer(texture.read(alignment=1), dtype=_NUMPY[texture.dtype])
+    return array.reshape(shape)

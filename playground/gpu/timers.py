@@ -24,18 +24,26 @@ class Timer:
     def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
         self._ctx = ctx
         self._query = None if software else ctx.query(time=True)
+        self._open = False
         self.clock = WALL if software else QUERY  # which clock the figures come from
 
     @contextmanager
     def measure(self, into: dict[str, float], name: str) -> Iterator[None]:
-        """Add the milliseconds that the block takes to ``into[name]``."""
-        if self._query is not None:
-            with self._query:
+        """Add the milliseconds that the block takes to ``into[name]``; blocks may not be nested."""
+        if self._open:
+            raise RuntimeError("a timer measures one stretch at a time")
+        self._open = True
+        try:
+            if self._query is not None:
+                with self._query:
+                    yield
+                spent = self._query.elapsed / 1e6
+            else:
+                self._ctx.finish()
+                start = time.perf_counter()
                 yield
-            into[name] = into.get(name, 0.0) + self._query.elapsed / 1e6
-            return
-        self._ctx.finish()
-        start = time.perf_counter()
-        yield
-        self._ctx.finish()
-        into[name] = into.get(name, 0.0) + (time.perf_counter() - start) * 1e3
+                self._ctx.finish()
+                spent = (time.perf_counter() - start) * 1e3
+            into[name] = into.get(name, 0.0) + spent
+        finally:
+            self._open = False

@@ -24,6 +24,8 @@ void main() {
     gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
 }
 """
+_VERSION = re.compile(r"\s*#\s*version\b")
+_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 
 
@@ -61,10 +63,11 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
     if kernel.kind == "compute":
         return _wrap_companion(kernel)
     if kernel.kind == "plain_fragment":
-        stage = Stage(kernel.source.code, 1, kernel.source, "void main()")
-        return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": stage})
+        return Wrapped(
+            kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": _whole(kernel)}
+        )
     if kernel.kind == "plain_compute":
-        return Wrapped(kernel, COMPUTE, {"compute": Stage(kernel.source.code, 1, kernel.source, "void main()")})
+        return Wrapped(kernel, COMPUTE, {"compute": _whole(kernel)})
     _check_signature(kernel)
     return _wrap_compute(kernel) if driver == COMPUTE else _wrap_fragment(kernel)
 
@@ -73,7 +76,9 @@ def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
     """Wrap a library file, which has nothing to run, so that it can be compiled alone."""
     if driver == COMPUTE:
         before = ["#version 430", "layout(local_size_x = 1) in;"]
-        return Wrapped(kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, ["void main() {}"], "")})
+        return Wrapped(
+            kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, ["void main() {}"], "")}
+        )
     after = ["out vec4 k_out;", "void main() { k_out = vec4(0.0); }"]
     stage = _stage(kernel, ["#version 330"], kernel.source.code, after, "")
     return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
@@ -95,8 +100,12 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
     return Stage(_QUAD.replace("#version 330", version), 0, kernel.source, "")
 
 
+def _whole(kernel: Kernel) -> Stage:
+    return Stage(kernel.source.code, 1, kernel.source, "void main()")
+
+
 def _version(kernel: Kernel) -> str:
-    return next(line.code.strip() for line in kernel.source.lines if "#" in line.code and "version" in line.code)
+    return next(line.code.strip() for line in kernel.source.lines if _VERSION.match(line.code))
 
 
 def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
@@ -105,7 +114,9 @@ def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expec
 
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
-    return [f"uniform {kind} {name};" for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
+    return [
+        f"uniform {kind} {name};" for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always
+    ]
 
 
 def _wrap_fragment(kernel: Kernel) -> Wrapped:
@@ -117,7 +128,9 @@ def _wrap_fragment(kernel: Kernel) -> Wrapped:
             swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
             before.append(f"uniform sampler2D {sampler};")
             edge = f"clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1)"
-            before.append(f"{output.glsl} {name}(ivec2 k_texel) {{ return texelFetch({sampler}, {edge}, 0){swizzle}; }}")
+            before.append(
+                f"{output.glsl} {name}(ivec2 k_texel) {{ return texelFetch({sampler}, {edge}, 0){swizzle}; }}"
+            )
     after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
     texel = "ivec2(gl_FragCoord.xy)"
     names = [f"k_out_{o.name}" for o in kernel.outputs]
@@ -137,7 +150,9 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
         name = previous_name(kernel, output)
         swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
         access = "" if in_place and kernel.reads(name) else "writeonly "
-        before.append(f"layout({output.format}, binding = {unit}) uniform {access}image2D k_image_{output.name};")
+        before.append(
+            f"layout({output.format}, binding = {unit}) uniform {access}image2D k_image_{output.name};"
+        )
         if not kernel.reads(name):
             continue
         if in_place:
@@ -145,7 +160,9 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
         else:
             sampler = f"k_previous_{output.name}"
             before.append(f"uniform sampler2D {sampler};")
-            fetch = f"texelFetch({sampler}, clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1), 0){swizzle}"
+            fetch = (
+                f"texelFetch({sampler}, clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1), 0){swizzle}"
+            )
         before.append(f"{output.glsl} {name}(ivec2 k_texel) {{ return {fetch}; }}")
     cells = "k_cells" if in_place else "size"
     after = [
@@ -155,7 +172,9 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
     ]
     if in_place:
         after.append("    ivec2 k_texel = visit(k_cell);")
-        after.append("    if (any(lessThan(k_texel, ivec2(0))) || any(greaterThanEqual(k_texel, size))) return;")
+        after.append(
+            "    if (any(lessThan(k_texel, ivec2(0))) || any(greaterThanEqual(k_texel, size))) return;"
+        )
     else:
         after.append("    ivec2 k_texel = k_cell;")
     after += [f"    {o.glsl} k_out_{o.name};" for o in kernel.outputs]
@@ -176,7 +195,10 @@ def _texel(output: Output) -> str:
 
 
 def _wrap_companion(kernel: Kernel) -> Wrapped:
-    before = ["#version 430", f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;"]
+    before = [
+        "#version 430",
+        f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
+    ]
     before += _given(kernel)
     for unit, output in enumerate(kernel.outputs):
         before.append(f"layout({output.format}, binding = {unit}) uniform image2D out_{output.name};")
@@ -208,7 +230,9 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
     before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
     after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]
     after.append("layout(location = 0) out vec4 k_out;")
-    after.append(f"void main() {{ k_out = fragment({', '.join(f'k_to_{name}' for _, _, name in fragment)}); }}")
+    after.append(
+        f"void main() {{ k_out = fragment({', '.join(f'k_to_{name}' for _, _, name in fragment)}); }}"
+    )
     second = _stage(kernel, before, _without(code, "vertex"), after, expected)
     return Wrapped(kernel, "draw", {"vertex": first, "fragment": second})
 
@@ -221,14 +245,12 @@ def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, s
     """Return (in | out, type, name) of each argument of a draw's function."""
     match = re.search(_SIGNATURE.format(name=name), kernel.source.code)
     if not match or match.group(1) != "vec4":
-        raise kernel.source.lines[0].error(f"a draw needs a function {example}")
-    found = []
-    for part in filter(None, (p.strip() for p in match.group(2).split(","))):
-        words = [w for w in part.split() if w not in ("const", "highp", "mediump", "lowp")]
-        way = words.pop(0) if words[0] in ("in", "out", "inout") else "in"
-        if len(words) != 2 or way == "inout":
-            raise _line_of(kernel, name).error(f"cannot read the argument '{part}' of {name}; expected {example}")
-        found.append((way, words[0], words[1]))
+        raise _unsigned(kernel, f"a draw needs a function {example}")
+    found = [_argument(part) for part in match.group(2).split(",") if part.strip()]
+    for (way, kind, called), part in zip(found, match.group(2).split(","), strict=False):
+        if not called or way == "inout" or not kind.isidentifier():
+            message = f"cannot read the argument '{part.strip()}' of {name}; expected {example}"
+            raise _line_of(kernel, name).error(message)
     return found
 
 
@@ -257,25 +279,50 @@ def _check_signature(kernel: Kernel) -> None:
     if not match:
         raise _unsigned(kernel, f"there is no function {signature(kernel)}")
     single = len(kernel.outputs) == 1
-    parts = [part.split() for part in match.group(2).split(",")]
-    found = [([*p[:-1]][-1] if len(p) > 1 else p[0] if p else "", p[0] if p else "") for p in parts]
-    wanted = ["ivec2"] if single else ["ivec2", *(o.glsl for o in kernel.outputs)]
+    found = [_argument(part) for part in match.group(2).split(",")]
+    wanted = [("in", "ivec2")] if single else [("in", "ivec2"), *(("out", o.glsl) for o in kernel.outputs)]
     result = kernel.outputs[0].glsl if single else "void"
-    types = [kind for kind, _ in found]
-    ways = [way for _, way in found[1:]]
-    if match.group(1) != result or types != wanted or any(way != "out" for way in ways):
+    if match.group(1) != result or [(way, kind) for way, kind, _ in found] != wanted:
         raise _unsigned(kernel, f"kernel must be {signature(kernel)}", match.start(1))
-    names = [p[-1] for p in parts[1:]]
+    names = [name for _, _, name in found[1:]]
     if not single and names != [o.name for o in kernel.outputs]:
-        raise _unsigned(kernel, f"kernel must be {signature(kernel)}: its outputs in the order of the pragma", match.start(1))
-    if kernel.visits and not re.search(r"\bivec2\s+visit\s*\(\s*ivec2\b", code):
+        message = f"kernel must be {signature(kernel)}: its outputs in the order of the pragma"
+        raise _unsigned(kernel, message, match.start(1))
+    if kernel.visits and not re.search(r"\bivec2\s+visit\s*\(\s*(?:const\s+)?(?:in\s+)?ivec2\b", code):
         raise _unsigned(kernel, "a kernel with visits needs a function ivec2 visit(ivec2 cell)")
+    _check_previous(kernel)
+
+
+def _argument(text: str) -> tuple[str, str, str]:
+    """Return (in | out | inout, type, name) of a function's argument; "" for what is not there."""
+    words = [w for w in text.split() if w not in ("const", "highp", "mediump", "lowp")]
+    way = words.pop(0) if words and words[0] in ("in", "out", "inout") else "in"
+    kind, name, more = (*words, "", "", "")[:3]
+    return way, kind if not more else text.strip(), name
+
+
+def _check_previous(kernel: Kernel) -> None:
+    """Refuse what reads a turn before where there is none, or by a name that no output has."""
+    names = [previous_name(kernel, output) for output in kernel.outputs]
+    for number, line in enumerate(kernel.source.lines):
+        for match in re.finditer(r"\bprevious(?:_(\w+))?\s*\(", line.code):
+            called = match.group().rstrip("( \t")
+            if called in names and kernel.repeat == "1":
+                message = f"{called} is the turn before, but the kernel has one turn only; give it a repeat"
+                raise kernel.source.lines[number].error(message, match.start() + 1)
+            if called not in names and called in (
+                "previous",
+                *(f"previous_{o.name}" for o in kernel.outputs),
+            ):
+                raise kernel.source.lines[number].error(
+                    f"the turn before is read by {' and '.join(names)}, not {called}", match.start() + 1
+                )
 
 
 def _unsigned(kernel: Kernel, message: str, position: int = -1) -> ShaderError:
     if position < 0:
-        pragma = next((line for line in kernel.source.lines if "#pragma" in line.text), kernel.source.lines[0])
-        return pragma.error(message)
+        pragma = next((line for line in kernel.source.lines if _PRAGMA.match(line.text)), None)
+        return (pragma or kernel.source.lines[0]).error(message)
     code = kernel.source.code
     number = code.count("\n", 0, position)
     return kernel.source.lines[number].error(message, position - (code.rfind("\n", 0, position) + 1) + 1)

@@ -178,7 +178,10 @@ class Live:
         self._steer(area)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
+        draws = session.draws
         picture = session.frame((wide - skipped, high))
+        if session.draws != draws:
+            self._settling = max(self._settling, 1)  # the panel tells what the picture took
         self._say_reload()
         actions.take_notes()
         if session.error is not None:
@@ -196,16 +199,17 @@ class Live:
 
     def _steer(self, area: Area) -> None:
         """Move the camera as the mouse says, unless the mouse is the panel's."""
-        io = imgui.get_io()
-        session = self.session
+        io, session = imgui.get_io(), self.session
         if io.want_capture_mouse or session.plan is None or session.sketch is None:
             return
-        left, right = io.mouse_down[0], io.mouse_down[1]
-        if session.map is None and not session.orbits:
-            return
+        left, right = _dragged(0), _dragged(1)
         gesture = Gesture(
-            area[3], io.mouse_delta.x, io.mouse_delta.y, io.mouse_wheel,
-            orbiting=left and not io.key_shift, panning=right or (left and io.key_shift),
+            height=area[3],
+            across=io.mouse_delta.x,
+            down=io.mouse_delta.y,
+            wheel=io.mouse_wheel,
+            orbiting=left and not io.key_shift,
+            panning=right or (left and io.key_shift),
         )
         if gesture.acts and session.orbits:
             session.look(steered(session.sketch.camera, session.plan.eye, gesture))
@@ -217,3 +221,11 @@ class Live:
             if self._reloads is not None:
                 self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest
+
+
+def _dragged(button: int) -> bool:
+    """Say whether the mouse's way since the last turn was a drag.
+
+    The way to where a button went down is none; the way to where it came up is one.
+    """
+    return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(button)

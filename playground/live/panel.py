@@ -51,8 +51,9 @@ class Panel:
         imgui.begin("panel", None, flags)
         self._head(actions, look)
         footer = _footer_height()
-        imgui.begin_child("sections", ImVec2(0, -footer), 0, imgui.WindowFlags_.always_vertical_scrollbar)
         sketch = actions.session.sketch
+        bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
+        imgui.begin_child("sections", ImVec2(0, -footer), 0, bar)
         if sketch is not None:
             self._map(actions, look)
             self._passes(sketch, actions, look)

@@ -88,7 +88,11 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
     for key, value in given.items():
         path = f"{prefix}{key}"
         inside = isinstance(value, Mapping) and not _resolve(technique, path)
-        new = flat_values(technique, value, f"{path}.") if inside and isinstance(value, Mapping) else {path: value}
+        new = (
+            flat_values(technique, value, f"{path}.")
+            if inside and isinstance(value, Mapping)
+            else {path: value}
+        )
         for name in new:
             if name in found:
                 raise ParameterError(f"'{name}' is set twice")
@@ -202,7 +206,9 @@ def _land_value(key: str, given: object) -> Value:
         values = []
     if key == "size":
         if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= 16384 for v in values):
-            raise ParameterError(f"size = {spell(given)}: expected 1 to 16384 texels a side, as 513 or 513x257")
+            raise ParameterError(
+                f"size = {spell(given)}: expected 1 to 16384 texels a side, as 513 or 513x257"
+            )
         return int(values[0]), int(values[-1])
     if key == "extent":
         if len(values) not in (1, 2) or not all(0 < v < 1e9 for v in values):

@@ -15,11 +15,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING
 
 from playground.errors import DataError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6}|[0-9a-f]{8})", re.IGNORECASE | re.ASCII)
 
@@ -31,6 +33,8 @@ def srgb_to_linear(encoded: ArrayLike) -> NDArray[np.float64]:
     float64 of that shape. Below 0 the straight piece goes on, above 1 the
     curve does. Alpha is never encoded: leave it out.
     """
+    import numpy as np  # a tenth of a second, which to list the sketches need not cost
+
     c = np.asarray(encoded, dtype=np.float64)
     curve = ((np.maximum(c, 0.04045) + 0.055) / 1.055) ** 2.4
     return np.asarray(np.where(c <= 0.04045, c / 12.92, curve))
@@ -38,6 +42,8 @@ def srgb_to_linear(encoded: ArrayLike) -> NDArray[np.float64]:
 
 def linear_to_srgb(linear: ArrayLike) -> NDArray[np.float64]:
     """Encode linear light as sRGB: the inverse of `srgb_to_linear`, same shapes."""
+    import numpy as np  # as above
+
     c = np.asarray(linear, dtype=np.float64)
     curve = 1.055 * np.maximum(c, 0.0031308) ** (1.0 / 2.4) - 0.055
     return np.asarray(np.where(c <= 0.0031308, 12.92 * c, curve))
@@ -58,8 +64,8 @@ def parse_hex(text: str) -> tuple[float, ...]:
     digits = found[1:]
     if len(digits) == 3:
         digits = "".join(2 * d for d in digits)
-    values = np.array(list(bytes.fromhex(digits))) / 255.0
-    return (*srgb_to_linear(values[:3]).tolist(), *values[3:].tolist())
+    values = [byte / 255.0 for byte in bytes.fromhex(digits)]
+    return (*map(_decoded, values[:3]), *values[3:])
 
 
 def to_hex(linear: Sequence[float]) -> str:
@@ -74,6 +80,13 @@ def to_hex(linear: Sequence[float]) -> str:
     values = [float(v) for v in linear]
     if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
         raise DataError(f"{tuple(values)} is not a colour; expected three or four finite numbers from 0 to 1")
-    clamped = np.clip(np.array(values), 0.0, 1.0)
-    clamped[:3] = linear_to_srgb(clamped[:3])
-    return "#" + bytes(np.rint(255.0 * clamped).astype(np.uint8)).hex()
+    clamped = [min(max(v, 0.0), 1.0) for v in values]
+    return "#" + bytes(round(255.0 * v) for v in (*map(_encoded, clamped[:3]), *clamped[3:])).hex()
+
+
+def _decoded(c: float) -> float:
+    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+
+
+def _encoded(c: float) -> float:
+    return c * 12.92 if c <= 0.0031308 else 1.055 * c ** (1.0 / 2.4) - 0.055

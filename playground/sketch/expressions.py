@@ -150,7 +150,9 @@ def _parse(text: str) -> ast.expr:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated, and not worth a line on the console
+            warnings.simplefilter(
+                "ignore"
+            )  # "1 if 2else 3" is deprecated, and not worth a line on the console
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
@@ -171,16 +173,18 @@ def _dotted(node: ast.expr, text: str) -> str:
 
 
 def _power(base: Number, exponent: Number) -> Number:
+    result: Number
     if not isinstance(exponent, int):
         raise ExpressionError("the exponent of a power should be a whole number")
-    if abs(exponent) > 62 or abs(base) > 2**31:
+    if not -62 <= exponent <= 62 or not -(2**31) <= base <= 2**31:
         raise ExpressionError("a power may not be that large")
     if base == 0 and exponent < 0:
         raise ExpressionError("division by zero")
     try:
-        return Fraction(base) ** exponent if exponent < 0 and isinstance(base, int) else base**exponent
+        result = Fraction(base) ** exponent if exponent < 0 and isinstance(base, int) else base**exponent
     except OverflowError:
         raise ExpressionError("a power may not be that large") from None
+    return result
 
 
 def _divide(a: Number, b: Number) -> Number:
@@ -229,14 +233,21 @@ def _walk(
     def go(inner: ast.expr) -> Number:
         return _walk(inner, text, look_up, known, dry=dry)
 
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-        value: Number = node.value
+    value: Number
+    if (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, int | float)
+        and not isinstance(node.value, bool)
+    ):
+        value = node.value
     elif isinstance(node, ast.Name | ast.Attribute):
         name = _dotted(node, text)
         try:
             value = look_up(name)
         except KeyError:
-            raise ExpressionError(f"'{text}' names '{name}', which is not known here{nearest(name, known)}") from None
+            raise ExpressionError(
+                f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
+            ) from None
     elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         left, right = go(node.left), go(node.right)
         value = 1 if dry else _binary(type(node.op), left, right)
@@ -258,9 +269,13 @@ def _walk(
         try:
             value = _FUNCTIONS[node.func.id](*([1] * len(arguments) if dry else arguments))
         except TypeError:
-            raise ExpressionError(f"'{text}' calls '{node.func.id}' with the wrong number of values") from None
+            raise ExpressionError(
+                f"'{text}' calls '{node.func.id}' with the wrong number of values"
+            ) from None
     else:
-        raise ExpressionError(f"'{text}' holds something other than numbers, names, + - * / // % ** and log2()")
+        raise ExpressionError(
+            f"'{text}' holds something other than numbers, names, + - * / // % ** and log2()"
+        )
     return _checked(value, text)
 
 
@@ -272,6 +287,6 @@ def _binary(kind: type[ast.operator], left: Number, right: Number) -> Number:
 
 def _checked(value: Number, text: str) -> Number:
     # A fraction can stay small and grow without end: ((1/3)**62)**62 has thousands of digits.
-    if not abs(value) <= _LIMIT or (isinstance(value, Fraction) and value.denominator > _LIMIT):
+    if not -_LIMIT <= value <= _LIMIT or (isinstance(value, Fraction) and value.denominator > _LIMIT):
         raise ExpressionError(f"'{text}' grows beyond 2**62")
     return value.numerator if isinstance(value, Fraction) and value.denominator == 1 else value

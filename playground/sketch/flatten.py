@@ -24,8 +24,8 @@ from playground.sketch.same import Same
 from playground.sketch.wiring import (
     check_graph,
     initial_names,
-    input_names,
     inner,
+    input_names,
     is_optional,
     output_names,
     outputs_with_formats,
@@ -50,6 +50,7 @@ __all__ = [
     "outputs_with_formats",
     "takes_input",
 ]
+
 
 @dataclass(frozen=True, slots=True)
 class Ref:
@@ -191,19 +192,21 @@ class _Flattener:
             self._open_wired(graph, "")
 
     def _open(self, prefix: str, path: str) -> None:
-        """Keep companions from standing for what is around a path."""
+        """Keep companions from standing for the techniques around a pass."""
         parts = path.partition(":")[0].split(".")
         self.opened |= {_join(prefix, ".".join(parts[:i])) for i in range(1, len(parts))}
 
     def _open_wired(self, graph: Graph, prefix: str) -> None:
         for _, text in graph.outputs:
             self._open(prefix, text)
+        for export in graph.inputs:
+            for target in export.targets:
+                self._open(prefix, target.rpartition(".")[0])
         for spec in graph.passes:
-            for name, text in spec.inputs:
+            for _, text in spec.inputs:
                 self._open(prefix, text)
-                self._open(_join(prefix, spec.name), f"inside.{name}" if "." in name else name)
-            if any("." in name for name, _ in (*spec.inputs, *spec.feedback)):
-                self.opened.add(_join(prefix, spec.name))
+            for name, _ in (*spec.inputs, *spec.feedback):
+                self._open(prefix, f"{spec.name}.{name}".rpartition(".")[0])
             if isinstance(spec.technique, Graph):
                 self._open_wired(spec.technique, _join(prefix, spec.name))
 
@@ -263,7 +266,9 @@ class _Flattener:
             return self._body(spec, path, wires)
         for name, source in wires.items():
             if isinstance(source, Ref) and f"{source.path}.".startswith(f"{path}."):
-                raise spec.error(f"pass '{spec.name}' reads itself; feedback = {{ {name} = \"…\" }} is the way")
+                raise spec.error(
+                    f"pass '{spec.name}' reads itself; feedback = {{ {name} = \"…\" }} is the way"
+                )
         feedback = []
         for name, output in spec.feedback:
             feedback.append((name, wires.get(name), self.outputs[path][output]))
@@ -298,7 +303,9 @@ class _Flattener:
             raise spec.error(f"input '{wanted}': nothing named '{where}' inside '{head}'")
         outputs = self._outputs_of(technique, _join(prefix, where))
         if output and output not in outputs:
-            raise spec.error(f"input '{wanted}': pass '{where}' has no output '{output}'{nearest(output, outputs)}")
+            raise spec.error(
+                f"input '{wanted}': pass '{where}' has no output '{output}'{nearest(output, outputs)}"
+            )
         if output:
             return outputs[output]
         return outputs.get(wanted.rpartition(".")[2], next(iter(outputs.values())))
@@ -321,14 +328,18 @@ class _Flattener:
             for output in outputs
         ]
         hint = f"; candidates: {', '.join(candidates)}" if candidates else "; there is no earlier pass"
-        raise spec.error(f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}{hint}")
+        raise spec.error(
+            f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}{hint}"
+        )
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
     """Say whether all that an exported input stands for is wired by paths inside."""
     if isinstance(technique, Kernel):
         return False
-    return all(target in wires for export in technique.inputs if export.name == name for target in export.targets)
+    return all(
+        target in wires for export in technique.inputs if export.name == name for target in export.targets
+    )
 
 
 def _join(prefix: str, name: str) -> str:
@@ -363,7 +374,9 @@ def _ordered(nodes: list[Node], graph: Graph) -> list[Node]:
     return [nodes[i] for i in order]
 
 
-def _circle(nodes: list[Node], needs: dict[int, set[int]], done: dict[int, None], graph: Graph) -> SketchError:
+def _circle(
+    nodes: list[Node], needs: dict[int, set[int]], done: dict[int, None], graph: Graph
+) -> SketchError:
     chain = [next(i for i in needs if i not in done)]
     while chain[-1] not in chain[:-1]:
         chain.append(next(i for i in needs[chain[-1]] if i not in done))

@@ -39,7 +39,7 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1")',
 }
 _SIZE = ("size.x", "size.y")
-_BUFFER_TYPES = tuple(f"{kind}{n}" for kind in ("vec", "ivec", "uvec") for n in (2, 4)) + ("float", "int", "uint")
+_BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
 
 PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
     "time": ("iTime", "iGlobalTime", "u_time", "time", "uTime"),
@@ -66,7 +66,9 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     if not found:
         return None
     if versions:
-        raise versions[0].error("a kernel has no #version of its own; only a plain shader, without #pragma, has one")
+        raise versions[0].error(
+            "a kernel has no #version of its own; only a plain shader, without #pragma, has one"
+        )
     if len(found) > 1:
         raise found[1].error("a second #pragma; a file is one kernel, one source or one draw")
     line = found[0]
@@ -104,7 +106,7 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
         try:
             expressions.accepted_sizes(kernel.accepts)
         except ExpressionError as error:
-            raise line.error(f"accepts: {error}; as accepts = \"2**n + 1\"") from None
+            raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
     return kernel
 
 
@@ -174,7 +176,9 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
             example = "stack:vec4:size.x * 64 (several parted by ;)"
             raise line.error(f"buffer '{part}': expected name:type:count, as {example}")
         if pieces[1] not in _BUFFER_TYPES:
-            raise line.error(f"buffer '{pieces[0]}' has no type '{pieces[1]}'{nearest(pieces[1], _BUFFER_TYPES)}")
+            raise line.error(
+                f"buffer '{pieces[0]}' has no type '{pieces[1]}'{nearest(pieces[1], _BUFFER_TYPES)}"
+            )
         _check(f"buffer '{pieces[0]}'", pieces[2], names, line)
         buffers.append(Buffer(pieces[0], pieces[1], pieces[2]))
     _check("groups", options["groups"], (*names, "iteration"), line, count=2)
@@ -249,4 +253,6 @@ def _refuse_driver_bound(source: SourceText) -> None:
             if word in DRIVER_BOUND:
                 raise line.error(f"a kernel may not use '{word}': {DRIVER_BOUND[word]}", match.start() + 1)
             if word.startswith("gl_"):
-                raise line.error(f"a kernel may not use '{word}': it is told its texel as an argument", match.start() + 1)
+                raise line.error(
+                    f"a kernel may not use '{word}': it is told its texel as an argument", match.start() + 1
+                )

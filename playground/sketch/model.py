@@ -261,7 +261,9 @@ class Sketch:
         for shot in self.shots:
             if shot.name == name:
                 return shot
-        raise SketchError(f"no shot '{name}' in sketch {self.name}{nearest(name, [s.name for s in self.shots])}")
+        raise SketchError(
+            f"no shot '{name}' in sketch {self.name}{nearest(name, [s.name for s in self.shots])}"
+        )
 
     def with_values(self, values: Mapping[str, object]) -> Sketch:
         """Return the sketch with parameters set, by path; text is read as on the command line.

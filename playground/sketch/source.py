@@ -143,7 +143,9 @@ class _Reader:
             rest = physical[number : number + count - 1]
             self.lines += [Line(raw, "", "", str(path), number + i, chain) for i, raw in enumerate(rest, 1)]
             if len(self.lines) > _MAX_LINES:
-                raise line.error(f"more than {_MAX_LINES} lines with its includes; is something included over and over?")
+                raise line.error(
+                    f"more than {_MAX_LINES} lines with its includes; is something included over and over?"
+                )
             if include:
                 self.include(include, line, path, chain, stack)
             number += count

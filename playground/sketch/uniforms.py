@@ -108,8 +108,15 @@ def check_name(name: str, line: Line, what: str) -> None:
 
 def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
     words = _WORD_UNIFORM.findall(line.code)
-    if words and not line.code.lstrip().startswith("#") and not _IMAGE.search(line.code) and (not match or len(words) > 1):
-        raise line.error("a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation")
+    if (
+        words
+        and not line.code.lstrip().startswith("#")
+        and not _IMAGE.search(line.code)
+        and (not match or len(words) > 1)
+    ):
+        raise line.error(
+            "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
+        )
 
 
 def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
@@ -196,7 +203,7 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
         return Widget(kind, low, high)
     if kind == "menu":
         if len(arguments) < 2:
-            raise line.error(f"the menu of '{name}' needs its choices, as menu(\"linear\", \"smooth\")")
+            raise line.error(f'the menu of \'{name}\' needs its choices, as menu("linear", "smooth")')
         if len(set(arguments)) < len(arguments):
             raise line.error(f"the menu of '{name}' has a choice twice")
         return Widget(kind, choices=tuple(arguments))
@@ -212,14 +219,16 @@ def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line)
         numbers = ()
     ordered = count == 1 or (len(numbers) == 2 and numbers[0] < numbers[1])
     if len(numbers) != count or not ordered or not all(map(math.isfinite, numbers)):
-        wanted = f"two numbers, the lower first, as {word}(0, 1)" if count == 2 else "one number, as step(0.01)"
+        wanted = (
+            f"two numbers, the lower first, as {word}(0, 1)" if count == 2 else "one number, as step(0.01)"
+        )
         raise line.error(f"{word} of '{name}': expected {wanted}")
     return numbers
 
 
 def _text(calls: Calls, word: str, line: Line) -> str:
     if word in calls and len(calls[word]) != 1:
-        raise line.error(f"{word}() takes one text in quotes, as {word}(\"m\")")
+        raise line.error(f'{word}() takes one text in quotes, as {word}("m")')
     return calls[word][0] if word in calls else ""
 
 

@@ -15,8 +15,27 @@ from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Value
 
-_LENGTH = {"vec2": 2, "vec3": 3, "vec4": 4, "ivec2": 2, "ivec3": 3, "ivec4": 4, "uvec2": 2, "uvec3": 3, "uvec4": 4}
-_TRUE = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+_LENGTH = {
+    "vec2": 2,
+    "vec3": 3,
+    "vec4": 4,
+    "ivec2": 2,
+    "ivec3": 3,
+    "ivec4": 4,
+    "uvec2": 2,
+    "uvec3": 3,
+    "uvec4": 4,
+}
+_TRUE = {
+    "true": True,
+    "on": True,
+    "yes": True,
+    "1": True,
+    "false": False,
+    "off": False,
+    "no": False,
+    "0": False,
+}
 
 
 def length_of(glsl_type: str) -> int:
@@ -71,7 +90,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
     else:
         if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != count:
             raise _wrong(name, given, expected(parameter))
-        value = tuple(_number(parameter, item, name) for item in given)  # type: ignore[assignment]
+        value = tuple(_number(parameter, item, name) for item in given)
     _check_range(parameter, value, name)
     return value
 
@@ -138,7 +157,9 @@ def _menu(parameter: Parameter, given: object, name: str) -> int:
     if isinstance(given, str):
         if given in choices:
             return choices.index(given)
-        raise ParameterError(f"{name} = {spell(given)}: expected one of {', '.join(choices)}{_meant(given, choices)}")
+        raise ParameterError(
+            f"{name} = {spell(given)}: expected one of {', '.join(choices)}{_meant(given, choices)}"
+        )
     if isinstance(given, float) and given.is_integer():
         given = int(given)
     if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(choices):
@@ -154,7 +175,9 @@ def _meant(given: str, choices: Sequence[str]) -> str:
 def _direction(given: Mapping[str, object], name: str) -> list[object]:
     extra = set(given) - {"azimuth", "elevation"}
     if extra or len(given) != 2:
-        raise ParameterError(f"{name}: expected {{ azimuth, elevation }}, found {{ {', '.join(map(str, given))} }}")
+        raise ParameterError(
+            f"{name}: expected {{ azimuth, elevation }}, found {{ {', '.join(map(str, given))} }}"
+        )
     return [given["azimuth"], given["elevation"]]
 
 
@@ -185,9 +208,9 @@ def _number(parameter: Parameter, given: object, name: str) -> float | int:
 
 def _check_range(parameter: Parameter, value: Value, name: str) -> None:
     widget = parameter.widget
-    items = value if isinstance(value, tuple) else (value,)
+    items: tuple[float | str, ...] = value if isinstance(value, tuple) else (value,)
     if widget.kind == "direction":
-        azimuth, elevation = items
+        azimuth, elevation = items[0], items[-1]
         if not -90 <= float(elevation) <= 90:
             raise ParameterError(f"{name}: elevation {float(elevation):g} is outside -90 to 90 degrees")
         if not -720 <= float(azimuth) <= 720:

@@ -72,4 +72,4 @@ DRIVER_BOUND: dict[str, str] = {
     "precise": "GLSL 3.30 has none",
     "findMSB": "GLSL 3.30 has none",
 }
-"""What a kernel may not use, for the same text runs as a fragment and as a compute shader; with the reason."""
+"""What a kernel may not use, since its text runs as a fragment and as a compute shader; with the reason."""

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from playground.sketch.model import Camera
 
-FILL = 0.86
-"""Share of the bounding sphere's distance at which an unset distance puts the eye: land is flatter than a sphere."""
+MARGIN = 1.06
+"""Air around a land that just fills the picture, as a share of the eye's distance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +35,14 @@ class Eye:
 
 
 def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple[int, int]) -> Eye:
-    """Return the eye of a camera over a land of ``extent`` and ``relief`` metres, in a picture of ``size`` pixels."""
+    """Return the eye of a camera over a land, in a picture.
+
+    ``extent`` and ``relief`` in metres, ``size`` in pixels.
+    """
     aspect = size[0] / size[1]
     radius = 0.5 * math.sqrt(extent[0] ** 2 + extent[1] ** 2 + relief**2)
     target = camera.target or (extent[0] / 2, extent[1] / 2, relief / 2)
-    distance = camera.distance or fit(camera, radius, aspect)
+    distance = camera.distance or fit(camera, extent, relief, aspect)
     azimuth, elevation = math.radians(camera.azimuth), math.radians(camera.elevation)
     towards = (
         math.sin(azimuth) * math.cos(elevation),
@@ -61,11 +64,29 @@ def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple
     return Eye(matrix, (position[0], position[1], position[2]), target, distance)
 
 
-def fit(camera: Camera, radius: float, aspect: float) -> float:
-    """Return the distance from which a sphere of ``radius`` metres about fills the picture."""
-    half = math.radians(camera.field_of_view) / 2
-    narrow = min(half, math.atan(math.tan(half) * aspect))
-    return FILL * radius / math.sin(narrow)
+def fit(camera: Camera, extent: tuple[float, float], relief: float, aspect: float) -> float:
+    """Return the distance [m] from the land's middle at which all of it is in the picture.
+
+    The same for every azimuth, so that orbiting does not zoom: the land's corners are on two
+    circles of radius R around the middle, h above and below it. Where the angle from the eye's
+    azimuth is phi, a corner at height z = +-h is
+
+        R sin phi                               right of the middle
+        z cos(e) - R cos(phi) sin(e)            above it
+        R cos(phi) cos(e) + z sin(e)            nearer to the eye
+
+    for an eye e above the horizon. It is in the picture when its distance from the eye is
+    right / tan(half the width) and above / tan(half the height) or more; the two terms in phi
+    are greatest at the root of the sum of their squares.
+    """
+    radius, up = math.hypot(*extent) / 2, relief / 2
+    tall = math.tan(math.radians(camera.field_of_view) / 2)
+    cosine, sine = math.cos(math.radians(camera.elevation)), math.sin(math.radians(camera.elevation))
+    sideways = radius * math.hypot(cosine, 1 / (tall * aspect)) + up * abs(sine)
+    upwards = max(
+        radius * abs(cosine + sign * sine / tall) + up * abs(sine - sign * cosine / tall) for sign in (-1, 1)
+    )
+    return max(MARGIN * max(sideways, upwards), 1e-2)
 
 
 def orbit(camera: Camera, azimuth: float, elevation: float) -> Camera:
@@ -83,7 +104,10 @@ def zoom(camera: Camera, factor: float, distance: float) -> Camera:
 
 
 def pan(camera: Camera, eye: Eye, right: float, up: float) -> Camera:
-    """Return the camera moved over the land by shares of the picture's height: ``right``, and ``up`` along the ground."""
+    """Return the camera moved over the land: ``right``, and ``up`` along the ground.
+
+    Both are shares of the picture's height; what is at the target moves across the picture the other way.
+    """
     azimuth = math.radians(camera.azimuth)
     scale = 2 * eye.distance * math.tan(math.radians(camera.field_of_view) / 2)
     # The picture's right is a quarter turn counter-clockwise from where the eye stands, seen from above.

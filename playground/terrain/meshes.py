@@ -58,8 +58,16 @@ MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int
 """Name → (builder, the draw's parameters that it reads with their least and greatest)."""
 
 
+def mesh_parameters(name: str) -> tuple[str, ...]:
+    """Return the names of the parameters that a mesh depends on; none where there is no such mesh."""
+    return tuple(MESHES[name][1]) if name in MESHES else ()
+
+
 def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
-    """Return the parameters that a mesh depends on; raise ``SketchError`` where one is missing or out of range."""
+    """Return the parameters that a mesh depends on, with their values.
+
+    Raises ``SketchError`` where one is missing or out of range.
+    """
     if name not in MESHES:
         raise SketchError(f"there is no mesh '{name}'{nearest(name, MESHES)}")
     found = []

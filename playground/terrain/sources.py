@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 from playground.errors import DataError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.model import Value
-from playground.terrain.elevation import Elevation, fill_no_data, read_elevation, resample
+from playground.terrain.elevation import Edge, Elevation, read_elevation
+from playground.terrain.gaps import Voids, fill_no_data
+from playground.terrain.grid import Packing
+from playground.terrain.resample import resample
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +52,15 @@ def source_kind(name: str) -> SourceKind:
 
 @lru_cache(maxsize=4)
 def _read(
-    path: str, stamp: tuple[int, int], raw_size: tuple[int, int] | None, packing: str, voids: str
+    path: str,
+    stamp: tuple[int, int],
+    raw_size: tuple[int, int] | None,
+    packing: Packing,
+    voids: Voids,
+    first_row: Edge,
 ) -> Elevation:
-    elevation = read_elevation(Path(path), raw_size=raw_size, packing="rgb" if packing == "rgb" else "grey")
-    return fill_no_data(elevation, "fill" if voids == "fill" else "refuse")
+    elevation = read_elevation(Path(path), raw_size=raw_size, packing=packing, first_row=first_row)
+    return fill_no_data(elevation, voids)
 
 
 def _elevation(values: Mapping[str, Value]) -> Elevation:
@@ -63,9 +71,10 @@ def _elevation(values: Mapping[str, Value]) -> Elevation:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     raw = values["raw_size"]
     size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
-    packing = ("grey", "rgb")[int(values["packing"])]  # type: ignore[arg-type]
-    voids = ("refuse", "fill")[int(values["no_data"])]  # type: ignore[arg-type]
-    return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids)
+    packing: Packing = "rgb" if values["packing"] == 1 else "grey"
+    voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
+    first_row: Edge = "south" if values["first_row"] == 1 else "north"
+    return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
 
 
 def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
@@ -105,7 +114,7 @@ def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[
         else np.zeros_like(elevation.heights)
     )
     if size != elevation.size:
-        heights = resample(heights, size)
+        heights = resample(heights, size, within=(0.0, 1.0))
     return {"height": heights}
 
 
@@ -114,7 +123,7 @@ SOURCES: dict[str, SourceKind] = {
         _describe_elevation,
         _make_elevation,
         ("elevation",),
-        ("elevation", "raw_size", "packing", "no_data", "metres"),
+        ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
     ),
 }
 """Name → what it does."""

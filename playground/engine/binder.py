@@ -1,0 +1,157 @@
+"""Hand a program what it reads: given names, parameters, textures with their samplers.
+
+Image files become textures here, and are kept; so are samplers and the single texels that
+stand in for what is not wired.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from playground.engine.files import content_hash
+from playground.engine.plan import Step
+from playground.engine.programs import Program
+from playground.engine.results import Wired
+from playground.errors import ContextError
+from playground.gpu.textures import check_size, drain
+from playground.images.files import read_image
+from playground.paths import shown
+from playground.sketch.colour import srgb_to_linear
+from playground.sketch.model import Kernel, Parameter, Sampling, Value
+
+if TYPE_CHECKING:
+    import moderngl
+
+_SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
+_MAX_FILES = 32
+_CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
+
+
+class Binder:
+    """Binds textures and sets uniforms on one context."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.ctx = ctx
+        self._samplers: dict[Sampling, moderngl.Sampler] = {}
+        self._constants: dict[str, moderngl.Texture] = {}
+        self._files: OrderedDict[tuple[str, bool], moderngl.Texture] = OrderedDict()
+        self._units = 0  # texture units used in this frame
+
+    def release(self) -> None:
+        """Give back every texture and sampler kept."""
+        for texture in (*self._constants.values(), *self._files.values()):
+            texture.release()
+        for sampler in self._samplers.values():
+            sampler.release()
+        self._samplers.clear()
+        self._constants.clear()
+        self._files.clear()
+
+    def tidy(self) -> None:
+        """Take the samplers off the texture units: they would change how others read theirs."""
+        if self._units:
+            self.ctx.clear_samplers(0, self._units)
+            self._units = 0
+
+    def bind(
+        self, program: Program, step: Step, given: Mapping[str, Any], inputs: Mapping[str, Wired]
+    ) -> int:
+        """Set what stays over the turns of a step; return the next free texture unit."""
+        kernel, unit = step.kernel, 0
+        for name, value in given.items():
+            program.set(name, value)
+        program.set("size", step.size)
+        for parameter in kernel.parameters:
+            if parameter.widget.kind != "file":
+                program.set(parameter.name, step.values[parameter.name])
+            elif parameter.name in program:
+                image = self._file(parameter, step.values[parameter.name])
+                unit = self.texture(program, parameter.name, unit, image, parameter.sampling)
+        for declared in kernel.inputs:
+            if declared.name not in program:
+                continue
+            result, texture, output = inputs.get(declared.name, Wired())
+            if texture is None:
+                texture = self.constant(declared.fallback or "black")
+            elif declared.sampling.mipmap and (result is None or output not in result.mipmapped):
+                texture.build_mipmaps()
+                if result is not None:
+                    result.mipmapped.add(output)
+            unit = self.texture(program, declared.name, unit, texture, declared.sampling)
+        return unit
+
+    def previous(
+        self, program: Program, kernel: Kernel, state: Mapping[str, moderngl.Texture], unit: int
+    ) -> None:
+        """Bind the textures of the turn before; zeros where there is none."""
+        for output in kernel.outputs:
+            name = f"k_previous_{output.name}"
+            if name in program:
+                texture = state.get(output.name) or self.constant("zero")
+                unit = self.texture(program, name, unit, texture, Sampling())
+
+    def texture(
+        self, program: Program, name: str, unit: int, texture: moderngl.Texture, sampling: Sampling
+    ) -> int:
+        """Bind one texture; return the next free unit."""
+        texture.use(unit)
+        self._sampler(sampling).use(unit)
+        program.set(name, unit)
+        self._units = max(self._units, unit + 1)
+        return unit + 1
+
+    def constant(self, name: str) -> moderngl.Texture:
+        """Return a texture of one texel: white, black, or zero in every channel."""
+        if name not in self._constants:
+            texel = np.array(_CONSTANTS[name], np.float32).tobytes()
+            self._constants[name] = self.ctx.texture((1, 1), 4, texel, dtype="f4")
+        return self._constants[name]
+
+    def _sampler(self, sampling: Sampling) -> moderngl.Sampler:
+        if sampling not in self._samplers:
+            linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
+            shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
+            if sampling.mipmap:
+                shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
+            sampler = self.ctx.sampler(repeat_x=around, repeat_y=around)
+            sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
+            self._samplers[sampling] = sampler
+        return self._samplers[sampling]
+
+    def _file(self, parameter: Parameter, value: Value) -> moderngl.Texture:
+        path = Path(str(value))
+        key = (content_hash(path), parameter.sampling.mipmap)
+        if key not in self._files:
+            texture = self._read(path)
+            if parameter.sampling.mipmap:
+                texture.build_mipmaps()
+            self._files[key] = texture
+            while len(self._files) > _MAX_FILES:
+                self._files.popitem(last=False)[1].release()
+        self._files.move_to_end(key)
+        return self._files[key]
+
+    def _read(self, path: Path) -> moderngl.Texture:
+        """Make a texture of an image file: linear light, row 0 south."""
+        pixels = read_image(path).pixels[::-1]
+        size = (pixels.shape[1], pixels.shape[0])
+        try:
+            check_size(self.ctx, size, "an image")
+        except ContextError as error:
+            raise ContextError(str(error), file=shown(path)) from None
+        if pixels.dtype == np.uint8:
+            data = np.ascontiguousarray(pixels).tobytes()
+            texture = self.ctx.texture(size, 4, data, alignment=1, internal_format=_SRGB8_ALPHA8)
+        else:
+            linear = pixels.astype(np.float64)  # 0..1
+            linear[..., :3] = srgb_to_linear(linear[..., :3])
+            with np.errstate(under="ignore"):
+                half = linear.astype(np.float16)
+            texture = self.ctx.texture(size, 4, half.tobytes(), alignment=1, dtype="f2")
+        drain(self.ctx)
+        return texture

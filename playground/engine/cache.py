@@ -1,0 +1,110 @@
+"""Keep what passes made, under a bound in bytes; what was used least recently goes first."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+
+from playground.engine.results import Pool, Result
+
+
+@dataclass(eq=False)
+class Kept:
+    """The results of one pass, or of all passes of a loop after some turn."""
+
+    results: dict[str, Result]  # by the pass's path
+    turn: int = 0  # turns done, of a loop
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held."""
+        return sum(result.bytes for result in self.results.values())
+
+    def let_go(self, pool: Pool) -> None:
+        """Give the textures to a pool."""
+        for result in self.results.values():
+            pool.give(result)
+        self.results = {}
+
+
+class Cache:
+    """What passes made, by key; what the frame being drawn uses is never dropped."""
+
+    def __init__(self, limit: int, pool: Pool) -> None:
+        self.limit = limit  # [bytes]
+        self.hits = 0
+        self.misses = 0
+        self._pool = pool
+        self._kept: OrderedDict[str, Kept] = OrderedDict()
+        self._in_use: set[str] = set()
+        self._latest: dict[str, tuple[str, str, int]] = {}
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held."""
+        return sum(kept.bytes for kept in self._kept.values())
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._kept
+
+    def begin(self) -> None:
+        """Begin a frame: nothing is in use yet."""
+        self._in_use.clear()
+
+    def get(self, key: str) -> Kept | None:
+        """Return what is kept and mark it as used; None if there is nothing."""
+        kept = self._kept.get(key)
+        if kept is None:
+            self.misses += 1
+            return None
+        self.hits += 1
+        self._kept.move_to_end(key)
+        self._in_use.add(key)
+        return kept
+
+    def put(self, key: str, kept: Kept) -> None:
+        """Keep something, used by the current frame; what is over the bound goes."""
+        self.drop(key)
+        self._kept[key] = kept
+        self._in_use.add(key)
+        self.trim()
+
+    def note_turn(self, path: str, unfinished: str, key: str, turn: int) -> None:
+        """Remember how far a pass that may go on has come."""
+        self._latest[path] = (unfinished, key, turn)
+
+    def take_earlier(self, path: str, unfinished: str, turn: int) -> Result | None:
+        """Hand over the same pass after fewer turns, unless this frame uses it; the caller now owns it."""
+        known, key, before = self._latest.get(path, ("", "", 0))
+        if known != unfinished or before >= turn or key in self._in_use or key not in self._kept:
+            return None
+        (result,) = self._kept.pop(key).results.values()
+        return result
+
+    def drop(self, key: str) -> None:
+        """Forget something."""
+        kept = self._kept.pop(key, None)
+        self._in_use.discard(key)
+        if kept is not None:
+            kept.let_go(self._pool)
+
+    def trim(self) -> None:
+        """Drop what was used least recently until the bound holds or all that is left is in use."""
+        total = self.bytes
+        for key in list(self._kept):
+            if total <= self.limit:
+                return
+            if key not in self._in_use:
+                total -= self._kept[key].bytes
+                self.drop(key)
+
+    def clear(self) -> None:
+        """Drop everything."""
+        for kept in self._kept.values():
+            kept.let_go(self._pool)
+        self._kept.clear()
+        self._in_use.clear()
+        self._latest.clear()

@@ -1,0 +1,133 @@
+"""Keep compiled programs: one for each text, for as long as it is used.
+
+A kernel is wrapped once for each driver, and a text is compiled once; setting a uniform
+that the driver dropped does nothing.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any
+
+from playground.gpu.program import compile_wrapped
+from playground.gpu.wrap import wrap
+from playground.sketch.model import Kernel
+
+if TYPE_CHECKING:
+    import moderngl
+
+_SPARE = 64  # programs kept beyond those of the current frame
+_TRIANGLE = """#version 330
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
+"""
+
+
+class Program:
+    """A compiled program, its active uniforms, and the vertex arrays made for it."""
+
+    def __init__(self, ctx: moderngl.Context, compiled: Any) -> None:
+        self.ctx = ctx
+        self.compiled = compiled
+        self.uniforms: dict[str, Any] = {name: compiled[name] for name in compiled}
+        self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
+        self.frame = 0  # when it was last used
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.uniforms
+
+    def set(self, name: str, value: Any) -> None:
+        """Set a uniform if the driver kept it."""
+        uniform = self.uniforms.get(name)
+        if uniform is not None:
+            uniform.value = value
+
+    def fill(self) -> None:
+        """Draw one triangle over the whole of the bound framebuffer."""
+        array = self.arrays.get(None)
+        if array is None:
+            array = self.arrays[None] = self.ctx.vertex_array(self.compiled, [])
+        array.render(self.ctx.TRIANGLES, vertices=3)
+
+    def run(self, x: int, y: int) -> None:
+        """Run so many work groups, and let what they wrote be seen."""
+        self.compiled.run(x, y)
+        self.ctx.memory_barrier()
+
+    def release(self) -> None:
+        """Give it back to the driver."""
+        for array in self.arrays.values():
+            array.release()
+        self.arrays.clear()
+        self.compiled.release()
+
+
+class Programs:
+    """Programs of one context, by kernel and by text."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.ctx = ctx
+        self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
+        self.compiled = 0  # how many programs were compiled
+        self._frame = 0
+        self._by_text: OrderedDict[tuple[str, ...], Program] = OrderedDict()
+        # The kernel stands beside its texts so that its identity stays its own.
+        self._texts: OrderedDict[tuple[int, str], tuple[Kernel, tuple[str, ...]]] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._by_text)
+
+    def begin(self) -> None:
+        """Begin a frame."""
+        self._frame += 1
+
+    def get(self, kernel: Kernel, driver: str) -> Program:
+        """Return the program of a kernel; raise ``ShaderError`` where its text is wrong."""
+        known = self._texts.get((id(kernel), driver))
+        if known is not None and known[1] in self._by_text:
+            self._texts.move_to_end((id(kernel), driver))
+            return self._used(known[1])
+        wrapped = wrap(kernel, driver)
+        text = tuple(stage.text for stage in wrapped.stages.values())
+        self._texts[(id(kernel), driver)] = (kernel, text)
+        while len(self._texts) > 4 * _SPARE:
+            self._texts.popitem(last=False)
+        if text not in self._by_text:
+            start = time.perf_counter()
+            self._keep(text, compile_wrapped(self.ctx, wrapped))
+            self.compile_times[kernel.path] = (time.perf_counter() - start) * 1e3
+        return self._used(text)
+
+    def own(self, fragment: str) -> Program:
+        """Return the program of a fragment shader of the engine's own."""
+        text = (_TRIANGLE, fragment)
+        if text not in self._by_text:
+            self._keep(text, self.ctx.program(vertex_shader=_TRIANGLE, fragment_shader=fragment))
+        return self._used(text)
+
+    def forget_mesh(self, mesh: object) -> None:
+        """Release every vertex array made for a mesh."""
+        for program in self._by_text.values():
+            array = program.arrays.pop(mesh, None)
+            if array is not None:
+                array.release()
+
+    def release(self) -> None:
+        """Give every program back to the driver."""
+        for program in self._by_text.values():
+            program.release()
+        self._by_text.clear()
+        self._texts.clear()
+
+    def _used(self, text: tuple[str, ...]) -> Program:
+        self._by_text.move_to_end(text)
+        program = self._by_text[text]
+        program.frame = self._frame
+        return program
+
+    def _keep(self, text: tuple[str, ...], compiled: Any) -> None:
+        self.compiled += 1
+        self._by_text[text] = Program(self.ctx, compiled)
+        for old in list(self._by_text)[:-_SPARE]:
+            if self._by_text[old].frame != self._frame and old != text:
+                self._by_text.pop(old).release()

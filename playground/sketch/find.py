@@ -1,0 +1,48 @@
+"""Find a sketch by name or path, and list what ships."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playground.errors import SketchError, nearest
+from playground.paths import GLSL, SKETCHES, shown
+from playground.sketch.places import is_file, is_inside
+
+SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
+"""Endings of what is a shader, and so may be opened alone."""
+
+
+def find(name: str | Path) -> Path:
+    """Return the file that a sketch's name or path stands for; raise ``SketchError`` if there is none."""
+    path = Path(name)
+    try:
+        path = path.expanduser()
+        is_folder = path.is_dir()
+    except (OSError, RuntimeError, ValueError):
+        is_folder = False
+    if is_folder and is_file(path / "sketch.toml"):
+        return path / "sketch.toml"
+    if is_file(path):
+        if path.suffix not in (".toml", *SHADERS):
+            raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=shown(path))
+        return path
+    text = str(name)
+    places = [SKETCHES / f"{text}.toml"] if "/" not in text and "\\" not in text else []
+    places += [GLSL / f"{text}{suffix}" for suffix in ("", ".toml", ".glsl")]
+    for candidate in places:
+        if candidate.suffix in (".toml", *SHADERS) and is_file(candidate) and is_inside(candidate, (GLSL,)):
+            return candidate
+    if is_folder:
+        raise SketchError("this folder holds no sketch.toml", file=shown(path))
+    raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")
+
+
+def shipped_sketches() -> list[str]:
+    """List the names of the sketches that ship."""
+    return sorted(path.stem for path in SKETCHES.glob("*.toml"))
+
+
+def shipped_names() -> list[str]:
+    """List every name that ``use`` may take in ``glsl/``, library files too, without reading the files."""
+    found = [p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".toml") and not p.is_relative_to(SKETCHES)]
+    return sorted({p.relative_to(GLSL).with_suffix("").as_posix() for p in found})

@@ -1,0 +1,174 @@
+"""Read techniques: a GLSL file with its ``.comp`` companion, or a TOML of several passes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from playground.errors import PlaygroundError, SketchError, nearest
+from playground.paths import GLSL, shown
+from playground.sketch.find import shipped_names
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Graph, Kernel, Output, Technique
+from playground.sketch.places import is_file, is_inside, leads_outside, names_below
+from playground.sketch.source import read_source
+from playground.sketch.toml_graph import read_graph
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.wiring import outputs_with_formats
+
+_MAX_NESTING = 16
+_MAX_KERNELS = 1_000
+
+
+def read_kernel(path: Path, folder: Path) -> Kernel | None:
+    """Read one GLSL file with its ``.comp`` companion; None for a library file.
+
+    ``folder`` is where its includes and its files may be, besides ``glsl/``.
+    """
+    path = path.resolve()
+    name = path.relative_to(GLSL).with_suffix("").as_posix() if path.is_relative_to(GLSL) else path.stem
+    kernel = parse_kernel(name, read_source(path, (folder,)))
+    if kernel is None:
+        return None
+    _check_files(kernel, folder)
+    beside = path.with_suffix(".comp")
+    if path.suffix == ".glsl" and kernel.kind == "kernel" and is_file(beside):
+        kernel = replace(kernel, companion=_read_companion(beside, folder, kernel, kernel.outputs))
+    return kernel
+
+
+def read_technique(use: str, folder: Path, root: Path) -> Technique:
+    """Return what ``use`` names: ``./x`` in ``folder`` (inside ``root``), else in ``glsl/``.
+
+    Raises ``SketchError`` with the nearest name when there is none.
+    """
+    return Techniques().read(use, folder, root)
+
+
+def shipped_techniques() -> list[str]:
+    """List the names of the techniques in ``glsl/``: kernels, draws, sources and TOML techniques.
+
+    One whose files are wrong is listed as well: it is there, and reading it says what is wrong.
+    """
+    names = []
+    for name in shipped_names():
+        path = GLSL / f"{name}.glsl"
+        try:
+            if not is_file(path) or read_kernel(path, GLSL) is not None:
+                names.append(name)
+        except PlaygroundError:
+            names.append(name)
+    return names
+
+
+class Techniques:
+    """Reads techniques for one sketch, each file once."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Path, str], Technique] = {}
+        self._open: list[Path] = []
+
+    def read(self, use: str, folder: Path, root: Path) -> Technique:
+        """Return what ``use`` names, as ``read_technique`` does."""
+        path, limit = _locate(use, folder, root)
+        if (path, use) in self._known:
+            return self._known[path, use]
+        found: Technique
+        if path.suffix == ".toml":
+            found = self.graph(path, use, limit)
+        else:
+            kernel = read_kernel(path, limit)
+            if kernel is None:
+                raise SketchError(
+                    f"'{use}' is a library file: it has no #pragma kernel, source or draw to run"
+                )
+            found = kernel
+        self._known[path, use] = found
+        return found
+
+    def graph(self, path: Path, name: str, root: Path) -> Graph:
+        """Return a technique of several passes, by the path of its TOML."""
+        path = path.resolve()
+        if path in self._open:
+            circle = [*self._open[self._open.index(path) :], path]
+            raise SketchError("techniques use each other in a circle: " + " → ".join(map(shown, circle)))
+        if len(self._open) >= _MAX_NESTING:
+            raise SketchError(f"techniques nest more than {_MAX_NESTING} deep")
+        self._open.append(path)
+        try:
+            graph = read_graph(TomlFile(path, root), name, self.read)
+            refuse_monster(graph)
+        finally:
+            self._open.pop()
+        beside = path.with_suffix(".comp")
+        if is_file(beside):
+            companion = _read_companion(beside, root, graph, outputs_with_formats(graph))
+            graph = replace(graph, companion=companion)
+        return graph
+
+
+def refuse_monster(graph: Graph) -> None:
+    """Raise ``SketchError`` for more kernels than any land needs: a few lines can nest millions."""
+    count = _count(graph, {})
+    if count > _MAX_KERNELS:
+        raise SketchError(
+            f"{count} passes with those inside; {_MAX_KERNELS} is the most", file=shown(graph.path)
+        )
+
+
+def _count(technique: Technique, known: dict[int, int]) -> int:
+    if isinstance(technique, Kernel):
+        return 1
+    if id(technique) not in known:
+        known[id(technique)] = sum(_count(spec.technique, known) for spec in technique.passes)
+    return known[id(technique)]
+
+
+def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
+    """Return the file that ``use`` names, and the folder that it must stay in."""
+    own = use.startswith("./")
+    limit = root if own else GLSL
+    base = (folder if own else GLSL) / (use[2:] if own else use)
+    candidates = [base.parent / f"{base.name}{suffix}" for suffix in (".toml", ".glsl", ".frag")]
+    if not base.name or not all(is_inside(path, (limit,)) for path in candidates):
+        raise SketchError(f"use = '{use}' lies outside {'the sketch’s own folder' if own else 'glsl/'}")
+    present = [path for path in candidates if is_file(path)]
+    if len(present) > 1:
+        raise SketchError(f"use = '{use}' is both {shown(present[0])} and {shown(present[1])}; remove one")
+    if present:
+        return present[0].resolve(), limit
+    ending = f" (without '{base.suffix}')" if base.suffix in (".glsl", ".toml", ".frag") else ""
+    raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, _known_names(own, folder))}")
+
+
+def _known_names(own: bool, folder: Path) -> list[str]:
+    if not own:
+        return shipped_names()
+    files = names_below((folder,), (".glsl", ".toml", ".frag"))
+    return [f"./{name.rpartition('.')[0]}" for name in files]
+
+
+def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple[Output, ...]) -> Kernel:
+    if not is_inside(path, (folder, GLSL)):
+        raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
+    companion = parse_kernel(path.stem, read_source(path, (folder,)))
+    if companion is None or companion.kind != "compute":
+        raise SketchError(
+            'a .comp beside a kernel begins with #pragma compute(groups = "…")', file=shown(path)
+        )
+    parameters, inputs = {p.name for p in of.parameters}, {i.name for i in of.inputs}
+    items = [(p.name, p.line, parameters) for p in companion.parameters]
+    items += [(i.name, i.line, inputs) for i in companion.inputs]
+    for name, line, valid in items:
+        if name not in valid:
+            message = f"'{name}' is not among the parameters and inputs of {of.name}"
+            raise SketchError(message + nearest(name, valid), file=shown(companion.path), line=line)
+    return replace(companion, outputs=outputs)
+
+
+def _check_files(kernel: Kernel, folder: Path) -> None:
+    for parameter in kernel.parameters:
+        path = str(parameter.default)
+        if parameter.widget.kind == "file" and path and leads_outside(path, folder, parameter.file):
+            message = f"'{path}' lies outside the sketch's own folder and glsl/"
+            raise SketchError(message, file=shown(parameter.file), line=parameter.line)

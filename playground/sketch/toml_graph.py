@@ -1,0 +1,212 @@
+"""Read the passes of a sketch or of a technique from its TOML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from playground.errors import ParameterError, SketchError, nearest
+from playground.paths import shown
+from playground.sketch import wiring
+from playground.sketch.assign import flat_values, resolve
+from playground.sketch.model import Export, Graph, Parameter, PassSpec, Technique, Value
+from playground.sketch.places import leads_outside
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import coerce, spell
+
+TECHNIQUE_KEYS = ("parameters", "inputs", "outputs")
+"""What a technique's TOML may hold and a sketch's may not."""
+
+Read = Callable[[str, Path, Path], Technique]
+"""Returns the technique that ``use`` names, seen from a folder inside a root."""
+
+_PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
+
+
+def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
+    """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
+    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS))
+    file.version(required=False)
+    graph = Graph(
+        name,
+        str(file.path),
+        read_passes(file, read),
+        _exports(file, "parameters"),
+        _exports(file, "inputs"),
+        file.texts(file.table, "outputs"),
+        file.take(file.table, "title", str, ""),
+        line=file.line("outputs"),
+    )
+    for key, names in (
+        ("parameters", [e.name for e in graph.parameters]),
+        ("inputs", [e.name for e in graph.inputs]),
+        ("outputs", [name for name, _ in graph.outputs]),
+    ):
+        for wrong in (name for name in names if not name.isidentifier()):
+            raise file.error(f"'{wrong}': expected a name of letters, digits and _", key, *wrong.split("."))
+    wiring.check_graph(graph)
+    return graph
+
+
+def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
+    """Return what the ``[[pass]]`` tables say."""
+    tables = file.tables("pass")
+    if not tables:
+        raise file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
+    found: dict[str, PassSpec] = {}
+    for index, table in enumerate(tables):
+        place = ("pass", index)
+        file.only(table, _PASS_KEYS, *place)
+        name = file.take(table, "name", str, "", *place)
+        if not name.isidentifier():
+            raise file.error(
+                f"name = {spell(name)}: a pass needs a name of letters, digits and _", *place, "name"
+            )
+        if name in found:
+            raise file.error(f"a second pass named '{name}'", *place, "name")
+        if name == "view":
+            raise file.error(
+                "a pass may not be named 'view'; that is the [view] table's name", *place, "name"
+            )
+        found[name] = read_pass(file, table, place, name, read)
+    return tuple(found.values())
+
+
+def read_pass(
+    file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...], name: str, read: Read
+) -> PassSpec:
+    """Return what one table, a pass's or the view's, says of a pass."""
+    use = file.take(table, "use", str, "", *place)
+    if not use:
+        raise file.error(f"pass '{name}' needs use = \"…\", the technique that fills it", *place, "use")
+    try:
+        technique = read(use, file.path.parent, file.root)
+    except SketchError as error:
+        if error.diagnostics[0].file:
+            raise
+        raise file.error(error.diagnostics[0].message, *place, "use") from None
+    repeat = _repeat(file, table, place)
+    feedback = file.texts(table, "feedback", *place)
+    if feedback and not repeat:
+        raise file.error(f"pass '{name}': feedback needs a repeat, as repeat = 8", *place, "feedback")
+    if repeat and not feedback:
+        example = ', as feedback = { water = "water" }'
+        message = f"pass '{name}': repeat needs feedback{example}: without, each turn gives the same"
+        raise file.error(message, *place, "repeat")
+    inputs = file.texts(table, "inputs", *place)
+    for key, pairs in (("inputs", inputs), ("feedback", feedback)):
+        for wanted, _ in pairs:
+            if not wiring.takes_input(technique, wanted):
+                valid = [*wiring.input_names(technique), *_inner_inputs(technique)]
+                message = f"{use} has no input '{wanted}'{nearest(wanted, valid)}"
+                raise file.error(message, *place, key, *wanted.split("."))
+    for wanted, output in feedback:
+        if output not in wiring.output_names(technique):
+            hint = nearest(output, wiring.output_names(technique))
+            raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", *wanted.split("."))
+    return PassSpec(
+        name,
+        use,
+        technique,
+        inputs,
+        _values(file, table, place, name, technique),
+        _size(file, table, place),
+        repeat,
+        feedback,
+        shown(file.path),
+        file.line(*place),
+    )
+
+
+def read_values(
+    file: TomlFile,
+    table: Mapping[str, Any],
+    place: tuple[str | int, ...],
+    technique: Technique,
+    read_value: Callable[[str, object], tuple[Value, Parameter | None]],
+    who: str,
+) -> tuple[tuple[str, Value], ...]:
+    """Return what ``set`` says, checked: each value, and that no file lies outside.
+
+    ``read_value`` takes a path and what stands there, and returns the value and its parameter.
+    """
+    given = file.take(table, "set", dict, {}, *place)
+    try:
+        flat = flat_values(technique, given)
+    except ParameterError as error:
+        raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
+    found = []
+    for path, raw in flat.items():
+        # A path may stand in quotes, as one key, or without, as several.
+        at = (*place, "set", *([path] if path in given else path.split(".")))
+        try:
+            value, parameter = read_value(path, raw)
+        except ParameterError as error:
+            raise file.error(f"{who}: {error.diagnostics[0].message}", *at) from None
+        if parameter and parameter.widget.kind == "file" and value:
+            if leads_outside(str(value), file.root, parameter.file):
+                message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
+                raise file.error(message, *at)
+        found.append((path, value))
+    return tuple(found)
+
+
+def _values(
+    file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...], name: str, technique: Technique
+) -> tuple[tuple[str, Value], ...]:
+    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
+        parameter = resolve(technique, path)[0].parameter
+        return coerce(parameter, raw, path), parameter
+
+    return read_values(file, table, place, technique, read_value, f"pass '{name}'")
+
+
+def _repeat(file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...]) -> str:
+    given = table.get("repeat", "")
+    if isinstance(given, bool) or not isinstance(given, int | str) or ("repeat" in table and given == ""):
+        raise file.error(
+            f"repeat = {spell(given)}: expected a number or an expression in quotes", *place, "repeat"
+        )
+    return _expression(file, given, *place, "repeat")
+
+
+def _size(file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...]) -> tuple[str, str] | None:
+    given = table.get("size")
+    if given is None:
+        return None
+    both = given if isinstance(given, list) else [given, given]
+    if len(both) != 2 or any(isinstance(v, bool) or not isinstance(v, int | str) for v in both):
+        message = f"size = {spell(given)}: expected a number, an expression in quotes, or [x, y]"
+        raise file.error(message, *place, "size")
+    x, y = (_expression(file, one, *place, "size") for one in both)
+    return (_axis(x, "x"), _axis(y, "y")) if isinstance(given, str) else (x, y)
+
+
+def _expression(file: TomlFile, given: int | str, *place: str | int) -> str:
+    if isinstance(given, int) and abs(given) > 2**62:
+        raise file.error(f"{place[-1]} = {spell(given)}: expected a smaller number", *place)
+    return str(given)
+
+
+def _axis(expression: str, axis: str) -> str:
+    """Let ``size = "size"`` or ``"height.size // 2"`` stand for both axes."""
+    return re.sub(r"\bsize\b(?!\s*\.)", f"size.{axis}", expression)
+
+
+def _exports(file: TomlFile, key: str) -> tuple[Export, ...]:
+    found = []
+    for name, given in file.take(file.table, key, dict, {}).items():
+        targets = given if isinstance(given, list) else [given]
+        if not targets or not all(isinstance(t, str) for t in targets):
+            raise file.error(f"{name} = {spell(given)}: expected a path inside, or a list of them", key, name)
+        found.append(Export(name, tuple(targets), file.line(key, name)))
+    return tuple(found)
+
+
+def _inner_inputs(technique: Technique) -> Iterable[str]:
+    if isinstance(technique, Graph):
+        for spec in technique.passes:
+            names = [*wiring.input_names(spec.technique), *_inner_inputs(spec.technique)]
+            yield from (f"{spec.name}.{name}" for name in names)

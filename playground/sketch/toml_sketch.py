@@ -1,0 +1,198 @@
+"""Read a whole sketch from its TOML: the land, the passes, the view, shots and presets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from playground.errors import ParameterError, nearest
+from playground.paths import GLSL, shown
+from playground.sketch.assign import LAND, check_value, resolve
+from playground.sketch.flatten import Loop, flatten, leaves_of
+from playground.sketch.model import Camera, Graph, Parameter, PassSpec, Preset, Shot, Sketch, Value
+from playground.sketch.toml_graph import Read, read_pass, read_passes, read_values
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import spell
+from playground.sketch.wiring import check_graph
+
+SKETCH_KEYS = frozenset({*LAND, "view", "shot", "preset"})
+"""What a sketch's TOML may hold and a technique's may not."""
+
+_TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
+_VIEW = ("use", "inputs", "set", "camera", "samples")
+_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps")
+_CAMERA = ("azimuth", "elevation", "distance", "target", "field_of_view")
+_LIMITS = {
+    "azimuth": (-720, 720),
+    "elevation": (-89, 89),
+    "distance": (0, 1e9),
+    "field_of_view": (5, 120),
+}  # degrees, degrees, metres, degrees
+_DEFAULT_VIEW = "view/terrain"
+_PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
+_FARTHEST = 1e9  # [m] of a camera's target from the origin
+
+Place = tuple[str | int, ...]
+
+
+def read_sketch(file: TomlFile, read: Read) -> Sketch:
+    """Return a sketch, wired once to see that it can be; raise ``SketchError`` at the line that is wrong."""
+    file.only(file.table, _TOP)
+    file.version(required=True)
+    passes = read_passes(file, read)
+    view, camera, samples = _view(file, passes, read)
+    name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
+    title = file.take(file.table, "title", str, "")
+    land = {key: _land(file, key) for key in LAND if key in file.table}
+    sketch = Sketch(
+        name,
+        str(file.path),
+        str(file.path.parent),
+        Graph(name, str(file.path), (*passes, view), title=title),
+        title or name,
+        camera=camera,
+        samples=samples,
+        **land,
+    )
+    check_graph(sketch.graph)
+    flatten(sketch, compute=False)
+    sketch = replace(sketch, presets=_presets(file, sketch))
+    return replace(sketch, shots=_shots(file, sketch))
+
+
+def _land(file: TomlFile, key: str) -> Any:
+    given = file.table[key]
+    whole = key == "size"
+    numbers = given if isinstance(given, list) else [given]
+    wanted = (int,) if whole else (int, float)
+    pair = key in ("size", "extent")
+    if len(numbers) > (2 if pair else 1) or any(type(n) not in wanted for n in numbers):
+        noun = (
+            "a whole number of texels, or [x, y]"
+            if whole
+            else "metres, or [east, north]"
+            if pair
+            else "metres"
+        )
+        raise file.error(f"{key} = {spell(given)}: expected {noun}", key)
+    try:
+        return check_value(Sketch("", "", "", Graph("", "", ())), key, given)
+    except ParameterError as error:
+        raise file.error(error.diagnostics[0].message, key) from None
+
+
+def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[PassSpec, Camera, int]:
+    table = file.take(file.table, "view", dict, None)
+    if table is None:
+        technique = read(_PLAIN_VIEW, GLSL, GLSL)
+        inputs = (("shown", passes[-1].name),)
+        return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
+    file.only(table, _VIEW, "view")
+    spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
+    return spec, _camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
+
+
+def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
+    found: int = file.take(table, "samples", int, default, *place)
+    if found not in (1, 2, 4, 8):
+        raise file.error(f"samples = {spell(found)}: expected 1, 2, 4 or 8", *place, "samples")
+    return found
+
+
+def _camera(file: TomlFile, table: Mapping[str, Any], default: Camera, place: Place) -> Camera:
+    given = file.take(table, "camera", dict, None, *place)
+    if given is None:
+        return default
+    here = (*place, "camera")
+    file.only(given, _CAMERA, *here)
+    values: dict[str, Any] = {}
+    for key, (low, high) in _LIMITS.items():
+        number = file.take(given, key, float, getattr(default, key), *here)
+        if not low <= number <= high:
+            raise file.error(f"{key} = {number:g}: expected {low:g} to {high:g}", *here, key)
+        values[key] = number
+    values["target"] = default.target
+    if "target" in given:
+        target = given["target"]
+        numbers = target if isinstance(target, list) else []
+        good = len(numbers) == 3 and all(type(v) in (int, float) and abs(v) <= _FARTHEST for v in numbers)
+        if not good:
+            raise file.error(
+                f"target = {spell(target)}: expected [east, north, up] in metres", *here, "target"
+            )
+        values["target"] = tuple(float(v) for v in numbers)
+    return Camera(**values)
+
+
+def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
+    found: list[Preset] = []
+    for index, table in enumerate(file.tables("preset")):
+        place = ("preset", index)
+        file.only(table, ("name", "set"), *place)
+        name = file.take(table, "name", str, "", *place)
+        if not name or name in [p.name for p in found]:
+            raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
+        found.append(Preset(name, _values(file, sketch, table, place, f"preset '{name}'")))
+    return tuple(found)
+
+
+def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
+    found: list[Shot] = []
+    presets = [preset.name for preset in sketch.presets]
+    for index, table in enumerate(file.tables("shot")):
+        place = ("shot", index)
+        file.only(table, _SHOT, *place)
+        name = file.take(table, "name", str, "", *place)
+        if not name.replace("-", "_").isidentifier():
+            message = f"name = {spell(name)}: a shot needs a name of letters, digits, _ and -"
+            raise file.error(message, *place, "name")
+        if name in [s.name for s in found]:
+            raise file.error(f"a second shot named '{name}'", *place, "name")
+        size = file.take(table, "size", list, [640, 360], *place)
+        if len(size) != 2 or not all(type(v) is int and 1 <= v <= 8192 for v in size):
+            raise file.error(
+                f"size = {spell(size)}: expected [width, height] in pixels, 1 to 8192", *place, "size"
+            )
+        preset = file.take(table, "preset", str, "", *place)
+        if "preset" in table and preset not in presets:
+            raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *place, "preset")
+        found.append(
+            Shot(
+                name,
+                (size[0], size[1]),
+                file.take(table, "time", float, 0.0, *place),
+                _camera(file, table, sketch.camera, place) if "camera" in table else None,
+                _values(file, sketch, table, place, f"shot '{name}'"),
+                preset,
+                _samples(file, table, sketch.samples, place) if "samples" in table else None,
+                _steps(file, sketch, table, place),
+                file.line(*place),
+            )
+        )
+    return tuple(found)
+
+
+def _steps(
+    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place
+) -> tuple[tuple[str, int], ...]:
+    steps = file.whole_numbers(table, "steps", *place)
+    if steps:
+        nodes = flatten(sketch, compute=False).nodes
+        loops = [node.path for node in nodes if isinstance(node, Loop)]
+        valid = [*loops, *(leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1")]
+        for path, _ in steps:
+            if path not in valid:
+                message = f"steps: no repeated pass '{path}'{nearest(path, valid)}"
+                raise file.error(message, *place, "steps", *path.split("."))
+    return steps
+
+
+def _values(
+    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place, who: str
+) -> tuple[tuple[str, Value], ...]:
+    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
+        value = check_value(sketch, path, raw)
+        return value, None if path in LAND else resolve(sketch.graph, path)[0].parameter
+
+    return read_values(file, table, place, sketch.graph, read_value, who)

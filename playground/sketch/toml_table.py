@@ -1,0 +1,133 @@
+"""Read a TOML file whose every mistake has a line: checked access to its tables."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+from playground.errors import SketchError, nearest
+from playground.paths import shown
+from playground.sketch.source import read_text
+from playground.sketch.toml_lines import key_lines, line_of
+from playground.sketch.values import spell
+
+FORMAT = 1
+
+_AT = re.compile(r"\s*\(at line (\d+), column (\d+)\)$")
+_NOUNS = {
+    str: "text in quotes",
+    dict: "a table",
+    list: "a list",
+    int: "a whole number",
+    float: "a finite number",
+}
+
+
+class TomlFile:
+    """One TOML file being read; a place in it is keys and numbers, as ``"pass", 0, "use"``."""
+
+    def __init__(self, path: Path, root: Path) -> None:
+        """Read ``path``; ``root`` is the folder that what it names must stay in.
+
+        Raises ``SketchError`` if it cannot be read or is not TOML.
+        """
+        self.path = path.resolve()
+        self.root = root
+        text = read_text(self.path)
+        self._lines = key_lines(text)
+        try:
+            self.table: dict[str, Any] = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise self._syntax(error, text) from None
+        except RecursionError:
+            raise SketchError("not TOML: nested too deeply", file=shown(self.path)) from None
+        except ValueError as error:  # a number of thousands of digits, a date that is none
+            raise SketchError(f"not TOML: {error}", file=shown(self.path)) from None
+
+    def _syntax(self, error: tomllib.TOMLDecodeError, text: str) -> SketchError:
+        message = str(error)
+        place = _AT.search(message)
+        if place is None:
+            last = text.count("\n") + 1
+            return SketchError(f"not TOML: {message.split(' (at')[0]}", file=shown(self.path), line=last)
+        line, column = int(place.group(1)), int(place.group(2))
+        excerpt = text.split("\n")[line - 1]
+        cause = message[: place.start()]
+        return SketchError(
+            f"not TOML: {cause}", file=shown(self.path), line=line, column=column, excerpt=excerpt
+        )
+
+    def line(self, *place: str | int) -> int:
+        """Return the line of a place, or of the nearest table around it; 0 if none is known."""
+        return line_of(self._lines, place)
+
+    def error(self, message: str, *place: str | int) -> SketchError:
+        """Return an error that points at a place."""
+        return SketchError(message, file=shown(self.path), line=self.line(*place))
+
+    def version(self, *, required: bool) -> None:
+        """Raise ``SketchError`` if the format is one that cannot be read."""
+        found = self.table.get("format", None if required else FORMAT)
+        if found is None:
+            raise self.error(f"a sketch begins with format = {FORMAT}")
+        if type(found) is not int or found != FORMAT:
+            raise self.error(f"format = {spell(found)}: this version reads format = {FORMAT}", "format")
+
+    def only(self, table: Mapping[str, Any], valid: Collection[str], *place: str | int) -> None:
+        """Raise ``SketchError`` for a key that is not among ``valid``."""
+        for key in table:
+            if key not in valid:
+                raise self.error(f"no key '{key}' here{nearest(key, valid)}", *place, key)
+
+    def take(self, table: Mapping[str, Any], key: str, kind: type, default: Any, *place: str | int) -> Any:
+        """Return what ``key`` has in a table, checked to be of a kind; ``default`` where it is absent."""
+        if key not in table:
+            return default
+        value = table[key]
+        if kind is float and isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**64:
+            value = float(value)
+        fits = isinstance(value, kind) and (kind is bool or not isinstance(value, bool))
+        if not fits or (isinstance(value, float) and not math.isfinite(value)):
+            raise self.error(f"{key} = {spell(value)}: expected {_NOUNS[kind]}", *place, key)
+        return value
+
+    def tables(self, key: str) -> list[dict[str, Any]]:
+        """Return the tables of a list of tables, ``[[key]]``; none where it is absent."""
+        value = self.table.get(key, [])
+        if isinstance(value, dict):
+            raise self.error(f"[{key}]: expected [[{key}]], for there may be several", key)
+        if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+            raise self.error(f"{key} = {spell(value)}: expected tables, each begun by [[{key}]]", key)
+        return value
+
+    def texts(self, table: Mapping[str, Any], key: str, *place: str | int) -> tuple[tuple[str, str], ...]:
+        """Return the pairs of a table whose values are texts; dotted keys may stand without quotes."""
+        pairs = _joined(self.take(table, key, dict, {}, *place))
+        for name, value in pairs:
+            if not isinstance(value, str):
+                raise self.error(
+                    f"{name} = {spell(value)}: expected text in quotes", *place, key, *name.split(".")
+                )
+        return tuple(pairs)
+
+    def whole_numbers(
+        self, table: Mapping[str, Any], key: str, *place: str | int
+    ) -> tuple[tuple[str, int], ...]:
+        """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys may stand without quotes."""
+        pairs = _joined(self.take(table, key, dict, {}, *place))
+        for name, value in pairs:
+            if type(value) is not int or not 0 <= value < 2**31:
+                message = f"{name} = {spell(value)}: expected a whole number, 0 or more"
+                raise self.error(message, *place, key, *name.split("."))
+        return tuple(pairs)
+
+
+def _joined(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
+    found: list[tuple[str, Any]] = []
+    for key, value in table.items():
+        found += _joined(value, f"{prefix}{key}.") if isinstance(value, dict) else [(f"{prefix}{key}", value)]
+    return found

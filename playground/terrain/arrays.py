@@ -1,0 +1,146 @@
+"""Read elevations from NumPy's `.npy` and `.npz` files, by their headers first.
+
+Nothing is unpickled, and no memory is taken before a header is judged.
+"""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError
+from playground.terrain.geodesy import spacing_from_degrees
+from playground.terrain.grid import Found, check_grid
+
+
+@dataclass(frozen=True)
+class _Header:
+    shape: tuple[int, ...]
+    by_columns: bool  # Fortran order
+    dtype: np.dtype[Any]
+
+
+def read_npy(path: Path) -> Found:
+    """Read the one array of an `.npy`; it says nothing of metres."""
+    with path.open("rb") as handle:
+        header = _array_header(handle, path)
+        check_grid(header.shape, header.dtype, path)
+        return Found(_array_body(handle, header, path.stat().st_size, path))
+
+
+def _array_header(handle: IO[bytes], path: Path) -> _Header:
+    # Read before any memory is taken; objects are refused here, so nothing is ever unpickled.
+    version = np.lib.format.read_magic(handle)
+    if version == (1, 0):
+        header = _Header(*np.lib.format.read_array_header_1_0(handle))
+    elif version == (2, 0):
+        header = _Header(*np.lib.format.read_array_header_2_0(handle))
+    else:
+        raise DataError("holds records, not heights; expected integers or real numbers", file=path)
+    if header.dtype.hasobject:
+        raise DataError("holds Python objects, which are never loaded; expected numbers", file=path)
+    return header
+
+
+def _array_body(handle: IO[bytes], header: _Header, length: int, path: Path) -> NDArray[Any]:
+    need, have = math.prod(header.shape) * header.dtype.itemsize, length - handle.tell()
+    if need > have:
+        raise DataError(f"is cut short: its header promises {need} bytes, {have} are there", file=path)
+    flat = np.frombuffer(handle.read(need), dtype=header.dtype)
+    return flat.reshape(header.shape[::-1]).T if header.by_columns else flat.reshape(header.shape)
+
+
+class _Archive:
+    # The arrays of an .npz, looked at by header and loaded one by one.
+
+    def __init__(self, archive: zipfile.ZipFile, path: Path) -> None:
+        self.archive, self.path = archive, path
+        self.members = {m.filename.removesuffix(".npy"): m for m in archive.infolist() if not m.is_dir()}
+
+    def header(self, name: str) -> _Header:
+        with self.archive.open(self.members[name]) as handle:
+            return _array_header(handle, self.path)
+
+    def load(self, name: str) -> NDArray[Any]:
+        member = self.members[name]
+        with self.archive.open(member) as handle:
+            return _array_body(handle, _array_header(handle, self.path), member.file_size, self.path)
+
+    def grid(self) -> NDArray[Any]:
+        name = "elevation"
+        if name not in self.members:
+            grids = [name for name in self.members if self._dimensions(name) == 2]
+            if len(grids) != 1:
+                listed = ", ".join(sorted(self.members)[:12]) or "nothing"
+                raise DataError(
+                    f"has no array 'elevation' and {len(grids)} of two dimensions; it holds {listed}",
+                    file=self.path,
+                )
+            name = grids[0]
+        header = self.header(name)
+        check_grid(header.shape, header.dtype, self.path)
+        return self.load(name)
+
+    def _dimensions(self, name: str) -> int:
+        try:
+            return len(self.header(name).shape)
+        except (DataError, ValueError):  # not an array, or one of objects: some other content
+            return -1
+
+    def number(self, name: str) -> float | None:
+        if name not in self.members:
+            return None
+        header = self.header(name)
+        if header.dtype.kind not in "iuf" or math.prod(header.shape) != 1:
+            raise DataError(f"'{name}' is {header.dtype} {header.shape}; expected one number", file=self.path)
+        number = float(self.load(name).reshape(()))
+        if not math.isfinite(number):
+            raise DataError(f"'{name}' is {number}; expected a finite number", file=self.path)
+        return number
+
+    def word(self, name: str) -> str:
+        if name not in self.members:
+            return ""
+        header = self.header(name)
+        if header.dtype.kind not in "US" or math.prod(header.shape) != 1 or header.dtype.itemsize > 256:
+            raise DataError(f"'{name}' is {header.dtype} {header.shape}; expected a word", file=self.path)
+        return str(self.load(name).reshape(()).astype(str)).strip().lower()
+
+
+def read_npz(path: Path) -> Found:
+    """Read the array `elevation` of an `.npz`, or its only grid, and its spacing where it has one."""
+    with zipfile.ZipFile(path) as opened:
+        archive = _Archive(opened, path)
+        values = archive.grid()
+        dx, dy = archive.number("dx"), archive.number("dy")
+        x0, x1, y0, y1 = (archive.number(name) for name in ("xmin", "xmax", "ymin", "ymax"))
+        units = archive.word("units")
+    if dx is None and dy is None:
+        return Found(values)
+    dx, dy = abs(dx or dy or 0.0), abs(dy or dx or 0.0)
+    if not dx or not dy:
+        raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
+    if x0 is None or x1 is None or y0 is None or y1 is None:
+        in_degrees = False
+    else:
+        # The names differ from file to file (in some, ymin is the north edge): only the middle counts.
+        in_degrees = max(abs(x0), abs(x1)) <= 360 and max(abs(y0), abs(y1)) <= 90 and max(dx, dy) < 0.05
+    if units in ("m", "metre", "metres", "meter", "meters"):
+        in_degrees = False
+    elif units in ("deg", "degree", "degrees") and y0 is not None and y1 is not None:
+        in_degrees = True
+    elif units:
+        raise DataError(
+            f"'units' is {units!r}; expected 'm', or 'degrees' together with 'ymin' and 'ymax'", file=path
+        )
+    if not in_degrees:
+        return Found(values, (dx, dy), in_metres=True)
+    assert y0 is not None and y1 is not None
+    spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
+    return Found(values, spacing, in_metres=True, notes=notes)

@@ -1,0 +1,76 @@
+"""Read elevations from files that hold nothing but 16-bit numbers: `.r16`, `.raw`, SRTM's `.hgt`."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError
+from playground.images.files import MAX_TEXELS
+from playground.terrain.geodesy import spacing_from_degrees
+from playground.terrain.grid import SIXTEEN_BIT, Found, check_grid
+
+
+def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
+    """Read unsigned little-endian numbers; the grid is square unless ``size`` (nx, ny) says otherwise."""
+    return Found(_numbers(path, "<u2", size), code_range=SIXTEEN_BIT)
+
+
+def read_hgt(path: Path, size: tuple[int, int] | None) -> Found:
+    """Read an SRTM tile: signed big-endian metres over one degree, whose place is in its name."""
+    values = _numbers(path, ">i2", size).astype(np.int16)
+    named = re.match(r"([NS])(\d{1,2})([EW])(\d{1,3})", path.name, re.IGNORECASE)
+    if not named:
+        note = "an .hgt file's name tells its latitude, as N36W085.hgt; this one does not, so no spacing"
+        return Found(values, in_metres=True, notes=(note,))
+    south = int(named[2]) * (1 if named[1].upper() == "N" else -1)
+    ny, nx = values.shape
+    spacing, notes = spacing_from_degrees(1.0 / (nx - 1), 1.0 / (ny - 1), south + 0.5)
+    return Found(values, spacing, in_metres=True, notes=notes)
+
+
+def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> NDArray[Any]:
+    length = path.stat().st_size
+    count = length // 2
+    if size is None:
+        if length % 2:
+            raise DataError(f"holds {length} bytes, an odd number; expected two for each height", file=path)
+        side = math.isqrt(count)
+        if side * side != count:
+            raise DataError(_not_square(length), file=path)
+        size = side, side
+    nx, ny = (int(n) for n in size)
+    check_grid((ny, nx), np.dtype(dtype), path)
+    if 2 * nx * ny != length:
+        raise DataError(
+            f"holds {length} bytes; {nx} x {ny} heights of 16 bits need {2 * nx * ny}{_fitting(length)}",
+            file=path,
+        )
+    return np.fromfile(path, dtype=dtype).reshape(ny, nx)
+
+
+def _not_square(length: int) -> str:
+    count = length // 2
+    side = math.isqrt(count)
+    said = f"holds {count} heights of 16 bits, which is no square ({side} x {side} would be {side * side}"
+    said += f", {side + 1} x {side + 1} {(side + 1) ** 2})"
+    for bits in (8, 32):
+        other = math.isqrt(length * 8 // bits)
+        if other * other * bits == length * 8:
+            said += f"; it is {other} x {other} of {bits} bits, which is not read here"
+    return said + (_fitting(length) or "; raw_size must give its width and height")
+
+
+def _fitting(length: int) -> str:
+    # The two ways of laying the numbers out that are nearest to a square.
+    count = length // 2
+    side = math.isqrt(min(count, MAX_TEXELS))
+    widths = [n for n in range(side, 1, -1) if count % n == 0 and count // n <= 4 * n][:2]
+    if length % 2 or not widths:
+        return ""
+    return "; raw_size could be " + " or ".join(f"{count // n} x {n}" for n in widths)

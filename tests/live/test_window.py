@@ -1,0 +1,271 @@
+"""The window as a person meets it: a real X server, real files, a mouse and keys by xdotool.
+
+What is on the screen is read from Xvfb's own framebuffer; what the window says of
+itself comes as JSON lines (``playground.live.status``).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+ROOT = Path(__file__).resolve().parents[2]
+WIDTH, HEIGHT = 800, 500
+PANEL = 330  # pixels at scale 1
+LIMIT = 25.0  # [s] for anything to happen on a slow machine
+RUN = "import sys; from playground.live.app import run; sys.exit(run(sys.argv[1], size=(800, 500), time_limit=90))"
+
+LAND = """// land.glsl -- hills
+#include "inc/wave.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+float kernel(ivec2 texel) { return level * wave(vec2(texel) / vec2(size)); }
+"""
+WAVE = "// wave.glsl -- a wave\nfloat wave(vec2 p) { return 0.5 + 0.5 * sin(9.0 * p.x) * cos(7.0 * p.y); }\n"
+SKETCH = """format = 1
+title = "Hills"
+size = 65
+extent = 1000.0
+relief = 200.0
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/terrain"
+samples = 1
+set = { grid = 65 }
+"""
+
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Xvfb is for Linux"),
+]
+
+
+def needed(program: str) -> str:
+    found = shutil.which(program)
+    if found is None:
+        message = f"{program} is not installed (Debian: apt install xvfb xdotool)"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+    return found
+
+
+class Screen:
+    """An X server with nothing on it but what a test opens."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        read, write = os.pipe()
+        arguments = ["-displayfd", str(write), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", str(folder)]
+        self.server = subprocess.Popen(
+            [needed("Xvfb"), *arguments, "-nolisten", "tcp"], pass_fds=[write], stderr=subprocess.DEVNULL
+        )
+        os.close(write)
+        with os.fdopen(read) as answer:
+            self.display = f":{answer.readline().strip()}"
+        self.xdotool = needed("xdotool")
+
+    def pixels(self) -> NDArray[np.uint8]:
+        """Return what is on the screen: (height, width, 3), top row first. The file is an X window dump."""
+        raw = (self.folder / "Xvfb_screen0").read_bytes()
+        header = np.frombuffer(raw, ">u4", 25)
+        width, height, line, start = header[4], header[5], header[12], header[0] + 12 * header[19]
+        rows = np.frombuffer(raw, np.uint8, height * line, start).reshape(height, line // 4, 4)
+        return rows[:, :width, 2::-1].copy()
+
+    def do(self, *words: object) -> None:
+        environment = {**os.environ, "DISPLAY": self.display}
+        subprocess.run([self.xdotool, *map(str, words)], env=environment, check=True, timeout=10)
+
+    def close(self) -> None:
+        self.server.terminate()
+        self.server.wait(10)
+
+
+class App:
+    """The window, running in a process of its own on a sketch in a folder."""
+
+    def __init__(self, screen: Screen, folder: Path) -> None:
+        self.screen = screen
+        self.sketch = folder / "sketch"
+        self.pictures = folder / "pictures"
+        self.status = folder / "status.jsonl"
+        (self.sketch / "inc").mkdir(parents=True)
+        self.pictures.mkdir()
+        for name, text in {"land.glsl": LAND, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
+            (self.sketch / name).write_text(text, encoding="utf-8")
+        environment = {k: v for k, v in os.environ.items() if k not in ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")}
+        environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), environment.get("PYTHONPATH", "")]))
+        self.said = (folder / "stderr.txt").open("w+b")
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", RUN, str(self.sketch)], env=environment, cwd=self.pictures, stderr=self.said
+        )
+        self.wait(lambda now: now["draws"] > 0)
+
+    def now(self) -> dict[str, Any]:
+        lines = self.status.read_text(encoding="utf-8").splitlines() if self.status.exists() else []
+        return json.loads(lines[-1]) if lines else {"draws": 0, "error": "", "picture": ""}
+
+    def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
+            assert self.process.poll() is None, f"the window died: {self.complaint()}"
+            now = self.now()
+            if until(now):
+                time.sleep(0.1)  # what was drawn reaches the screen
+                return now
+            time.sleep(0.02)
+        pytest.fail(f"it did not happen; last seen: {self.now()}; {self.complaint()}")
+
+    def picture(self) -> NDArray[np.uint8]:
+        """Return the picture's part of the screen, without what notices and errors cover."""
+        return self.screen.pixels()[150:290, PANEL + 10 : -10]
+
+    def complaint(self) -> str:
+        self.said.seek(0)
+        return self.said.read().decode("utf-8", "replace")
+
+    def ended(self) -> int:
+        return self.process.wait(LIMIT)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait(10)
+        self.said.close()
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
+    made = Screen(tmp_path_factory.mktemp("screen"))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def app(screen: Screen, tmp_path: Path) -> Iterator[App]:
+    made = App(screen, tmp_path)
+    yield made
+    made.close()
+
+
+def save_in_place(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def save_by_rename(path: Path, text: str) -> None:
+    beside = path.with_name(f".{path.name}.swp")
+    beside.write_text(text, encoding="utf-8")
+    os.replace(beside, path)
+
+
+def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None:
+    land, wave = app.sketch / "land.glsl", app.sketch / "inc" / "wave.glsl"
+    for save in (save_in_place, save_by_rename):
+        first, first_hash = app.picture(), app.now()["picture"]
+        assert first.std() > 1.0, "there is land on the screen"
+
+        save(land, LAND.replace("level * wave", "0.3 * level * wave"))
+        app.wait(lambda now, old=first_hash: now["picture"] != old and not now["error"])
+        lower = app.picture()
+        assert not np.array_equal(lower, first)
+
+        save(wave, WAVE.replace("cos(", "cosine("))
+        now = app.wait(lambda now: now["error"])
+        assert "wave.glsl:2:" in now["error"] and "cosine" in now["error"]
+        np.testing.assert_array_equal(app.picture(), lower, "the last good picture stays")
+        below = app.screen.pixels()[HEIGHT - 40, PANEL + 30].astype(int)
+        assert below[0] > 2 * below[2] and below[0] > 2 * below[1], "a red box says so"
+
+        save(wave, WAVE)
+        save(land, LAND)
+        app.wait(lambda now, old=first_hash: now["picture"] == old and not now["error"])
+        time.sleep(0.3)
+        np.testing.assert_array_equal(app.picture(), first)
+    assert app.process.poll() is None
+
+
+def test_the_mouse_and_the_keys(app: App) -> None:
+    screen, x, y = app.screen, PANEL + 200, 200
+    first = app.now()["picture"]
+
+    screen.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 10, "mousemove", x + 90, y + 20, "mouseup", 1)
+    turned = app.wait(lambda now: now["picture"] != first)["picture"]
+    screen.do("mousemove", x, y, "click", 4)
+    nearer = app.wait(lambda now: now["picture"] != turned)["picture"]
+    screen.do("mousemove", x, y, "mousedown", 3, "mousemove", x + 40, y, "mouseup", 3)
+    app.wait(lambda now: now["picture"] != nearer)
+
+    screen.do("key", "r")
+    app.wait(lambda now: now["picture"] == first)
+    runs = app.now()["runs"]
+    assert runs["height"] == 1, "the camera moved; the land was not made again"
+
+    screen.do("mousemove", 100, 300, "mousedown", 1, "mousemove", 160, 300, "mouseup", 1)
+    time.sleep(0.5)
+    assert app.now()["picture"] == first, "over the panel the mouse is the panel's"
+
+    screen.do("mousemove", x, y, "key", "m")
+    app.wait(lambda now: now["map"] == "height:height" and now["picture"] != first)
+    screen.do("key", "m")
+    app.wait(lambda now: now["map"] == "" and now["picture"] == first)
+
+    for name in ("sketch.png", "sketch-2.png"):
+        screen.do("key", "s")
+        now = app.wait(lambda now, name=name: now["saved"].endswith(name))
+        assert any(name in text for text in now["notices"])
+        assert (app.pictures / name).stat().st_size > 1000
+
+    screen.do("key", "Tab")
+    wide = app.wait(lambda now: now["picture"] != first)
+    assert wide["draws"] > 0
+    screen.do("key", "Escape")
+    assert app.ended() == 0, app.complaint()
+
+
+def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
+    time.sleep(1.5)
+    before, used = app.now()["draws"], cpu_seconds(app.process.pid)
+    time.sleep(2.0)
+    assert app.now()["draws"] == before
+    assert cpu_seconds(app.process.pid) - used < 0.3
+    app.screen.do("key", "Escape")
+    assert app.ended() == 0, app.complaint()
+
+
+def test_without_a_display_it_says_so_in_one_sentence(tmp_path: Path) -> None:
+    gone = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR")
+    environment = {k: v for k, v in os.environ.items() if k not in gone}
+    environment["PYTHONPATH"] = str(ROOT)
+    (tmp_path / "land.frag").write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8")
+    code = (
+        "import sys; from playground.errors import PlaygroundError; from playground.live.app import run\n"
+        "try: run(sys.argv[1])\n"
+        "except PlaygroundError as error: print(type(error).__name__, error); sys.exit(error.exit_status)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "land.frag")], env=environment, capture_output=True, text=True,
+        timeout=60,
+    )
+    assert done.returncode == 2, done.stderr
+    assert done.stdout.startswith("ContextError ") and done.stdout.count("\n") == 1
+    assert "no screen to open a window on" in done.stdout and "Traceback" not in done.stderr
+
+
+def cpu_seconds(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
