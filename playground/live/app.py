@@ -10,13 +10,15 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
+from datetime import datetime
 from pathlib import Path
+from typing import cast
 
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.engine.trial import Trial
-from playground.errors import ParameterError, PlaygroundError
+from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
 from playground.live.files import SUFFIXES
@@ -84,18 +86,16 @@ def find_default() -> Path:
 
 
 def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
-    """Return values as their parameters take them; a sketch that does not load yet takes any."""
-    if not values:
-        return {}
+    """Return values as their parameters take them; raise ``ParameterError`` for one that does not fit.
+
+    Where the sketch does not load yet, nothing can be checked: they wait for it as they are.
+    """
     try:
-        sketch = load(path)
+        sketch = load(path) if values else None
     except PlaygroundError:
-        return {k: v for k, v in values.items() if isinstance(v, int | float | bool | str | tuple)}
-    try:
-        overrides = dict(sketch.with_values(values).overrides)
-    except ParameterError:
-        raise
-    return {k: overrides.get(k, v) for k, v in values.items()}  # type: ignore[misc]
+        sketch = None
+    taken = dict(sketch.with_values(values).overrides) if sketch is not None else {}
+    return {name: taken.get(name, cast(Value, value)) for name, value in values.items()}
 
 
 class Live:
@@ -133,10 +133,10 @@ class Live:
 
     def _patience(self) -> float:
         """Say how long nothing needs to be done [s]."""
-        if self._settling > 0:
-            return 0.0
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
+        if self._settling > 0:
+            return 0.0
         if self.session.testing:
             return _TRIAL
         if self.actions.notices or imgui.get_io().want_text_input:
@@ -150,7 +150,7 @@ class Live:
         self._settling = _SETTLES if woken else max(self._settling - 1, 0)
         now = time.perf_counter()
         if self.session.animated:
-            self.session.clock.advance(min(now - self._last, _LONGEST_STEP))
+            self.session.advance(min(now - self._last, _LONGEST_STEP), datetime.now())
         self._last = now
 
     def _take_files(self) -> None:
@@ -181,7 +181,7 @@ class Live:
         draws = session.draws
         picture = session.frame((wide - skipped, high))
         if session.draws != draws:
-            self._settling = max(self._settling, 1)  # the panel tells what the picture took
+            self._settling = _SETTLES  # the panel tells what the picture took
         self._say_reload()
         actions.take_notes()
         if session.error is not None:
@@ -213,6 +213,10 @@ class Live:
         )
         if gesture.acts and session.orbits:
             session.look(steered(session.sketch.camera, session.plan.eye, gesture))
+        if imgui.is_mouse_down(0):
+            gone, density = imgui.get_mouse_drag_delta(0, 0.0), self.window.density
+            x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
+            session.point((x, y, x - gone.x * density, y + gone.y * density))
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""
@@ -228,4 +232,6 @@ def _dragged(button: int) -> bool:
 
     The way to where a button went down is none; the way to where it came up is one.
     """
-    return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(button)
+    return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(
+        button
+    )

@@ -43,6 +43,12 @@ def is_animated(sketch: Sketch) -> bool:
     return _repeats_by_time(sketch.graph)
 
 
+def reads_mouse(sketch: Sketch) -> bool:
+    """Say whether a plain shader in it asks where the mouse is."""
+    plain = (kernel for _, kernel in kernels_of(sketch.graph) if kernel.kind.startswith("plain"))
+    return any(kernel.reads(name) for kernel in plain for name in PLAIN_UNIFORMS["mouse"])
+
+
 def _repeats_by_time(technique: Technique) -> bool:
     if not isinstance(technique, Graph):
         return False

@@ -17,7 +17,7 @@ def dot_of(azimuth: float, elevation: float) -> tuple[float, float]:
 
 
 def direction_at(right: float, up: float) -> tuple[float, float]:
-    """Return (azimuth, elevation) [degrees] of a place on the unit disc; outside it, of the nearest on the rim."""
+    """Return (azimuth, elevation) [degrees] of a place on the unit disc, or of the nearest on its rim."""
     radius = min(math.hypot(right, up), 1.0)
     azimuth = math.degrees(math.atan2(right, up)) % 360.0
     return azimuth, 90.0 * (1.0 - radius)

@@ -19,11 +19,14 @@ from playground.sketch.choose import with_technique
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.values import write
 
+
 @dataclass(frozen=True, slots=True)
 class Edits:
     """What was set by hand."""
 
-    values: tuple[tuple[str, Value], ...] = ()  # parameter path → value; some may not fit the sketch of the moment
+    values: tuple[
+        tuple[str, Value], ...
+    ] = ()  # parameter path → value; some may not fit the sketch of the moment
     techniques: tuple[tuple[str, str], ...] = ()  # pass → use
     camera: Camera | None = None  # None: the file's
 

@@ -9,7 +9,7 @@ from playground.sketch.values import is_whole
 
 
 def decimals(parameter: Parameter) -> int:
-    """Return how many places after the point suit a parameter: those of its step, else a thousandth of its range."""
+    """Return the places after the point that suit a parameter: of its step, or a thousandth of its range."""
     if is_whole(parameter.type):
         return 0
     widget = parameter.widget

@@ -7,9 +7,11 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import Diagnostic, PlaygroundError
 from playground.live import theme
 from playground.live.actions import Actions
+from playground.live.excerpt import cut, short_place
 from playground.live.theme import Theme
 
 MOST = 12  # diagnostics shown; more help nobody
+_TALLEST = 0.5  # share of the picture that an error may cover
 _FADE = 1.0  # [s]
 Area = tuple[float, float, float, float]  # x, y from above, width, height, in the window's units
 
@@ -20,7 +22,7 @@ def draw_error(error: PlaygroundError, actions: Actions, look: Theme, area: Area
     margin = 14 * look.scale
     width = max(wide - 2 * margin, 120.0)
     imgui.set_next_window_pos(ImVec2(x + margin, y + high - margin), imgui.Cond_.always, ImVec2(0, 1))
-    imgui.set_next_window_size_constraints(ImVec2(width, 0), ImVec2(width, high * 0.62))
+    imgui.set_next_window_size_constraints(ImVec2(width, 0), ImVec2(width, high * _TALLEST))
     imgui.push_style_color(imgui.Col_.window_bg, theme.colour((0.17, 0.075, 0.075), 0.95))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 8 * look.scale)
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
@@ -28,8 +30,11 @@ def draw_error(error: PlaygroundError, actions: Actions, look: Theme, area: Area
     flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_nav_inputs
     imgui.begin("error", None, flags)
     _headline(error, actions, look)
+    folder = str(actions.session.path.parent.resolve())
+    previous = None
     for diagnostic in error.diagnostics[:MOST]:
-        _diagnostic(diagnostic, look)
+        _diagnostic(diagnostic, previous, folder, look)
+        previous = diagnostic
     if len(error.diagnostics) > MOST:
         imgui.text_disabled(f"and {len(error.diagnostics) - MOST} more")
     imgui.end()
@@ -55,34 +60,38 @@ def _headline(error: PlaygroundError, actions: Actions, look: Theme) -> None:
         session.dismiss()
 
 
-def _diagnostic(diagnostic: Diagnostic, look: Theme) -> None:
+def _diagnostic(diagnostic: Diagnostic, previous: Diagnostic | None, folder: str, look: Theme) -> None:
+    """Draw one mistake; the line it is on only if the one before was elsewhere."""
     imgui.spacing()
     if diagnostic.place:
         with look.font(look.code):
-            imgui.text_colored(theme.colour(theme.WARM), diagnostic.place)
+            imgui.text_colored(theme.colour(theme.WARM), short_place(diagnostic.place, folder))
+        imgui.set_item_tooltip(diagnostic.place)
     imgui.push_text_wrap_pos(0)
     imgui.text(diagnostic.message)
     imgui.pop_text_wrap_pos()
+    here = (diagnostic.file, diagnostic.line)
+    repeated = previous is not None and here == (previous.file, previous.line)
     if diagnostic.excerpt.strip():
         _excerpt(diagnostic, look)
-    for place in reversed(diagnostic.chain):
+    if not repeated:
         with look.font(look.code, theme.SMALL):
-            imgui.text_disabled(f"included from {place}")
+            for place in reversed(diagnostic.chain):
+                imgui.text_disabled(f"included from {short_place(place, folder)}")
 
 
 def _excerpt(diagnostic: Diagnostic, look: Theme) -> None:
-    """Draw the offending line without its indentation, and a mark under the column."""
-    line = diagnostic.excerpt.rstrip().expandtabs(4)
-    indent = len(line) - len(line.lstrip())
+    """Draw the offending line and a mark under the column."""
     number = f"{diagnostic.line} | " if diagnostic.line else ""
     with look.font(look.code):
+        room = int(imgui.get_content_region_avail().x / imgui.calc_text_size("M").x) - len(number)
+        text, mark = cut(diagnostic.excerpt, diagnostic.column, room)
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0, 0))
         imgui.text_disabled(number)
         imgui.same_line(0, 0)
-        imgui.text(line[indent:])
-        if diagnostic.column:
-            before = len(diagnostic.excerpt[: diagnostic.column - 1].expandtabs(4)) - indent
-            imgui.text_colored(theme.colour(theme.ALARM), " " * (len(number) + max(before, 0)) + "^")
+        imgui.text(text)
+        if mark >= 0:
+            imgui.text_colored(theme.colour(theme.ALARM), " " * (len(number) + mark) + "^")
         imgui.pop_style_var()
 
 
@@ -109,7 +118,11 @@ def draw_notices(actions: Actions, look: Theme, area: Area) -> None:
         high = ImVec2(right, top + size.y + 2 * padding)
         draw.add_rect_filled(low, high, theme.packed(theme.GROUND, 0.92 * alpha), 6 * look.scale)
         draw.add_text(
-            imgui.get_font(), imgui.get_font_size(), ImVec2(low.x + padding, low.y + padding),
-            theme.packed(theme.INK, alpha), notice.text, room,
+            imgui.get_font(),
+            imgui.get_font_size(),
+            ImVec2(low.x + padding, low.y + padding),
+            theme.packed(theme.INK, alpha),
+            notice.text,
+            room,
         )
         top = high.y + 6 * look.scale

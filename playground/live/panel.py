@@ -15,7 +15,9 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.actions import Actions
+from playground.live.costs import draw_costs
 from playground.live.keys import KEYS
+from playground.live.rows import fitting, reset_width, row
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
 from playground.paths import shown
@@ -23,7 +25,6 @@ from playground.sketch.assign import Shown, shown_parameters, value_of, values_o
 from playground.sketch.choose import choices
 from playground.sketch.model import Parameter, PassSpec, Preset, Sketch, Value
 
-_LABELS = 0.40  # share of the width that labels take
 _OWN_VIEW = "the sketch's own view"
 
 
@@ -57,9 +58,9 @@ class Panel:
         if sketch is not None:
             self._map(actions, look)
             self._passes(sketch, actions, look)
-            _costs(sketch, actions, look)
+            draw_costs(sketch, actions, look)
         imgui.end_child()
-        _footer(look)
+        _footer(look, actions.session.orbits)
         width = imgui.get_window_size().x
         imgui.end()
         self.width = width / look.scale
@@ -70,9 +71,9 @@ class Panel:
     def _head(self, actions: Actions, look: Theme) -> None:
         session, sketch = actions.session, actions.session.sketch
         with look.font(look.bold, theme.TEXT_SIZE + 2):
-            imgui.text_wrapped(sketch.title if sketch else session.path.stem)
+            imgui.text_wrapped((sketch.title.strip() if sketch else "") or session.path.stem)
         with look.font(look.text, theme.SMALL):
-            imgui.text_disabled(_fitting(shown(session.path), imgui.get_content_region_avail().x))
+            imgui.text_disabled(fitting(shown(session.path), imgui.get_content_region_avail().x))
             imgui.set_item_tooltip(str(session.path))
         if sketch is None:
             return
@@ -85,12 +86,14 @@ class Panel:
 
     def _shown(self, actions: Actions, look: Theme) -> None:
         session = actions.session
-        with _row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
+        with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
             if imgui.begin_combo("##shown", _ref_name(session.map.ref) if session.map else _OWN_VIEW):
                 if imgui.selectable(_OWN_VIEW, session.map is None)[0]:
                     actions.show(None)
                 for ref in session.refs:
-                    if imgui.selectable(_ref_name(ref), session.map is not None and session.map.ref == ref)[0]:
+                    if imgui.selectable(_ref_name(ref), session.map is not None and session.map.ref == ref)[
+                        0
+                    ]:
                         actions.show(ref)
                 imgui.end_combo()
 
@@ -112,7 +115,8 @@ class Panel:
     def _passes(self, sketch: Sketch, actions: Actions, look: Theme) -> None:
         leaves = values_of(sketch)
         by_pass = {
-            name: list(group) for name, group in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
+            name: list(group)
+            for name, group in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
         }
         for spec in sketch.graph.passes:
             imgui.spacing()
@@ -128,10 +132,14 @@ class Panel:
     def _technique(self, sketch: Sketch, spec: PassSpec, actions: Actions) -> None:
         shown_draft = actions.session.shown
         chosen = shown_draft is not None and any(n == spec.name for n, _ in shown_draft.edits.techniques)
-        note = f"What fills this pass\n{spec.technique.title}" if spec.technique.title else "What fills this pass"
-        with _row("Technique", note, edited=chosen):
+        note = (
+            f"What fills this pass\n{spec.technique.title}"
+            if spec.technique.title
+            else "What fills this pass"
+        )
+        with row("Technique", note, edited=chosen):
             # Only an open list is worked out: it reads every technique there is.
-            if imgui.begin_combo("##use", spec.use, imgui.ComboFlags_.height_large):
+            if imgui.begin_combo("##use", _use_name(spec.use), imgui.ComboFlags_.height_large):
                 for use in self._choices_for(sketch, spec.name, actions):
                     if imgui.selectable(use, use == spec.use)[0]:
                         actions.session.choose(spec.name, use)
@@ -183,7 +191,7 @@ def _time(actions: Actions, look: Theme) -> None:
 
 
 def _presets(sketch: Sketch, actions: Actions) -> None:
-    with _row("Preset", "Values that go together", fixed=True):
+    with row("Preset", "Values that go together", fixed=True):
         now = next((p.name for p in sketch.presets if _holds(sketch, p)), "")
         if imgui.begin_combo("##preset", now or "choose"):
             for preset in sketch.presets:
@@ -220,7 +228,9 @@ def _pass_header(spec: PassSpec, actions: Actions, look: Theme) -> bool:
     return opened
 
 
-def _groups(items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme) -> None:
+def _groups(
+    items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme
+) -> None:
     """Draw parameters, those without a group first."""
     names = dict.fromkeys(["", *(s.parameter.group for s in items)])
     for name in names:
@@ -232,7 +242,9 @@ def _groups(items: list[Shown], leaves: dict[str, Value], sketch: Sketch, action
             _one(item, leaves, sketch, actions, look)
 
 
-def _inner(items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme) -> None:
+def _inner(
+    items: list[Shown], leaves: dict[str, Value], sketch: Sketch, actions: Actions, look: Theme
+) -> None:
     """Draw the parameters inside a technique, folded, a heading for each inner pass."""
     if not items or not imgui.tree_node_ex(f"Inside: {len(items)} more###inner"):
         return
@@ -253,8 +265,7 @@ def _one(item: Shown, leaves: dict[str, Value], sketch: Sketch, actions: Actions
     if changed is not None:
         session.set(item.path, changed)
     if edited:
-        # Room for it is kept in every row, or a slider would shrink under the hand that drags it.
-        imgui.same_line(right - _reset_width() + 2 * look.scale)
+        imgui.same_line(right - reset_width() + 2 * look.scale)
         if imgui.small_button(f"×##{item.path}"):
             session.unset(item.path)
         imgui.set_item_tooltip("Back to the file's value")
@@ -263,90 +274,19 @@ def _one(item: Shown, leaves: dict[str, Value], sketch: Sketch, actions: Actions
 def _parameter(
     path: str, parameter: Parameter, value: Value, edited: bool, folder: Path, scale: float
 ) -> Value | None:
-    with _row(parameter.title, explanation(parameter, path), edited=edited):
+    with row(parameter.title, explanation(parameter, path), edited=edited):
         return draw_value(parameter, value, Place(f"##{path}", scale, folder))
-
-
-class _row:  # noqa: N801 - used as a function
-    """A line of the panel: a label on the left with its tooltip, and what the block draws on the right."""
-
-    def __init__(self, label: str, note: str = "", *, edited: bool = False, fixed: bool = False) -> None:
-        self.label, self.note, self.edited = label, note, edited
-        self.fixed = fixed  # above what scrolls: the scroll bar's room is left free, so that columns meet
-
-    def __enter__(self) -> None:
-        room = imgui.get_content_region_avail().x
-        room -= imgui.get_style().scrollbar_size if self.fixed else 0.0
-        reset = _reset_width()
-        labels = (room - reset) * _LABELS
-        start = imgui.get_cursor_pos_x()
-        imgui.align_text_to_frame_padding()
-        text = _fitting(self.label, labels - imgui.get_style().item_spacing.x)
-        imgui.text_colored(theme.colour(theme.WARM if self.edited else theme.INK), text)
-        if imgui.is_item_hovered():
-            imgui.begin_tooltip()
-            imgui.push_text_wrap_pos(imgui.get_font_size() * 24)
-            imgui.text(self.label if not self.note else f"{self.label}\n{self.note}")
-            imgui.pop_text_wrap_pos()
-            imgui.end_tooltip()
-        imgui.same_line(start + labels)
-        imgui.push_item_width(room - labels - reset)
-
-    def __exit__(self, *_: object) -> None:
-        imgui.pop_item_width()
-
-
-def _reset_width() -> float:
-    return float(imgui.calc_text_size("×").x + 2 * imgui.get_style().frame_padding.x + 2)
-
-
-def _costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
-    """Draw the table of what ran, how often and how long."""
-    session, engine = actions.session, actions.session.engine
-    imgui.spacing()
-    with look.font(look.bold):
-        opened = imgui.collapsing_header("Cost###costs")
-    if not opened:
-        return
-    changed, on = imgui.checkbox("Time each pass", engine.profiling)
-    imgui.set_item_tooltip("By the wall clock each pass waits for the one before, so pictures take a little longer")
-    if changed:
-        engine.profiling = on
-        session.times.clear()
-    if engine.profiling:
-        imgui.same_line()
-        imgui.text_disabled(f"by {engine.clock}")
-    paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
-    if imgui.begin_table("costs", 3, flags):
-        for path in paths:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            ran = path in engine.ran
-            imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
-            imgui.table_next_column()
-            imgui.text_disabled(f"{engine.runs[path]} ×")
-            imgui.table_next_column()
-            spent = session.times.get(path)
-            imgui.text("" if spent is None or not engine.profiling else f"{spent:.2f} ms")
-        imgui.end_table()
-    compiled = session.last_reload
-    if compiled is not None:
-        imgui.text_disabled(f"last save to picture {compiled.seconds * 1e3:.0f} ms")
-        if compiled.trial:
-            imgui.same_line(0, 0)
-            imgui.text_disabled(f", {compiled.trial * 1e3:.0f} of them the trial")
 
 
 def _footer_height() -> float:
     return imgui.get_text_line_height_with_spacing() * 2 + imgui.get_style().item_spacing.y * 2
 
 
-def _footer(look: Theme) -> None:
+def _footer(look: Theme, orbits: bool) -> None:
     imgui.separator()
     with look.font(look.text, theme.SMALL):
         imgui.push_text_wrap_pos(0)
-        imgui.text_disabled("Drag to orbit, right-drag or Shift to pan, wheel to zoom")
+        imgui.text_disabled("Drag to orbit, right-drag or Shift to pan, wheel to zoom" if orbits else "")
         imgui.text_disabled("   ".join(f"{k.name} {k.brief}" for k in KEYS if k.brief))
         imgui.pop_text_wrap_pos()
 
@@ -357,10 +297,7 @@ def _ref_name(ref: str) -> str:
     return path if path.rpartition(".")[2] == output else ref
 
 
-def _fitting(text: str, width: float) -> str:
-    """Return a text cut off so that it fits a width, with an ellipsis."""
-    if imgui.calc_text_size(text).x <= width:
-        return text
-    while len(text) > 1 and imgui.calc_text_size(text + "…").x > width:
-        text = text[:-1]
-    return text.rstrip() + "…"
+def _use_name(use: str) -> str:
+    """Return a technique's name without its folder where a closed list has no room for that."""
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2 * imgui.get_style().frame_padding.x
+    return use if imgui.calc_text_size(use).x <= room else use.rpartition("/")[2]

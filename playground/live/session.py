@@ -15,6 +15,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from datetime import datetime
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -23,8 +24,8 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plan import Plan
 from playground.engine.trial import TrialReport, TrySketch
-from playground.errors import ParameterError, PlaygroundError
-from playground.live.clock import Clock, is_animated
+from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.live.clock import Clock, is_animated, reads_mouse
 from playground.live.edits import Draft, Edits, reload_draft
 from playground.live.files import files_named_by, files_of
 from playground.live.maps import Map, fitted, refs_of
@@ -159,7 +160,6 @@ class Session:
         """Read the files again; what is new in them is shown once it has proved good."""
         self.read_at = time.time()
         self._started = self._now()
-        self._revision += 1
         try:
             loaded = load(self.path)
             draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
@@ -170,6 +170,7 @@ class Session:
         if self.shown is not None and loaded == self.shown.file:
             self._drop_coming()
             self._file_error = self._draw_error = None
+            self._revision += 1  # the texts are the same, but an image may be another
             return
         self._propose(draft, notes)
 
@@ -232,6 +233,12 @@ class Session:
                 for path, value in preset.values:
                     self.set(path, value)
 
+    def point(self, mouse: tuple[float, float, float, float]) -> None:
+        """Tell plain shaders where the mouse is: pixels from the lower left, then where it was pressed."""
+        if self.engine.runner.mouse != mouse and self.sketch is not None and reads_mouse(self.sketch):
+            self.engine.runner.mouse = mouse
+            self._revision += 1
+
     def reset_camera(self) -> None:
         """See the land as the file says."""
         self._edit(lambda edits: replace(edits, camera=None))
@@ -250,6 +257,14 @@ class Session:
             self.shown = self.shown.with_edits(change(self.shown.edits))
         if self.coming is not None:
             self.coming = self.coming.with_edits(change(self.coming.edits))
+
+    def advance(self, seconds: float, date: datetime) -> None:
+        """Let so much of the wall's time pass, unless the clock rests; plain shaders are told the date."""
+        self.clock.advance(seconds)
+        midnight = date.replace(hour=0, minute=0, second=0, microsecond=0)
+        runner = self.engine.runner
+        runner.delta = seconds * self.clock.speed
+        runner.date = (float(date.year), date.month - 1.0, float(date.day), (date - midnight).total_seconds())
 
     # ── what is shown ────────────────────────────────────────────────────────
 
@@ -311,7 +326,8 @@ class Session:
         report = self._trial.poll()
         if report is None:
             return
-        if report.ok:
+        # Without a context the child can try nothing; this one may well have what it takes.
+        if report.ok or isinstance(report.error, ContextError):
             self.stage = Stage.DRAW
             self._trial_seconds = report.seconds
             return

@@ -23,6 +23,7 @@ FIELD = (0.165, 0.178, 0.190)
 RAISED = (0.215, 0.232, 0.247)
 LINE = (0.30, 0.32, 0.34)
 
+
 class Theme:
     """The fonts and the style of the current imgui context."""
 

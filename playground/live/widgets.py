@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
@@ -32,6 +33,23 @@ class Place:
     scale: float  # of the screen
     folder: Path  # the sketch's own: its files are offered
 
+
+# imgui's functions for one to four numbers, by how many.
+_Numbers = dict[int, Callable[..., tuple[bool, Any]]]
+_SLIDE: _Numbers = {
+    1: imgui.slider_float,
+    2: imgui.slider_float2,
+    3: imgui.slider_float3,
+    4: imgui.slider_float4,
+}
+_SLIDE_WHOLE: _Numbers = {
+    1: imgui.slider_int,
+    2: imgui.slider_int2,
+    3: imgui.slider_int3,
+    4: imgui.slider_int4,
+}
+_DRAG: _Numbers = {1: imgui.drag_float, 2: imgui.drag_float2, 3: imgui.drag_float3, 4: imgui.drag_float4}
+_DRAG_WHOLE: _Numbers = {2: imgui.drag_int2, 3: imgui.drag_int3, 4: imgui.drag_int4}
 
 Draw = Callable[[Parameter, Value, Place], "Value | None"]
 
@@ -61,17 +79,14 @@ def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
     if widget.kind == "log_slider":
         flags |= imgui.SliderFlags_.logarithmic
     form = format_of(parameter)
-    numbers = _as_list(value)
     if is_whole(parameter.type):
+        whole = [int(n) for n in _as_list(value)]
         low, high = max(int(widget.low), -_WHOLE), min(int(widget.high), _WHOLE)
-        found = [int(n) for n in numbers]
-        draw_int = [imgui.slider_int, imgui.slider_int2, imgui.slider_int3, imgui.slider_int4][len(found) - 1]
-        changed, raw = draw_int(place.label, found[0] if len(found) == 1 else found, low, high, form, flags)
+        changed, raw = _SLIDE_WHOLE[len(whole)](place.label, _alone(whole), low, high, form, flags)
     else:
-        draw = [imgui.slider_float, imgui.slider_float2, imgui.slider_float3, imgui.slider_float4][len(numbers) - 1]
-        changed, raw = draw(
-            place.label, numbers[0] if len(numbers) == 1 else numbers, widget.low, widget.high, form, flags
-        )
+        numbers = _as_list(value)
+        low_high = widget.low, widget.high
+        changed, raw = _SLIDE[len(numbers)](place.label, _alone(numbers), *low_high, form, flags)
     return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
 
 
@@ -80,19 +95,20 @@ def _number(parameter: Parameter, value: Value, place: Place) -> Value | None:
     if len(numbers) == 1 and is_whole(parameter.type):
         # A double holds every 32-bit number, signed or not.
         step = parameter.step or 1.0
-        changed, whole = imgui.input_double(place.label, numbers[0], step, 10 * step, f"%.0f{_unit_format(parameter)}")
+        changed, typed = imgui.input_double(
+            place.label, numbers[0], step, 10 * step, f"%.0f{_unit_format(parameter)}"
+        )
         low, high = (0, 2**32 - 1) if parameter.type == "uint" else (-(2**31), 2**31 - 1)
-        return int(min(max(round(whole), low), high)) if changed else None
+        return int(min(max(round(typed), low), high)) if changed else None
     largest = max(abs(n) for n in numbers)
     speed = parameter.step or max(largest, 0.1) * 0.01
     if is_whole(parameter.type):
-        found = [int(n) for n in numbers]
-        draw_int = [imgui.drag_int, imgui.drag_int2, imgui.drag_int3, imgui.drag_int4][len(found) - 1]
-        changed, raw = draw_int(place.label, found, max(speed, 0.2), -_WHOLE, _WHOLE, format_of(parameter))
+        whole = [int(n) for n in numbers]
+        form = format_of(parameter)
+        changed, raw = _DRAG_WHOLE[len(whole)](place.label, whole, max(speed, 0.2), -_WHOLE, _WHOLE, form)
     else:
-        draw = [imgui.drag_float, imgui.drag_float2, imgui.drag_float3, imgui.drag_float4][len(numbers) - 1]
-        single = numbers[0] if len(numbers) == 1 else numbers
-        changed, raw = draw(place.label, single, speed, 0.0, 0.0, "%.6g" + _unit_format(parameter))
+        form = "%.6g" + _unit_format(parameter)
+        changed, raw = _DRAG[len(numbers)](place.label, _alone(numbers), speed, 0.0, 0.0, form)
     return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
 
 
@@ -137,9 +153,7 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
         draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, place.scale)
     north = imgui.calc_text_size("N")
-    draw.add_text(
-        ImVec2(middle.x - north.x / 2, origin.y + place.scale), theme.packed(theme.DIM), "N"
-    )
+    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + place.scale), theme.packed(theme.DIM), "N")
     right, up = dome.dot_of(azimuth, elevation)
     dot = ImVec2(middle.x + right * (radius - 1), middle.y - up * (radius - 1))
     below = elevation < 0
@@ -156,7 +170,9 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
     imgui.set_next_item_width(-1)
-    raised, elevation = imgui.drag_float(f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP)
+    raised, elevation = imgui.drag_float(
+        f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP
+    )
     imgui.set_item_tooltip("Elevation above the horizon")
     imgui.end_group()
     return (azimuth, elevation) if turned or raised else result
@@ -199,7 +215,7 @@ def _pad(place: Place, side: float) -> tuple[float, float] | None:
 
 
 def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    """A path to type, and a list of the images and elevation files in the sketch's folder."""
+    """Draw a path to type, and a list of the images and elevation files in the sketch's folder."""
     text = str(value)
     button = imgui.get_frame_height()
     imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
@@ -211,7 +227,9 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
     imgui.same_line(0, 0)
     chosen: str | None = None
     imgui.set_next_item_width(button)
-    if imgui.begin_combo(f"{place.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left):
+    if imgui.begin_combo(
+        f"{place.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
+    ):
         names = _files_in(place.folder)
         for name in names:
             if imgui.selectable(name, name == text)[0]:
@@ -230,6 +248,11 @@ def _files_in(folder: Path) -> list[str]:
 
 
 # ── between imgui's lists and parameters' values ─────────────────────────────
+
+
+def _alone(numbers: Sequence[float]) -> float | Sequence[float]:
+    """Return a single number out of its list."""
+    return numbers[0] if len(numbers) == 1 else numbers
 
 
 def _as_list(value: object) -> list[float]:

@@ -1,4 +1,4 @@
-"""A GLFW window with an OpenGL context and Dear ImGui in it: the one place that knows about pixels and screens.
+"""A GLFW window with an OpenGL context and Dear ImGui in it: the one place that knows of screens.
 
 ``imgui_bundle`` is imported before ``glfw``, so that both use one GLFW library.
 """
@@ -10,11 +10,12 @@ import os
 import sys
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-import imgui_bundle  # noqa: I001 - before glfw, which it brings along
+import imgui_bundle
 from imgui_bundle import imgui
 
+# isort: split
 import glfw
 
 from playground.errors import ContextError
@@ -93,7 +94,7 @@ class Window:
         glfw.set_window_should_close(self._handle, True)
 
     def wait(self, seconds: float) -> None:
-        """Sleep until something happens or ``wake`` is called, no longer than ``seconds``; then take it in."""
+        """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
         if seconds <= 0:
             glfw.poll_events()
         else:
@@ -162,9 +163,13 @@ def _create(title: str, size: tuple[int, int]) -> Any:
 
 def _adopt() -> moderngl.Context:
     try:
-        return adopt_context(glfw.get_proc_address)
+        return adopt_context(_address_of)
     except Exception as error:  # moderngl raises bare Exception and ValueError
         raise ContextError(mend(str(error), sys.platform, os.environ)) from None
+
+
+def _address_of(name: str) -> int | None:
+    return cast("int | None", glfw.get_proc_address(name))  # a c_void_p comes back as a number
 
 
 def _refused(otherwise: str) -> ContextError:

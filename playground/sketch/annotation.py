@@ -51,7 +51,7 @@ def calls(
         word, opens = match.group(1), bool(match.group(2))
         column = line.text.find(word) + 1
         if word not in words:
-            hint = nearest(word, words)
+            hint = nearest(word, words) if opens else ""
             if opens and (position == 0 or "did you mean" in hint):
                 raise line.error(f"no widget '{word}'{hint}", column)
             break

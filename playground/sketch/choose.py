@@ -64,7 +64,9 @@ def _read(sketch: Sketch, use: str) -> Technique:
 
 def _own_names(sketch: Sketch) -> list[str]:
     """Name the files beside the sketch that could be techniques; library files and other sketches as well."""
-    beside = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in _OWN_SUFFIXES and str(p) != sketch.file]
+    beside = [
+        p for p in Path(sketch.folder).glob("*.*") if p.suffix in _OWN_SUFFIXES and str(p) != sketch.file
+    ]
     return sorted({f"./{p.stem}" for p in beside if p.is_file()})
 
 

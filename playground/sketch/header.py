@@ -85,8 +85,9 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
         raise line.error(f'#pragma {kind} needs output = "name:format", as output = "height:r32f"')
     kernel = replace(kernel, outputs=_outputs(text, line))
     for output in kernel.outputs:
-        if kernel.parameter(output.name):
-            raise line.error(f"'{output.name}' is both an output and a parameter")
+        if parameter := kernel.parameter(output.name):
+            place = next(x for x in source.lines if (x.file, x.number) == (parameter.file, parameter.line))
+            raise place.error(f"'{output.name}' is both an output and a parameter")
     if kind == "source":
         if not options.get("name"):
             raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
@@ -113,13 +114,13 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
 def title_of(source: SourceText) -> str:
     """Return the sentence that a file begins with, without its own name."""
     for line in source.lines:
-        if line.chain:
+        if line.chain or line.pragma or _VERSION.match(line.code):
             continue
+        if line.code.strip() or line.comment.startswith("!"):
+            break
         text = _TITLE.sub("", line.comment.strip())
         if any(letter.isalnum() for letter in text):
             return text
-        if line.code.strip() and not _VERSION.match(line.code):
-            break
     return ""
 
 

@@ -22,6 +22,8 @@ from playground.sketch.places import is_file, is_inside, names_below, real
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
+_MARK = re.compile(r'"(?:[^"\\]|\\.)*(?:"|\Z)|//|/\*')
+_NOT_TAB = re.compile(r"[^\t]")
 _WHITE = str.maketrans({"\v": " ", "\f": " "})
 _BEYOND_ASCII = re.compile(r"[^\t -~]")
 _MAX_DEPTH = 32
@@ -199,32 +201,24 @@ def _joined(lines: list[str], index: int) -> tuple[str, int]:
 
 def _split_comments(raw: str, in_block: bool) -> tuple[str, str, bool]:
     """Return (code with comments blanked, text after // or "", whether a block comment goes on)."""
-    out: list[str] = []
-    i, n = 0, len(raw)
-    quoted = False
-    while i < n:
-        two = raw[i : i + 2]
+    code = ""
+    position = 0
+    while True:
         if in_block:
-            if two == "*/":
-                in_block = False
-                out.append("  ")
-                i += 2
-            else:
-                out.append("\t" if raw[i] == "\t" else " ")
-                i += 1
-        elif not quoted and two == "//":
-            return "".join(out).rstrip(), raw[i + 2 :], False
-        elif not quoted and two == "/*":
-            in_block = True
-            out.append("  ")
-            i += 2
-        else:
-            if quoted and two == '\\"':
-                out.append(two)
-                i += 2
-                continue
-            if raw[i] == '"':
-                quoted = not quoted
-            out.append(raw[i])
-            i += 1
-    return "".join(out).rstrip(), "", in_block
+            end = raw.find("*/", position)
+            end = len(raw) if end < 0 else end + 2
+            in_block = not raw.endswith("*/", position, end)
+            code += _NOT_TAB.sub(" ", raw[position:end])
+            position = end
+            if in_block:
+                return code.rstrip(), "", True
+        match = _MARK.search(raw, position)
+        while match and match.group()[0] == '"':
+            match = _MARK.search(raw, match.end())
+        if not match:
+            return (code + raw[position:]).rstrip(), "", False
+        code += raw[position : match.start()]
+        if match.group() == "//":
+            return code.rstrip(), raw[match.end() :], False
+        code += "  "
+        position, in_block = match.end(), True

@@ -130,7 +130,7 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     limit = root if own else GLSL
     base = (folder if own else GLSL) / (use[2:] if own else use)
     candidates = [base.parent / f"{base.name}{suffix}" for suffix in (".toml", ".glsl", ".frag")]
-    if not base.name or not all(is_inside(path, (limit,)) for path in candidates):
+    if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
         raise SketchError(f"use = '{use}' lies outside {'the sketch’s own folder' if own else 'glsl/'}")
     present = [path for path in candidates if is_file(path)]
     if len(present) > 1:

@@ -40,8 +40,9 @@ def key_lines(text: str) -> dict[Place, int]:
 def line_of(lines: dict[Place, int], place: Place) -> int:
     """Return the line of a place, or of the nearest table around it; 0 if none is known."""
     while place:
-        if place in lines:
-            return lines[place]
+        for known in (place, (*place, 0)):  # a list of tables begins with its first
+            if known in lines:
+                return lines[known]
         place = place[:-1]
     return 0
 

@@ -54,7 +54,12 @@ def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple
     away = math.dist(position, middle)
     near = max((away - 1.2 * radius), 0.002 * distance, 1e-3)
     far = away + 2.0 * radius
-    up = (-math.sin(azimuth), -math.cos(azimuth), 0.0) if abs(camera.elevation) > 88 else (0.0, 0.0, 1.0)
+    # At right angles to the eye's direction already, so that looking straight down is nothing special.
+    up = (
+        -math.sin(azimuth) * math.sin(elevation),
+        -math.cos(azimuth) * math.sin(elevation),
+        math.cos(elevation),
+    )
     view = pyrr.matrix44.create_look_at(position, target, up, dtype=np.float64)
     lens = pyrr.matrix44.create_perspective_projection(
         camera.field_of_view, aspect, near, far, dtype=np.float64

@@ -51,7 +51,7 @@ def resample(
         else:
             part = _resized(_resized(part.T, nx).T, ny)
         result = np.ascontiguousarray(part + middle, dtype=np.float32)
-        return result if within is None else np.clip(result, *np.float32(within))
+        return result if within is None else np.clip(result, np.float32(within[0]), np.float32(within[1]))
 
 
 def _resized(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:

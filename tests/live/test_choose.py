@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from playground.errors import SketchError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.choose import choices, with_technique
@@ -92,7 +93,9 @@ def test_values_stay_where_their_parameters_do(folder: Path) -> None:
 
 def test_a_value_out_of_the_new_range_gives_way(folder: Path) -> None:
     sketch = load(folder)
-    square = with_technique(sketch, "height", "generation/diamond_square").with_values({"height.smoothing": 0.9})
+    square = with_technique(sketch, "height", "generation/diamond_square").with_values(
+        {"height.smoothing": 0.9}
+    )
     assert values_of(with_technique(square, "height", "./flat"))["height.smoothing"] == pytest.approx(0.2)
 
 

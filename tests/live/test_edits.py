@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
 from playground.live.edits import Draft, Edits, reload_draft
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
@@ -65,7 +66,11 @@ def test_the_file_wins_where_the_file_changed(folder: Path) -> None:
 
 def test_a_parameter_of_another_type_falls_back_and_says_so(folder: Path) -> None:
     old = edited(folder, level=1.0)
-    change(folder / "land.glsl", "uniform float level = 0.5; //! slider(0, 1)", "uniform int level = 1; //! slider(0, 3)")
+    change(
+        folder / "land.glsl",
+        "uniform float level = 0.5; //! slider(0, 1)",
+        "uniform int level = 1; //! slider(0, 3)",
+    )
     change(folder / "land.glsl", "return level +", "return float(level) +")
     draft, notes = reload_draft(old, load(folder))
     assert values_of(draft.sketch)["height.level"] == 1
@@ -84,7 +89,9 @@ def test_a_value_out_of_a_new_range_falls_back_and_says_so(folder: Path) -> None
 def test_a_parameter_that_goes_and_returns_keeps_its_value(folder: Path) -> None:
     old = edited(folder, level=0.9)
     text = (folder / "land.glsl").read_text(encoding="utf-8")
-    change(folder / "land.glsl", "uniform float level = 0.5; //! slider(0, 1)\n", "const float level = 0.5;\n")
+    change(
+        folder / "land.glsl", "uniform float level = 0.5; //! slider(0, 1)\n", "const float level = 0.5;\n"
+    )
     without, notes = reload_draft(old, load(folder))
     assert "height.level" not in values_of(without.sketch) and "is gone" in notes[0]
     (folder / "land.glsl").write_text(text, encoding="utf-8")

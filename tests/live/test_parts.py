@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
+from playground.live.excerpt import cut, short_place
 from playground.live.gesture import Gesture, steered
 from playground.live.numbers import decimals, format_of, snapped
 from playground.live.pictures import save_new
@@ -55,6 +57,26 @@ def test_a_dot_gives_back_its_direction(azimuth: float, elevation: float) -> Non
 
 def test_a_dot_outside_the_disc_is_on_the_horizon() -> None:
     assert direction_at(7.0, 0.0) == pytest.approx((90.0, 0.0))
+
+
+def test_a_short_line_loses_only_its_indentation() -> None:
+    assert cut("    float x = foo;", 15, 40) == ("float x = foo;", 10)
+    assert cut("\tfloat x = foo;", 12, 40) == ("float x = foo;", 10)
+    assert cut("float x = foo;", 0, 40) == ("float x = foo;", -1)
+
+
+@pytest.mark.parametrize("column", [1, 30, 60, 119, 120])
+def test_a_long_line_is_cut_around_its_column(column: int) -> None:
+    line = "".join(chr(ord("a") + i % 26) for i in range(120))
+    text, mark = cut(line, column, 30)
+    assert len(text) <= 30
+    assert text[mark] == line[column - 1]
+
+
+def test_places_are_named_from_the_sketchs_folder(tmp_path: Path) -> None:
+    inside = tmp_path / "inc" / "wave.glsl"
+    assert short_place(f"{inside}:2:7", str(tmp_path)) == "inc/wave.glsl:2:7"
+    assert short_place("glsl/noise/hash.glsl:3", str(tmp_path)) == "glsl/noise/hash.glsl:3"
 
 
 CAMERA = Camera(azimuth=200.0, elevation=30.0, distance=1000.0)

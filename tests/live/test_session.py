@@ -1,4 +1,4 @@
-"""A session without a window: what is saved is shown, what is broken is said, and the last good picture stays."""
+"""A session without a window: a save shows, a mistake is said, and the last good picture stays."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import SketchError, TrialTimeout
@@ -23,7 +24,9 @@ float kernel(ivec2 texel) {
     return level * tilt(texel, size);
 }
 """
-TILT = "// tilt.glsl -- a slope\nfloat tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }\n"
+TILT = """// tilt.glsl -- a slope
+float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }
+"""
 SKETCH = """format = 1
 size = 33
 [[pass]]
@@ -154,7 +157,9 @@ def test_the_last_good_sketch_can_still_be_changed_by_hand(bench: Bench) -> None
     assert values_of(bench.session.sketch)["height.level"] == 0.75
 
 
-def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_mended(tmp_path: Path, any_engine: Engine) -> None:
+def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_mended(
+    tmp_path: Path, any_engine: Engine
+) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session = Session(any_engine, tmp_path)
     assert session.frame(SIZE) is None and session.sketch is None
@@ -206,8 +211,12 @@ def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> No
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] == 0.75
-    bench.write("sketch.toml", SKETCH.partition("[[preset]]")[0])  # a preset of another type would be a mistake
-    bench.change("land.glsl", "uniform float level = 0.25; //! slider(0, 1)", "uniform bool level = true; //! checkbox")
+    bench.write(
+        "sketch.toml", SKETCH.partition("[[preset]]")[0]
+    )  # a preset of another type would be a mistake
+    bench.change(
+        "land.glsl", "uniform float level = 0.25; //! slider(0, 1)", "uniform bool level = true; //! checkbox"
+    )
     bench.change("land.glsl", "1.0 - level", "1.0 - float(level)")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] is True
@@ -324,7 +333,11 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
 
 def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
     bench.picture()
-    bench.change("land.glsl", "uniform float level", 'uniform sampler2D grass; //! file("grass.png")\nuniform float level')
+    bench.change(
+        "land.glsl",
+        "uniform float level",
+        'uniform sampler2D grass; //! file("grass.png")\nuniform float level',
+    )
     bench.picture()
     names = {path.name for path in bench.session.files}
     assert {"sketch.toml", "land.glsl", "tilt.glsl", "map.glsl"} <= names

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
 from playground.live.watch import Watcher
 
 LIMIT = 2.0  # [s]
@@ -59,7 +60,7 @@ def save_in_place(path: Path, text: str) -> None:
 def save_by_rename(path: Path, text: str) -> None:
     beside = path.with_name(f".{path.name}.tmp")
     beside.write_text(text, encoding="utf-8")
-    os.replace(beside, path)
+    beside.replace(path)
 
 
 def save_by_deleting(path: Path, text: str) -> None:

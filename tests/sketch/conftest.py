@@ -44,7 +44,9 @@ class Folder:
     def sketch(self, body: str = PASS, tail: str = TAIL, head: str = "format = 1\n") -> Sketch:
         return load(self.write("s.toml", head + textwrap.dedent(body) + textwrap.dedent(tail)))
 
-    def refused(self, words: str, line: int | None = None, file: str = "s.toml", **parts: str) -> PlaygroundError:
+    def refused(
+        self, words: str, line: int | None = None, file: str = "s.toml", **parts: str
+    ) -> PlaygroundError:
         """Load a sketch that is wrong; see that the error has these words and this line."""
         with pytest.raises(PlaygroundError) as caught:
             self.sketch(**parts)

@@ -66,7 +66,10 @@ def test_random_expressions_agree_with_exact_arithmetic():
             found = evaluate(text, NAMES)
         except ExpressionError as error:
             fine = "whole number" in str(error) and value.denominator != 1
-            assert fine or "grows" in str(error) or "large" in str(error) or "longer" in str(error), (text, error)
+            assert fine or "grows" in str(error) or "large" in str(error) or "longer" in str(error), (
+                text,
+                error,
+            )
         else:
             assert found == value and type(found) is int, text
             exact += 1
@@ -132,7 +135,7 @@ def test_log2_is_exact_up_to_the_largest_power(n):
         "1.5 // 0.0",
         "9" * 400,
         "9" * 5000,
-        "(" * 200 + "1" + ")" * 200,
+        "(" * 240 + "1" + ")" * 240,
         "-" * 499 + "1",
         "1" + "+1" * 249,
         "1" + "+1" * 300,
@@ -187,8 +190,18 @@ def test_what_is_no_expression_is_one_sentence_and_quick(text):
 
 def test_rubbish_raises_nothing_else():
     chance = random.Random(8)
-    pieces = [*"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@", "**", "//", "size.x", "log2(", " if ", " else ", "é", "1e9"]
-    for _ in range(4000):
+    pieces = [
+        *"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@",
+        "**",
+        "//",
+        "size.x",
+        "log2(",
+        " if ",
+        " else ",
+        "é",
+        "1e9",
+    ]
+    for _ in range(1500):
         text = "".join(chance.choice(pieces) for _ in range(chance.randint(1, 14)))
         for function in (lambda t: evaluate(t, NAMES), names_in, lambda t: check(t, NAMES), accepted_sizes):
             try:
@@ -198,9 +211,9 @@ def test_rubbish_raises_nothing_else():
 
 
 def test_an_unknown_name_is_told_with_the_nearest():
-    with pytest.raises(ExpressionError, match="names 'octave'.*did you mean 'octaves'"):
+    with pytest.raises(ExpressionError, match=r"names 'octave'.*did you mean 'octaves'"):
         evaluate("2 * octave", NAMES)
-    with pytest.raises(ExpressionError, match="calls 'log'.*did you mean 'log2'"):
+    with pytest.raises(ExpressionError, match=r"calls 'log'.*did you mean 'log2'"):
         evaluate("log(4)", NAMES)
 
 
@@ -216,7 +229,13 @@ def test_names_come_from_a_function_as_well():
 
 
 def test_names_in_an_expression():
-    assert names_in("min(size.x, octaves) + a.b.c // 2, 3 if n else m") == {"size.x", "octaves", "a.b.c", "n", "m"}
+    assert names_in("min(size.x, octaves) + a.b.c // 2, 3 if n else m") == {
+        "size.x",
+        "octaves",
+        "a.b.c",
+        "n",
+        "m",
+    }
     assert names_in("2 ** 3") == frozenset()
 
 

@@ -90,12 +90,14 @@ def test_every_key_has_its_line():
 def test_a_place_without_a_line_has_that_of_what_is_around_it():
     lines = key_lines(TEXT)
     assert line_of(lines, ("pass", 0, "set", "nothing", "there")) == 18
-    assert line_of(lines, ("pass", 7, "name")) == 0
+    assert line_of(lines, ("pass", 7, "name")) == 16  # the first of the list
+    assert line_of(lines, ("nothing", 7, "name")) == 0
     assert line_of(lines, ()) == 0
 
 
 @pytest.mark.parametrize(
-    "text", ["", "\n\n", "[", "[[", "[[pass]", "a", "a =", "a = [", "a = {", "= 1", 'a = "', "[]", "a.=1", "]", "}"]
+    "text",
+    ["", "\n\n", "[", "[[", "[[pass]", "a", "a =", "a = [", "a = {", "= 1", 'a = "', "[]", "a.=1", "]", "}"],
 )
 def test_what_is_not_toml_gives_what_there_is(text):
     assert isinstance(key_lines("first = 1\n" + text), dict)
@@ -108,7 +110,9 @@ def test_any_text_ends_soon_and_raises_nothing():
         letters = list(TEXT)
         for _ in range(chance.randint(1, 12)):
             at = chance.randrange(len(letters))
-            letters[at : at + chance.randint(0, 3)] = chance.choice(["", "[", '"', "'''", "{", "=", "\n", "\\", "}"])
+            letters[at : at + chance.randint(0, 3)] = chance.choice(
+                ["", "[", '"', "'''", "{", "=", "\n", "\\", "}"]
+            )
         key_lines("".join(letters))
     key_lines("a = " + "[" * 100_000)
     key_lines("a = [" + "1, " * 100_000 + "]")

@@ -133,9 +133,14 @@ def test_what_is_expected_is_said(parameter):
 def test_writing_and_reading_gives_the_value_back():
     chance = random.Random(3)
     for _ in range(500):
-        number = chance.choice([chance.random(), chance.random() * 10 ** chance.randint(-9, 0), 1 / 3, 0.0, 1.0])
+        number = chance.choice(
+            [chance.random(), chance.random() * 10 ** chance.randint(-9, 0), 1 / 3, 0.0, 1.0]
+        )
         assert coerce(SLIDER, write(SLIDER, number)) == number
-        assert coerce(SEED, write(SEED, whole := chance.choice([0, 7, 2**32 - 1, chance.getrandbits(32)]))) == whole
+        assert (
+            coerce(SEED, write(SEED, whole := chance.choice([0, 7, 2**32 - 1, chance.getrandbits(32)])))
+            == whole
+        )
         pair = (chance.randint(-(2**31), 2**31 - 1), chance.randint(-9, 9))
         assert coerce(PAIR, write(PAIR, pair)) == pair
         sun = (chance.uniform(-720, 720), chance.uniform(-90, 90))

@@ -1,8 +1,4 @@
-"""Elevation files: every format against numbers made here, every refusal, gaps, sizes.
-
-The truth for degrees is distances integrated along the ellipsoid and published
-tables; for sizes SciPy's splines; for gaps a plane, which is its own smooth sheet.
-"""
+"""Elevation files: every format against numbers made here, every refusal."""
 
 from __future__ import annotations
 
@@ -16,14 +12,11 @@ import numpy as np
 import pytest
 import tifffile
 from PIL import Image as PillowImage
-from scipy.interpolate import RectBivariateSpline
 
 from playground.errors import DataError
 from playground.images.files import write_values
 from playground.terrain.elevation import Elevation, read_elevation
-from playground.terrain.gaps import fill_no_data
 from playground.terrain.geodesy import degree_lengths
-from playground.terrain.resample import resample
 
 RNG = np.random.default_rng(11)
 LAND = RNG.integers(200, 2000, (6, 9)).astype(np.int16)  # north row first, as files are
@@ -38,45 +31,6 @@ def refused(path: Path, words: str, **options: object) -> None:
 def assert_land(found: Elevation, north_first: np.ndarray) -> None:
     assert found.heights.dtype == np.float32 and found.heights.flags.c_contiguous
     np.testing.assert_array_equal(found.heights[::-1], north_first.astype(np.float32))
-
-
-# Degrees
-
-
-# National Geospatial-Intelligence Agency, "Length of a degree of latitude and longitude", WGS 84, km.
-@pytest.mark.parametrize(
-    ("latitude", "north", "east"),
-    [
-        (0, 110.574, 111.320),
-        (15, 110.649, 107.550),
-        (30, 110.852, 96.486),
-        (45, 111.132, 78.847),
-        (60, 111.412, 55.800),
-        (75, 111.618, 28.902),
-        (90, 111.694, 0.000),
-    ],
-)
-def test_a_degree_is_as_long_as_the_tables_say(latitude, north, east):
-    assert degree_lengths(latitude) == pytest.approx((1000 * east, 1000 * north), abs=0.6)
-    assert degree_lengths(-latitude) == degree_lengths(latitude)
-
-
-def on_ellipsoid(latitude: float, longitude: float) -> np.ndarray:
-    """Return the point in space: the ellipse x²/a² + z²/b² = 1 by its reduced latitude."""
-    a, b = 6378137.0, 6356752.314245
-    reduced = math.atan(b / a * math.tan(math.radians(latitude)))
-    around = math.radians(longitude)
-    flat = a * math.cos(reduced)
-    return np.array([flat * math.cos(around), flat * math.sin(around), b * math.sin(reduced)])
-
-
-@pytest.mark.parametrize("latitude", [-63.2, 0.0, 12.5, 36.59, 80.0])
-def test_short_steps_in_space_are_as_long_as_their_degrees(latitude):
-    step = 1 / 1200
-    east, north = degree_lengths(latitude)
-    over = np.linalg.norm(on_ellipsoid(latitude, step) - on_ellipsoid(latitude, 0.0))
-    up = np.linalg.norm(on_ellipsoid(latitude + step / 2, 0.0) - on_ellipsoid(latitude - step / 2, 0.0))
-    np.testing.assert_allclose([east * step, north * step], [over, up], rtol=1e-7)
 
 
 # PNG
@@ -337,7 +291,7 @@ def test_npy_of_every_kind_of_number(tmp_path, dtype, by_columns):
     assert found.spacing is None and not found.in_metres
 
 
-def test_the_jacksboro_fault_has_its_true_size(tmp_path):
+def test_the_jacksboro_fault_has_its_true_size(on_ellipsoid, tmp_path):
     path = Path(__file__).parents[2] / "data" / "jacksboro_fault_dem.npz"
     if not path.exists():
         # The same header as the shipped file's, without its land.
@@ -609,162 +563,3 @@ def test_the_name_s_case_does_not_matter(tmp_path):
     np.save(tmp_path / "a.npy", LAND)
     shutil.move(tmp_path / "a.npy", tmp_path / "A.NPY")
     assert_land(read_elevation(tmp_path / "A.NPY"), LAND)
-
-
-# Gaps
-
-
-def plane(n: int) -> np.ndarray:
-    y, x = np.mgrid[:n, :n] / (n - 1)
-    return (1000.0 + 300.0 * x + 200.0 * y).astype(np.float32)
-
-
-def test_gaps_are_refused_with_their_number_and_place():
-    heights = plane(9)
-    heights[3, 4] = heights[5, 1] = np.nan
-    with pytest.raises(DataError, match=r"hill: 2 of 81 texels have no data, the first at \(4, 3\)"):
-        fill_no_data(Elevation(heights, "hill"), "refuse")
-    with pytest.raises(DataError, match="no such way with gaps: 'fil'; did you mean 'fill'"):
-        fill_no_data(Elevation(heights, "hill"), "fil")  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("mode", ["refuse", "fill"])
-def test_land_without_gaps_is_left_alone(mode):
-    whole = Elevation(plane(9), "hill")
-    assert fill_no_data(whole, mode) is whole
-
-
-@pytest.mark.parametrize("n", [33, 100, 257])
-def test_a_hole_in_a_plane_is_filled_by_the_plane(n):
-    y, x = np.mgrid[:n, :n] / (n - 1)
-    heights = plane(n)
-    heights[(x - 0.5) ** 2 + (y - 0.45) ** 2 < 0.09] = np.nan
-    found = fill_no_data(Elevation(heights, "hill", spacing=(2.0, 2.0), in_metres=True), "fill")
-    assert np.abs(found.heights - plane(n)).max() < 0.005 * 500.0
-    known = ~np.isnan(heights)
-    np.testing.assert_array_equal(found.heights[known], heights[known])
-    assert found.missing == 0 and found.spacing == (2.0, 2.0) and found.in_metres
-    assert "were filled" in found.notes[0]
-
-
-def test_a_fill_is_smooth_within_range_and_the_same_each_time():
-    y, x = np.mgrid[:129, :200] / 60.0
-    heights = (100 * np.sin(3 * x) * np.cos(2 * y)).astype(np.float32)
-    land = heights.copy()
-    land[:40, :50] = land[60:90, 100:160] = np.nan
-    land[RNG.random(land.shape) < 0.2] = np.nan
-    one, two = (fill_no_data(Elevation(land, "hill"), "fill").heights for _ in range(2))
-    np.testing.assert_array_equal(one, two)
-    assert np.nanmin(land) <= one.min() and one.max() <= np.nanmax(land)
-    steepest = np.abs(np.diff(heights, axis=1)).max()
-    assert np.abs(np.diff(one, axis=1)).max() < 3 * steepest
-
-
-def test_one_known_texel_fills_the_land():
-    heights = np.full((37, 21), np.nan, np.float32)
-    heights[30, 2] = 7.25
-    assert (fill_no_data(Elevation(heights, "hill"), "fill").heights == np.float32(7.25)).all()
-
-
-def test_a_fill_keeps_the_symmetry_of_the_land():
-    heights = plane(65)
-    heights[20:45, 20:45] = np.nan
-    a = fill_no_data(Elevation(heights, "a"), "fill").heights
-    b = fill_no_data(Elevation(np.ascontiguousarray(heights[:, ::-1]), "b"), "fill").heights
-    np.testing.assert_allclose(a, b[:, ::-1], atol=1.0)
-
-
-# Size
-
-
-SIZES = [(65, 65), (33, 129), (17, 17), (200, 31), (2, 2), (64, 66), (5, 300), (1025, 2)]
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_a_constant_stays_exactly_constant(size):
-    found = resample(np.full((40, 65), 0.1, np.float32), size)
-    assert found.shape == size[::-1] and found.dtype == np.float32 and found.flags.c_contiguous
-    assert (found == np.float32(0.1)).all()
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_a_plane_stays_a_plane_with_its_corners(size):
-    y, x = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 65), indexing="ij")
-    v, u = np.meshgrid(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]), indexing="ij")
-    found = resample(700.0 + 250.0 * x - 90.0 * y, size)
-    np.testing.assert_allclose(found, 700.0 + 250.0 * u - 90.0 * v, atol=2e-4)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_corners_keep_their_heights(size):
-    land = RNG.random((40, 65), dtype=np.float32)
-    corners = np.ix_([0, -1], [0, -1])
-    np.testing.assert_allclose(resample(land, size)[corners], land[corners], atol=1e-6)
-
-
-def test_the_same_size_is_the_same_land():
-    land = RNG.random((40, 65), dtype=np.float32)
-    np.testing.assert_allclose(resample(land, (65, 40)), land, atol=1e-7)
-
-
-@pytest.mark.parametrize("size", [(129, 129), (300, 77), (500, 500)])
-def test_growing_smooth_land_follows_scipy_s_spline(size):
-    x, y = np.linspace(0, 1, 65), np.linspace(0, 1, 49)
-    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
-    spline = RectBivariateSpline(y, x, land)
-    expected = spline(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
-    difference = np.abs(resample(land, size) - expected)
-    margin = math.ceil(2 * size[0] / 65), math.ceil(2 * size[1] / 49)
-    assert difference[margin[1] : -margin[1], margin[0] : -margin[0]].max() < 6e-5
-    # The edges have no neighbour beyond: there the land's curvature, f'' h^2 / 16, is not seen.
-    assert difference.max() < (25 + 16 + 2) / 48**2 / 16
-
-
-@pytest.mark.parametrize("size", [(65, 65), (100, 47), (33, 33)])
-def test_shrinking_smooth_land_follows_scipy_s_spline(size):
-    x, y = np.linspace(0, 1, 513), np.linspace(0, 1, 385)
-    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
-    expected = RectBivariateSpline(y, x, land)(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
-    assert np.abs(resample(land, size) - expected).max() < 2e-3
-
-
-def test_shrinking_averages_and_does_not_alias():
-    rows, cols = np.indices((257, 257))
-    checked = ((rows + cols) % 2).astype(np.float32)  # taking every 4th texel would see only zeros
-    inside = resample(checked, (65, 65))[4:-4, 4:-4]
-    np.testing.assert_allclose(inside, 0.5, atol=0.01)
-    waves = np.sin(2 * np.pi * cols * 0.23)  # would come back as a slow wave at 4 to 1
-    assert np.abs(resample(waves, (65, 65))[:, 4:-4]).max() < 0.05
-    noise = RNG.normal(size=(257, 257))
-    assert resample(noise, (65, 65))[4:-4, 4:-4].std() < 0.35
-
-
-def test_tiles_that_share_an_edge_share_it_afterwards():
-    land = RNG.random((65, 129))
-    for size in ((17, 17), (129, 100)):
-        west, east = resample(land[:, :65], size), resample(land[:, 64:], size)
-        np.testing.assert_allclose(west[:, -1], east[:, 0], atol=1e-6)
-
-
-def test_turning_the_land_turns_the_result():
-    land = RNG.random((40, 65))
-    for size in ((31, 90), (100, 20)):
-        found = resample(land, size)
-        np.testing.assert_allclose(resample(land[::-1, ::-1], size), found[::-1, ::-1], atol=1e-6)
-        np.testing.assert_allclose(resample(land.T, size[::-1]), found.T, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("heights", "size", "words"),
-    [
-        (np.zeros((4, 4)), (1, 4), "resampled heights: is 1 x 4 texels"),
-        (np.zeros((4, 4)), (10**5, 10**5), r"the most is 2\*\*28"),
-        (np.zeros(4), (4, 4), "has 1 dimensions"),
-        (np.zeros((1, 4)), (4, 4), "is 4 x 1 texels"),
-        (np.zeros((4, 4), complex), (4, 4), "holds complex128"),
-        (np.array([[0, np.nan], [0, 0]]), (4, 4), "1 are not finite; expected gaps to be filled"),
-    ],
-)
-def test_what_cannot_be_resampled_is_a_sentence(heights, size, words):
-    with pytest.raises(DataError, match=words):
-        resample(heights, size)

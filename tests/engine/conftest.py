@@ -1,0 +1,42 @@
+"""What the engine's tests share: sketches made of a few small kernels in a folder of their own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+
+class Folder:
+    """A sketch's folder that a test fills."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def write(self, name: str, text: str) -> Path:
+        """Write a file, and see that its time differs from the last one's."""
+        path = self.path / name
+        before = path.stat().st_mtime_ns if path.exists() else 0
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        if path.stat().st_mtime_ns <= before:
+            os.utime(path, ns=(before + 1, before + 1))
+        return path
+
+    def sketch(self, body: str, *, size: str = "size = 17") -> Sketch:
+        """Load a sketch; ``body`` follows format and size. Its view is a map of its last pass."""
+        return load(self.write("sketch.toml", f"format = 1\n{size}\n{body}"))
+
+    def one(self, kernel: str, *, size: str = "size = 17", more: str = "") -> Sketch:
+        """Load a sketch of one kernel in a pass named ``a``."""
+        self.write("one.glsl", kernel)
+        return self.sketch(f'[[pass]]\nname = "a"\nuse = "./one"\n{more}', size=size)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Folder:
+    """Give an empty folder for a sketch."""
+    return Folder(tmp_path)

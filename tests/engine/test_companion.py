@@ -1,0 +1,189 @@
+"""A ``.comp`` beside a kernel or a technique gives the same answer, where there is compute."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.errors import PlaygroundError
+
+SUMS = """#pragma kernel(output = "sums:r32f", repeat = "log2(size.x)")
+uniform sampler2D values; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+float kernel(ivec2 texel) {
+    // Sums of all to the west, in doubling steps: the first turn reads the values.
+    int reach = 1 << iteration;
+    float here = iteration == 0 ? texelFetch(values, texel, 0).r * scale : previous(texel);
+    ivec2 west = texel - ivec2(reach, 0);
+    float there = west.x < 0 ? 0.0 : iteration == 0 ? texelFetch(values, west, 0).r * scale : previous(west);
+    return here + there;
+}
+"""
+SWEEP = """#pragma compute(groups = "1, size.y", local = "1, 1")
+uniform sampler2D values; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+void main() {
+    float sum = 0.0;
+    int y = int(gl_GlobalInvocationID.y);
+    for (int x = 0; x < size.x; x++) {
+        sum += texelFetch(values, ivec2(x, y), 0).r * scale;
+        imageStore(out_sums, ivec2(x, y), vec4(sum));
+    }
+}
+"""
+VALUES = """#pragma kernel(output = "values:r32f")
+float kernel(ivec2 texel) { return float((texel.x * 3 + texel.y * 5) % 8); }
+"""
+BODY = """
+[[pass]]
+name = "values"
+use = "./values"
+[[pass]]
+name = "sums"
+use = "./sums"
+"""
+
+
+def truth(scale: float = 1.0) -> np.ndarray:
+    y, x = np.mgrid[0:16, 0:16]
+    return np.cumsum(((x * 3 + y * 5) % 8).astype(np.float64), axis=1) * scale
+
+
+@pytest.fixture
+def sums(folder):
+    folder.write("values.glsl", VALUES)
+    folder.write("sums.glsl", SUMS)
+    folder.write("sums.comp", SWEEP)
+    return folder.sketch(BODY, size="size = 16")
+
+
+@pytest.fixture
+def ran(monkeypatch):
+    """List the files whose programs are asked for."""
+    from playground.engine.programs import Programs
+
+    asked: list[str] = []
+    get = Programs.get
+
+    def spy(self, kernel, driver):
+        asked.append(kernel.path.rpartition("/")[2])
+        return get(self, kernel, driver)
+
+    monkeypatch.setattr(Programs, "get", spy)
+    return asked
+
+
+@pytest.mark.parametrize("driver", ["auto", "compute", "fragment"])
+def test_it_runs_where_there_is_compute_and_agrees(ctx, sums, ran, driver):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver=driver) as engine:
+        for scale in (1.0, 2.0):
+            found = engine.read(sums.with_values({"sums.scale": scale}), "sums")
+            np.testing.assert_allclose(found, truth(scale), rtol=1e-6)
+        assert ("sums.comp" in ran) == (driver != "fragment")
+        assert ("sums.glsl" in ran) == (driver == "fragment")
+        assert engine.runs["sums"] == 2
+
+
+def test_its_turns_are_shown_by_the_kernel(any_engine, sums, ran):
+    found = any_engine.read(sums, "sums", steps={"sums": 1})
+    west = np.pad(truth()[:, :-1], ((0, 0), (1, 0)))
+    values = truth() - west
+    np.testing.assert_allclose(found, values + np.pad(values[:, :-1], ((0, 0), (1, 0))))
+    assert "sums.comp" not in ran
+    assert len(list(any_engine.steps(sums, "sums"))) == 5
+
+
+def test_a_changed_companion_is_stale_and_so_is_a_removed_one(any_engine, folder, sums):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    any_engine.texture(sums, "sums")
+    folder.write("sums.comp", SWEEP.replace("vec4(sum)", "vec4(sum * 2.0)"))
+    np.testing.assert_allclose(any_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth(2.0))
+    (folder.path / "sums.comp").unlink()
+    np.testing.assert_allclose(any_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth())
+
+
+def test_a_start_that_it_knows_nothing_of_keeps_it_out(any_engine, folder, sums, ran):
+    folder.write("sums.glsl", SUMS.replace("iteration == 0", "false"))
+    wired = BODY + 'inputs = { initial = "values", values = "values" }\n'
+    found = any_engine.read(folder.sketch(wired, size="size = 16"), "sums")
+    np.testing.assert_allclose(found, truth(), rtol=1e-6)
+    assert "sums.comp" not in ran
+
+
+GRAPH = """
+[[pass]]
+name = "doubled"
+use = "./doubled"
+[[pass]]
+name = "add"
+use = "./add"
+[inputs]
+values = ["doubled.values", "add.values"]
+[parameters]
+scale = ["doubled.scale", "add.scale"]
+[outputs]
+sum = "add:sum"
+"""
+DOUBLED = """#pragma kernel(output = "doubled:r32f")
+uniform sampler2D values; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+float kernel(ivec2 texel) { return 2.0 * scale * texelFetch(values, texel, 0).r; }
+"""
+ADD = """#pragma kernel(output = "sum:r32f")
+uniform sampler2D values;  //! input
+uniform sampler2D doubled; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+float kernel(ivec2 texel) { return texelFetch(doubled, texel, 0).r + scale * texelFetch(values, texel, 0).r; }
+"""
+TRIPLE = """#pragma compute(groups = "size.x / 4, size.y / 2", local = "4, 2", repeat = "3", buffers = "kept:float:size.x * size.y; marks:vec4:1")
+uniform sampler2D values; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    int place = texel.y * size.x + texel.x;
+    if (iteration == 0 && marks[0] != vec4(0.0)) kept[place] = 1e9;  // buffers begin as zeros
+    kept[place] += scale * texelFetch(values, texel, 0).r;
+    vec4 before = imageLoad(out_sum, texel);
+    imageStore(out_sum, texel, vec4(before.r + (iteration == iterations - 1 ? kept[place] : 0.0)));
+}
+"""
+
+
+def test_one_beside_a_technique_stands_for_all_of_it(ctx, folder):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    for name, text in {"values": VALUES, "doubled": DOUBLED, "add": ADD}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("triple.toml", GRAPH)
+    folder.write("triple.comp", TRIPLE)
+    body = '[[pass]]\nname = "values"\nuse = "./values"\n[[pass]]\nname = "t"\nuse = "./triple"\n'
+    sketch = folder.sketch(body, size="size = 16").with_values({"t.scale": 2.0})
+    with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
+        np.testing.assert_array_equal(slow.read(sketch, "t"), fast.read(sketch, "t"))
+        assert slow.read(sketch, "t").max() == 2 * 3 * 7
+        assert set(slow.runs) == {"values", "t.doubled", "t.add"}
+        assert set(fast.runs) == {"values", "t"}
+        for _ in range(3):
+            fast.cache.clear()
+            np.testing.assert_array_equal(
+                slow.read(sketch, "t"), fast.read(sketch, "t"), "nothing is left over"
+            )
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ('groups = "1 / 3, 1"', "gives 0.333333"),
+        ('groups = "size.x, 1", buffers = "b:vec4:2**40"', "2048 at most"),
+        ('groups = "size.x, 1", repeat = "log2(3)"', "power of two"),
+    ],
+)
+def test_a_wrong_expression_names_the_pass(any_engine, folder, sums, option, message):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("sums.comp", SWEEP.replace('groups = "1, size.y", local = "1, 1"', option))
+    with pytest.raises(PlaygroundError, match=message):
+        any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")

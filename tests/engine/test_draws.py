@@ -1,0 +1,222 @@
+"""Draws: what they start from, how they blend, what hides what, samples resolved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.errors import PlaygroundError
+
+HEAD = '#pragma draw(mesh = "sheet", output = "frame:rgba32f"{more})\n'
+PLATE = (
+    HEAD
+    + """uniform float left = -1.0;
+uniform float right = 1.0;
+uniform float depth = 0.0;
+uniform int count = 0;
+uniform vec4 colour = vec4(1.0, 0.0, 0.0, 1.0);
+vec4 vertex(vec3 corner, out vec2 place) {
+    place = corner.xy;
+    return vec4(mix(left, right, corner.x), corner.y * 2.0 - 1.0, depth, 1.0);
+}
+vec4 fragment(vec2 place) { return colour; }
+"""
+)
+BACK = """#pragma kernel(output = "frame:rgba32f")
+vec4 kernel(ivec2 texel) { return vec4(0.25, float(texel.x), 0.0, 1.0); }
+"""
+
+
+@pytest.fixture
+def plates(folder):
+    """Give a function that draws plates one over the other: (name, options, values, start)."""
+
+    def make(*layers, samples: int = 1, size: int = 16):
+        folder.write("back.glsl", BACK)
+        body = ['[[pass]]\nname = "back"\nuse = "./back"']
+        given = {}
+        for name, more, values, start in layers:
+            folder.write(f"{name}.glsl", PLATE.replace("{more}", more))
+            wired = f'\ninputs = {{ initial = "{start}" }}' if start else ""
+            body.append(f'[[pass]]\nname = "{name}"\nuse = "./{name}"{wired}')
+            given |= {f"{name}.{key}": value for key, value in values.items()}
+        sketch = folder.sketch("\n".join(body), size=f"size = {size}")
+        return replace(sketch, samples=samples).with_values(given)
+
+    return make
+
+
+RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_it_covers_what_it_covers_and_is_clear_elsewhere(any_engine, plates, samples):
+    sketch = plates(("one", "", {"right": 0.0, "colour": RED}, ""), samples=samples)
+    found = any_engine.read(sketch, "one")
+    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(found[:, 8:], 0.0)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_it_starts_from_a_texture(any_engine, plates, samples):
+    sketch = plates(("one", "", {"right": 0.0}, "back"), samples=samples)
+    found, back = any_engine.read(sketch, "one"), any_engine.read(sketch, "back")
+    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(found[:, 8:], back[:, 8:])
+
+
+@pytest.mark.parametrize("samples", [1, 2, 4])
+@pytest.mark.parametrize(("depth", "hidden"), [(-0.5, False), (0.5, True)])
+def test_it_starts_from_an_earlier_draw_with_its_depth(any_engine, plates, samples, depth, hidden):
+    sketch = plates(
+        ("one", "", {"depth": 0.0}, "back"),
+        ("two", "", {"right": 0.0, "depth": depth, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
+        samples=samples,
+    )
+    found = any_engine.read(sketch, "two")
+    assert found[8, 4, 2] == (0.0 if hidden else 1.0)
+    assert found[8, 12, 0] == 1.0
+    one = any_engine.read(sketch, "one")
+    assert one[8, 4, 2] == 0.0, "the earlier one is left alone"
+    assert any_engine.ran == []
+
+
+def test_without_a_depth_test_the_later_one_shows(any_engine, plates):
+    sketch = plates(
+        ("one", "", {"depth": 0.0}, ""),
+        ("two", ', depth = "none"', {"depth": 0.5, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
+    )
+    assert any_engine.read(sketch, "two")[3, 3, 2] == 1.0
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("blend", ["none", "alpha", "add"])
+def test_blending(any_engine, plates, blend, samples):
+    sketch = plates(("one", f', blend = "{blend}"', {"colour": GREEN}, "back"), samples=samples)
+    found, under = any_engine.read(sketch, "one"), any_engine.read(sketch, "back").astype(np.float64)
+    over = np.broadcast_to(np.array(GREEN), under.shape)
+    expected = {
+        "none": over,
+        "add": under + over,
+        "alpha": over * 0.5 + under * 0.5 + (over * [0, 0, 0, 0.5]),  # alpha itself is not weighed by alpha
+    }[blend]
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+def test_samples_are_resolved_to_their_mean(any_engine, plates):
+    edge = 0.5 / 8  # half a pixel right of the middle
+    sketch = plates(("one", "", {"right": edge}, ""), samples=4)
+    column = any_engine.read(sketch, "one")[:, 8, 0]
+    assert np.all((column > 0) & (column < 1))
+    assert np.all(any_engine.read(replace(sketch, samples=1), "one")[:, 8, 0] % 1 == 0)
+
+
+def test_a_draw_on_top_is_the_same_whatever_was_drawn_before_it(ctx, plates):
+    """The draw below keeps its samples only where one goes on from it: that is part of its key."""
+    below = plates(("one", "", {}, "back"), samples=4)
+    both = plates(("one", "", {}, "back"), ("two", "", {"depth": 0.5, "right": 0.3}, "one"), samples=4)
+    with Engine(ctx) as engine, Engine(ctx) as fresh:
+        engine.texture(below, "one")
+        np.testing.assert_array_equal(engine.read(both, "two"), fresh.read(both, "two"))
+        assert engine.runs["one"] == 2
+
+
+def test_the_number_of_samples_makes_draws_stale_and_nothing_else(any_engine, plates):
+    sketch = plates(("one", "", {}, "back"), samples=1)
+    any_engine.texture(sketch, "one")
+    any_engine.texture(replace(sketch, samples=4), "one")
+    assert any_engine.ran == ["one"]
+
+
+def test_a_draw_that_draws_nothing_hands_on_what_it_starts_from(any_engine, plates):
+    sketch = plates(
+        ("one", "", {"depth": 0.0}, "back"),
+        ("two", ', repeat = "count"', {}, "one"),
+        ("three", "", {"depth": 0.5, "colour": GREEN}, "two"),
+        samples=4,
+    )
+    found = any_engine.read(sketch, "three")
+    assert "two" not in any_engine.ran
+    assert found[3, 3, 0] == 1.0, "hidden by the first draw's depth"
+    np.testing.assert_array_equal(any_engine.read(sketch, "two"), any_engine.read(sketch, "one"))
+
+
+def test_surfaces_and_vertex_arrays_are_used_again(any_engine, plates, monkeypatch):
+    sketch = plates(("one", "", {}, "back"), samples=4)
+    any_engine.texture(sketch, "one")
+    made: list[str] = []
+    for name in ("renderbuffer", "depth_renderbuffer", "vertex_array", "buffer"):
+        real = getattr(any_engine.ctx, name)
+        monkeypatch.setattr(
+            any_engine.ctx, name, lambda *a, _r=real, _n=name, **k: (made.append(_n), _r(*a, **k))[1]
+        )
+    for i in range(5):
+        any_engine.texture(sketch.with_values({"one.right": i / 10}), "one")
+        assert any_engine.ran == ["one"]
+    assert made == []
+
+
+def test_a_draw_leaves_the_context_as_it_was(ctx, any_engine, plates):
+    texture = ctx.texture((4, 4), 4, dtype="f4")
+    mine = ctx.framebuffer([texture])
+    _ = ctx.error
+    mine.use()
+    any_engine.texture(plates(("one", ', blend = "add"', {}, "back"), samples=4), "one")
+    assert ctx.fbo is mine
+    # Neither depth nor blending is on: two triangles over each other, the far one last.
+    program = ctx.program(
+        vertex_shader="#version 330\nin vec3 p; void main() { gl_Position = vec4(p, 1.0); }",
+        fragment_shader="#version 330\nuniform float v; out vec4 o; void main() { o = vec4(v); }",
+    )
+    for value, z in ((0.25, 0.0), (0.5, 0.9)):
+        buffer = ctx.buffer(np.array([[-1, -1, z], [3, -1, z], [-1, 3, z]], "f4").tobytes())
+        program["v"].value = value
+        array = ctx.vertex_array(program, [(buffer, "3f", "p")])
+        array.render()
+        array.release()
+        buffer.release()
+    assert np.frombuffer(mine.read(components=1, dtype="f4"), "f4")[0] == 0.5
+    program.release()
+    mine.release()
+    texture.release()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            HEAD.replace("{more}", "") + "vec4 vertex(vec3 corner) { return vec4(0); }\n",
+            "needs a function vec4 fragment",
+        ),
+        (
+            PLATE.replace("{more}", "").replace("fragment(vec2 place)", "fragment(vec3 place)"),
+            "fragment takes vec3 place",
+        ),
+        (PLATE.replace("{more}", "").replace('"sheet"', '"shet"'), "no mesh 'shet'; did you mean 'sheet'"),
+        (PLATE.replace("{more}", "").replace('"sheet"', '"grid"'), "mesh 'grid' needs a parameter"),
+        (
+            PLATE.replace("{more}", "").replace("out vec2 place)", "out vec2 place, inout vec2 x)"),
+            "cannot read the argument",
+        ),
+    ],
+)
+def test_mistakes_in_a_draw_have_sentences(any_engine, folder, text, message):
+    with pytest.raises(PlaygroundError, match=message) as caught:
+        any_engine.texture(folder.one(text), "a")
+    assert caught.value.diagnostics[0].file
+
+
+def test_a_mesh_as_large_as_it_gets_is_not_kept_for_ever(any_engine, folder):
+    folder.write(
+        "g.glsl",
+        PLATE.replace("{more}", "").replace('"sheet"', '"grid"')
+        + "uniform int grid = 5; //! slider(2, 99)\n",
+    )
+    sketch = folder.sketch('[[pass]]\nname="a"\nuse="./g"\n')
+    for n in range(2, 40):
+        any_engine.texture(sketch.with_values({"a.grid": n}), "a")
+    draws = any_engine.runner.draws
+    assert len(draws._meshes) <= 8
+    assert sum(len(p.arrays) for p in any_engine.runner.programs._by_text.values()) <= 8 + 2

@@ -1,0 +1,204 @@
+"""Every mistake in a shader is a sentence with its file, line and column, by either driver."""
+
+from __future__ import annotations
+
+import pytest
+from playground.errors import ContextError, PlaygroundError, ShaderError
+
+GOOD = """#pragma kernel(output = "a:r32f")
+float kernel(ivec2 texel) {
+    return 1.0;
+}
+"""
+
+
+def mistake(engine, folder, kernel: str, **files: str) -> ShaderError:
+    for name, text in files.items():
+        folder.write(f"{name}.glsl", text)
+    with pytest.raises(ShaderError) as caught:
+        engine.read(folder.one(kernel), "a")
+    return caught.value
+
+
+def test_a_driver_s_complaint_names_file_line_and_column(engine, folder):
+    error = mistake(engine, folder, GOOD.replace("return 1.0;", "float x = 1.0;\n    return x + nonsense;"))
+    first = error.diagnostics[0]
+    assert first.file.endswith("one.glsl")
+    assert (first.line, first.column) == (4, 16)
+    assert "nonsense" in first.message
+    assert first.excerpt == "    return x + nonsense;"
+
+
+def test_a_complaint_inside_an_include_names_the_include(engine, folder):
+    error = mistake(
+        engine,
+        folder,
+        '\n#include "outer.glsl"\n' + GOOD.replace("1.0", "outer(1.0)"),
+        outer='// one\n#include "deep/inner.glsl"\nfloat outer(float x) { return inner(x); }\n',
+        **{"deep/inner": "// two\n// lines\nfloat inner(float x) { return x * wrong_name; }\n"},
+    )
+    first = error.diagnostics[0]
+    assert first.file.endswith("deep/inner.glsl")
+    assert first.line == 3
+    assert first.column == 35
+    assert len(first.chain) == 2
+    assert first.chain[0].endswith("one.glsl:2")
+    assert first.chain[1].endswith("outer.glsl:2")
+
+
+def test_a_complaint_after_includes_names_the_right_line_of_the_kernel(engine, folder):
+    long = "\n".join(f"float f{i}() {{ return {i}.0; }}" for i in range(50)) + "\n"
+    error = mistake(engine, folder, '#include "long.glsl"\n' + GOOD.replace("1.0", "f49() + bad"), long=long)
+    assert error.diagnostics[0].file.endswith("one.glsl")
+    assert error.diagnostics[0].line == 4
+
+
+def test_an_undefined_function(engine, folder):
+    error = mistake(engine, folder, GOOD.replace("1.0", "nowhere(2.0)"))
+    assert error.diagnostics[0].line == 3
+    assert "nowhere" in error.diagnostics[0].message
+
+
+def test_several_mistakes_are_all_told(engine, folder):
+    error = mistake(
+        engine, folder, GOOD.replace("return 1.0;", "float x = one_wrong;\n    return two_wrong;")
+    )
+    assert {3, 4} <= {d.line for d in error.diagnostics}
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "vec4 kernel(ivec2 texel) { return vec4(1.0); }",
+        "float kernel(vec2 texel) { return 1.0; }",
+        "float kernel(ivec2 texel, out float x) { x = 1.0; return 1.0; }",
+        "float kernel() { return 1.0; }",
+        "void kernel(ivec2 texel, out float a) { a = 1.0; }",
+    ],
+)
+def test_a_wrong_signature_says_the_right_one(engine, folder, function):
+    error = mistake(engine, folder, f'#pragma kernel(output = "a:r32f")\n\n{function}\n')
+    assert error.diagnostics[0].message.startswith("kernel must be float kernel(ivec2 texel)")
+    assert error.diagnostics[0].line == 3
+
+
+def test_a_wrong_signature_of_several_outputs(engine, folder):
+    head = '#pragma kernel(output = "a:r32f, b:rg8")\n'
+    error = mistake(
+        engine, folder, head + "void kernel(ivec2 texel, out vec2 b, out float a) { a = 1.0; b = vec2(1); }\n"
+    )
+    assert "void kernel(ivec2 texel, out float a, out vec2 b)" in error.diagnostics[0].message
+    error = mistake(
+        engine, folder, head + "void kernel(ivec2 texel, out float b, out vec2 a) { b = 1.0; a = vec2(1); }\n"
+    )
+    assert "in the order of the pragma" in error.diagnostics[0].message
+
+
+def test_words_that_change_nothing_are_allowed_in_a_signature(engine, folder):
+    kernel = GOOD.replace("(ivec2 texel)", "( const in ivec2 texel )\n")
+    assert engine.read(folder.one(kernel), "a")[0, 0] == 1.0
+
+
+def test_no_kernel_at_all(engine, folder):
+    error = mistake(
+        engine,
+        folder,
+        '// words\n#pragma kernel(output = "a:r32f")\nfloat kernl(ivec2 texel) { return 1.0; }\n',
+    )
+    assert "there is no function float kernel(ivec2 texel)" in error.diagnostics[0].message
+    assert error.diagnostics[0].line == 2
+
+
+def test_visits_without_their_function(engine, folder):
+    text = GOOD.replace('r32f"', 'r32f", repeat = "2", visits = "1, 1"')
+    assert "needs a function ivec2 visit(ivec2 cell)" in mistake(engine, folder, text).diagnostics[0].message
+
+
+def test_previous_without_a_repeat(engine, folder):
+    error = mistake(engine, folder, GOOD.replace("1.0", "previous(texel) + 1.0"))
+    assert "give it a repeat" in error.diagnostics[0].message
+    assert (error.diagnostics[0].line, error.diagnostics[0].column) == (3, 12)
+
+
+def test_previous_by_the_wrong_name(engine, folder):
+    two = '#pragma kernel(output = "a:r32f, b:r32f", repeat = "2")\nvoid kernel(ivec2 texel, out float a, out float b) {\n'
+    error = mistake(engine, folder, two + "    a = previous(texel);\n    b = 0.0;\n}\n")
+    assert "previous_a and previous_b, not previous" in error.diagnostics[0].message
+    one = GOOD.replace('r32f"', 'r32f", repeat = "2"').replace("1.0", "previous_a(texel)")
+    assert "read by previous, not previous_a" in mistake(engine, folder, one).diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    "text", [GOOD.rstrip().removesuffix("}"), GOOD.replace("return 1.0;", "if (true) {\n    return 1.0;")]
+)
+def test_an_unclosed_bracket_at_the_end_names_the_file_and_its_last_line(engine, folder, text):
+    first = mistake(engine, folder, text).diagnostics[0]
+    assert first.file.endswith("one.glsl")
+    assert first.line >= 3
+    assert "bracket" in first.message or "missing its partner" in first.message
+
+
+def test_one_bracket_too_many(engine, folder):
+    first = mistake(engine, folder, GOOD + "}\n").diagnostics[0]
+    assert first.file.endswith("one.glsl")
+    assert first.line == 5
+
+
+@pytest.mark.parametrize("word", ["texture(a, uv)", "dFdx(1.0)", "gl_FragCoord.x", "fma(1.0, 2.0, 3.0)"])
+def test_what_one_driver_lacks_is_refused_by_both(engine, folder, word):
+    error = mistake(engine, folder, GOOD.replace("1.0", word))
+    assert "a kernel may not use" in error.diagnostics[0].message
+    assert error.diagnostics[0].line == 3
+
+
+def test_a_mistake_does_not_spoil_the_next_frame(engine, folder):
+    mistake(engine, folder, GOOD.replace("1.0", "nonsense"))
+    assert engine.read(folder.one(GOOD), "a")[0, 0] == 1.0
+    mistake(engine, folder, GOOD.replace("1.0", "nonsense"))
+    assert engine.ctx.error == "GL_NO_ERROR"
+
+
+def test_a_texture_larger_than_the_driver_takes_is_a_sentence(any_engine, folder, monkeypatch):
+    monkeypatch.setitem(any_engine.ctx.info, "GL_MAX_TEXTURE_SIZE", 1024)
+    with pytest.raises(ContextError, match=r"2000 x 10 texels; this driver takes no more than 1024 a side"):
+        any_engine.texture(folder.one(GOOD, size="size = [2000, 10]"), "a")
+
+
+@pytest.mark.parametrize("size", [(0, 10), (10, 16385)])
+def test_an_impossible_picture_is_a_sentence(any_engine, folder, size):
+    with pytest.raises(PlaygroundError, match="1 to 16384 a side"):
+        any_engine.render(folder.one(GOOD), size=size)
+
+
+def test_an_unknown_texture_names_the_nearest(any_engine, folder):
+    with pytest.raises(PlaygroundError, match="no pass 'aa' in sketch .*did you mean 'a'"):
+        any_engine.texture(folder.one(GOOD), "aa")
+    with pytest.raises(PlaygroundError, match="no output 'b'"):
+        any_engine.texture(folder.one(GOOD), "a:b")
+
+
+def test_steps_of_an_unknown_pass_are_a_sentence(any_engine, folder):
+    with pytest.raises(PlaygroundError, match="no repeated pass 'b'"):
+        any_engine.texture(folder.one(GOOD), "a", steps={"b": 1})
+
+
+def test_an_engine_says_which_drivers_there_are(ctx):
+    from playground.engine.engine import Engine
+
+    with pytest.raises(ContextError, match="expected one of auto, fragment, compute"):
+        Engine(ctx, driver="cuda")
+
+
+def test_an_opengl_error_names_the_pass(any_engine, folder, monkeypatch):
+    """A fault that the driver reports when something new was made is told with the pass."""
+    sketch = folder.one(GOOD)
+    run = any_engine.runner.run
+
+    def faulty(step, *arguments, **named):
+        result = run(step, *arguments, **named)
+        any_engine.ctx.enable_direct(0x1234)
+        return result
+
+    monkeypatch.setattr(any_engine.runner, "run", faulty)
+    with pytest.raises(ContextError, match="pass 'a': OpenGL reports GL_INVALID_ENUM"):
+        any_engine.texture(sketch, "a")

@@ -1,0 +1,180 @@
+"""What is drawn a thousand times costs no more memory than what is drawn once, and all of it is given back."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.images.files import write_png
+
+KINDS = (
+    moderngl.Texture,
+    moderngl.Framebuffer,
+    moderngl.Renderbuffer,
+    moderngl.Buffer,
+    moderngl.VertexArray,
+    moderngl.Program,
+    moderngl.ComputeShader,
+    moderngl.Sampler,
+)
+LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
+uniform float bumps = 3.0; //! slider(0, 1000)
+uniform sampler2D image;   //! file("p.png")
+float kernel(ivec2 texel) { return previous(texel) + sin(float(texel.x) * bumps) + texelFetch(image, ivec2(0), 0).r; }
+"""
+DRAW = """#pragma draw(mesh = "grid", output = "frame:rgba16f")
+uniform sampler2D height; //! input("linear", "mipmap")
+uniform int grid = 9;     //! slider(2, 99)
+vec4 vertex(vec3 corner, out vec2 place) {
+    place = corner.xy;
+    return vec4(corner.xy * 1.8 - 0.9, textureLod(height, corner.xy, 0.0).r * 0.1, 1.0);
+}
+vec4 fragment(vec2 place) { return vec4(texture(height, place).rrr, 1.0); }
+"""
+BODY = """
+[[pass]]
+name = "height"
+use = "./land"
+[[pass]]
+name = "turned"
+use = "./loop"
+repeat = 3
+feedback = { height = "height" }
+[view]
+use = "./draw"
+inputs = { height = "turned:height" }
+"""
+LOOP = '[[pass]]\nname = "add"\nuse = "./add"\n[inputs]\nheight = "add.before"\n[outputs]\nheight = "add:height"\n'
+ADD = """#pragma kernel(output = "height:r32f")
+uniform sampler2D before; //! input
+float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r * 0.9; }
+"""
+
+
+@pytest.fixture
+def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Count moderngl objects that are made and not yet released."""
+    count: Counter[str] = Counter()
+    names = {"texture": "Texture", "framebuffer": "Framebuffer", "renderbuffer": "Renderbuffer"}
+    names |= {"depth_renderbuffer": "Renderbuffer", "buffer": "Buffer", "vertex_array": "VertexArray"}
+    names |= {"program": "Program", "compute_shader": "ComputeShader", "sampler": "Sampler"}
+    for function, kind in names.items():
+        real = getattr(moderngl.Context, function)
+
+        def made(self, *arguments, _real=real, _kind=kind, **named):
+            found = _real(self, *arguments, **named)
+            count[_kind] += 1
+            return found
+
+        monkeypatch.setattr(moderngl.Context, function, made)
+    for kind in KINDS:
+        real = kind.release
+
+        def gone(self, _real=real, _kind=kind.__name__):
+            if not isinstance(getattr(self, "mglo", None), moderngl.InvalidObject):
+                count[_kind] -= 1
+            _real(self)
+
+        monkeypatch.setattr(kind, "release", gone)
+    return count
+
+
+def total(count: Counter[str]) -> dict[str, int]:
+    gc.collect()
+    return {kind: number for kind, number in sorted(count.items()) if number}
+
+
+def resident() -> int:
+    """Return this process's memory in bytes."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("reads /proc")
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+
+@pytest.fixture
+def sketch(folder, tmp_path):
+    write_png(tmp_path / "p.png", np.full((4, 4, 4), 255, np.uint8))
+    for name, text in {"land": LAND, "draw": DRAW, "add": ADD}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("loop.toml", LOOP)
+    return folder.sketch(BODY, size="size = 64")
+
+
+@contextlib.contextmanager
+def small_engine(ctx: moderngl.Context, driver: str) -> Iterator[Engine]:
+    if driver == "compute" and ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver=driver, cache_bytes=512 * 1024) as engine:
+        yield engine
+
+
+@pytest.mark.parametrize("driver", ["fragment", "compute"])
+def test_five_hundred_renders_keep_no_more_than_fifty(ctx, sketch, alive, driver):
+    with small_engine(ctx, driver) as engine:
+        for i in range(50):
+            engine.render(sketch.with_values({"height.bumps": i / 7}), size=(64, 36))
+        objects, memory = total(alive), resident()
+        for i in range(500):
+            engine.render(sketch.with_values({"height.bumps": i / 3 + 0.1}), size=(64, 36))
+        assert total(alive) == objects
+        assert resident() - memory < 6 * 2**20
+
+
+def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
+    with small_engine(ctx, "fragment") as engine:
+        seen = []
+        for i in range(100):
+            folder.write("land.glsl", LAND.replace("sin", f"{i}.5 + sin"))
+            engine.render(folder.sketch(BODY, size="size = 64"), size=(64, 36))
+            if i in (75, 99):
+                seen.append(total(alive))
+        assert seen[0] == seen[1], "old programs go"
+        assert len(engine.runner.programs) <= 65
+
+
+def test_changing_sizes_and_meshes_are_bounded(ctx, sketch, alive):
+    with small_engine(ctx, "fragment") as engine:
+        seen = []
+        for i in range(60):
+            engine.render(sketch.with_values({"view.grid": 2 + i, "size": 32 + i}), size=(64 + i, 36))
+            seen.append(sum(total(alive).values()))
+        assert max(seen[30:]) <= max(seen[:30])
+
+
+@pytest.mark.parametrize("driver", ["fragment", "compute"])
+def test_release_gives_all_back(ctx, sketch, alive, driver):
+    before = total(alive)
+    with small_engine(ctx, driver) as engine:
+        engine.profiling = True
+        for i in range(3):
+            engine.render(sketch.with_values({"height.bumps": i}), size=(64, 36))
+        list(engine.steps(sketch, "height", size=(64, 36)))
+        list(engine.steps(sketch, "turned", size=(64, 36)))
+        assert total(alive) != before
+    del engine
+    assert total(alive) == before
+    assert ctx.error == "GL_NO_ERROR"
+
+
+def test_an_engine_that_was_released_works_again(ctx, sketch):
+    engine = Engine(ctx)
+    first = engine.render(sketch, size=(64, 36)).array
+    engine.release()
+    np.testing.assert_array_equal(engine.render(sketch, size=(64, 36)).array, first)
+    engine.release()
+
+
+def test_a_context_that_belongs_to_the_engine_goes_with_it():
+    from playground.gpu.context import open_context
+
+    ctx = open_context()
+    Engine(ctx, owns_context=True).release()
+    assert isinstance(ctx.mglo, moderngl.InvalidObject)

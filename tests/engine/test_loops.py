@@ -1,0 +1,334 @@
+"""A loop over a technique of several passes gives what the same loop gives in NumPy, and runs no turn twice."""
+
+from __future__ import annotations
+
+import resource
+
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+
+START = """#pragma kernel(output = "water:r32f")
+uniform float level = 1.0; //! slider(0, 10)
+float kernel(ivec2 texel) { return level * float((texel.x * 5 + texel.y * 3) % 7); }
+"""
+ROUGH = """#pragma kernel(output = "rough:r32f")
+uniform float grain = 0.5; //! slider(0, 10)
+float kernel(ivec2 texel) { return grain * float(texel.x % 3); }
+"""
+FLOW = """#pragma kernel(output = "flow:r32f")
+uniform sampler2D water; //! input
+float kernel(ivec2 texel) { return texelFetch(water, texel, 0).r * 0.5; }
+"""
+MOVE = """#pragma kernel(output = "moved:r32f, left:r32f")
+uniform sampler2D water; //! input
+uniform sampler2D flow;  //! input
+uniform sampler2D rough; //! input
+uniform sampler2D silt;  //! input("black")
+uniform float bias = 0.0; //! slider(-1, 1)
+void kernel(ivec2 texel, out float moved, out float left) {
+    moved = texelFetch(water, texel, 0).r - texelFetch(flow, texel, 0).r + texelFetch(rough, texel, 0).r + bias;
+    left = texelFetch(silt, texel, 0).r + texelFetch(flow, texel, 0).r;
+}
+"""
+RAIN = """
+[[pass]]
+name = "rough"
+use = "./rough"
+[[pass]]
+name = "flow"
+use = "./flow"
+[[pass]]
+name = "move"
+use = "./move"
+[inputs]
+water = ["flow.water", "move.water"]
+silt = "move.silt"
+[outputs]
+water = "move:moved"
+silt = "move:left"
+flow = "flow:flow"
+"""
+SKETCH = """
+[[pass]]
+name = "start"
+use = "./start"
+[[pass]]
+name = "rain"
+use = "./rain"
+inputs = { water = "start:water" }
+repeat = "REPEAT"
+feedback = { water = "water", silt = "silt" }
+[[pass]]
+name = "after"
+use = "./flow"
+inputs = { water = "rain:water" }
+"""
+
+
+@pytest.fixture
+def rain(folder):
+    for name, text in {"start": START, "rough": ROUGH, "flow": FLOW, "move": MOVE}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("rain.toml", RAIN)
+
+    def sketch(repeat: str = "4", more: str = ""):
+        return folder.sketch(SKETCH.replace("REPEAT", repeat) + more)
+
+    return sketch
+
+
+def expected(turns: int, level: float = 1.0, grain: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    y, x = np.mgrid[0:17, 0:17]
+    water = level * ((x * 5 + y * 3) % 7).astype(np.float64)
+    silt, flow = np.zeros((17, 17)), np.zeros((17, 17))
+    for _ in range(turns):
+        flow = water * 0.5
+        water = water - flow + grain * (x % 3)
+        silt = silt + flow
+    return water, silt, flow
+
+
+@pytest.mark.parametrize("turns", [1, 2, 4, 7])
+def test_feedback_is_the_turn_before(engine, rain, turns):
+    sketch = rain(str(turns))
+    water, silt, flow = expected(turns)
+    np.testing.assert_allclose(engine.read(sketch, "rain:water"), water, rtol=1e-6)
+    np.testing.assert_allclose(engine.read(sketch, "rain:silt"), silt, rtol=1e-6)
+    np.testing.assert_allclose(engine.read(sketch, "rain.flow"), flow, rtol=1e-6)
+    np.testing.assert_allclose(engine.read(sketch, "after"), water * 0.5, rtol=1e-6)
+
+
+def test_no_turn_gives_what_the_first_would_read(engine, rain):
+    sketch = rain("0")
+    np.testing.assert_allclose(engine.read(sketch, "rain:water"), expected(0)[0])
+    assert not engine.read(sketch, "rain:silt").any()
+    np.testing.assert_allclose(engine.read(sketch, "after"), expected(0)[0] * 0.5)
+
+
+def test_what_does_not_change_with_the_loop_runs_once(engine, rain):
+    engine.texture(rain("6"), "after")
+    assert engine.runs == {"start": 1, "rain.rough": 1, "rain.flow": 6, "rain.move": 6, "after": 1}
+
+
+def test_a_kept_loop_runs_nothing(engine, rain):
+    sketch = rain("6")
+    engine.texture(sketch, "after")
+    for ref in ("rain:water", "rain:silt", "rain.flow", "rain.rough", "after"):
+        engine.texture(sketch, ref)
+        assert engine.ran == []
+
+
+def test_more_turns_go_on_from_those_that_are_kept(engine, rain):
+    engine.texture(rain("3"), "rain:water")
+    assert engine.runs["rain.move"] == 3
+    found = engine.read(rain("5"), "rain:water")
+    assert engine.runs["rain.move"] == 5
+    np.testing.assert_allclose(found, expected(5)[0], rtol=1e-6)
+    np.testing.assert_allclose(engine.read(rain("5"), "after"), expected(5)[0] * 0.5, rtol=1e-6)
+    engine.texture(rain("2"), "rain:water")
+    assert engine.runs["rain.move"] == 7, "fewer turns begin again"
+
+
+@pytest.mark.parametrize("path", ["start.level", "rain.rough.grain", "rain.move.bias"])
+def test_a_changed_value_begins_again(engine, rain, path):
+    sketch = rain("3")
+    engine.texture(sketch, "rain:water")
+    engine.texture(sketch.with_values({path: 0.75}), "rain:water")
+    assert engine.runs["rain.move"] == 6
+
+
+def test_what_reads_a_loop_is_stale_when_its_turns_are(engine, rain):
+    engine.texture(rain("3"), "after")
+    engine.texture(rain("4"), "after")
+    assert engine.runs["after"] == 2
+
+
+def test_a_repeat_that_reads_time_goes_on_and_starts_again_when_time_goes_back(engine, rain):
+    sketch = rain("floor(time * 2)")
+    counts = []
+    for time in (0.0, 1.0, 1.2, 4.0, 4.0, 1.0, 1.5):
+        found = engine.read(sketch, "rain:water", time=time)
+        np.testing.assert_allclose(found, expected(int(time * 2))[0], rtol=1e-6)
+        counts.append(engine.ran.count("rain.move"))
+    assert counts == [0, 2, 0, 6, 0, 2, 1]
+
+
+def test_going_on_gives_the_same_bits_as_beginning_anew(ctx, engine, rain):
+    sketch = rain("floor(time)")
+    for time in (1.0, 2.0, 5.0, 9.0):
+        gone_on = engine.read(sketch, "rain:water", time=time).copy()
+    with Engine(ctx, driver=engine.driver) as fresh:
+        np.testing.assert_array_equal(gone_on, fresh.read(sketch, "rain:water", time=9.0))
+        assert fresh.runs["rain.move"] == 9
+
+
+def test_steps_of_a_loop_run_each_turn_once(engine, rain):
+    sketch = rain("5")
+    for turn, values in engine.steps(sketch, "rain"):
+        np.testing.assert_allclose(values, expected(turn)[0], rtol=1e-6)
+    assert engine.runs["rain.move"] == 5
+
+
+def test_the_turn_is_known_inside(engine, folder):
+    folder.write(
+        "add.glsl",
+        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D sum_before; //! input("black")\n'
+        "float kernel(ivec2 texel) { return texelFetch(sum_before, texel, 0).r + float(iteration) + 0.01 * float(iterations); }\n",
+    )
+    folder.write(
+        "add_up.toml", '[[pass]]\nname="add"\nuse="./add"\n[inputs]\nsum_before = "add.sum_before"\n'
+    )
+    sketch = folder.sketch(
+        '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
+    )
+    np.testing.assert_allclose(engine.read(sketch, "a"), sum(range(5)) + 5 * 0.05, rtol=1e-5)
+    stopped = engine.read(sketch, "a", steps={"a": 3})
+    np.testing.assert_allclose(stopped, sum(range(3)) + 3 * 0.05, rtol=1e-5)
+
+
+def test_a_single_kernel_may_be_looped_as_well(engine, folder):
+    folder.write(
+        "twice.glsl",
+        '#pragma kernel(output = "v:r32f", repeat = "2")\nuniform sampler2D before; //! input("white")\n'
+        "float kernel(ivec2 texel) { return previous(texel) + texelFetch(before, texel, 0).r; }\n",
+    )
+    sketch = folder.sketch('[[pass]]\nname="a"\nuse="./twice"\nrepeat = 3\nfeedback = { before = "v" }\n')
+    assert engine.read(sketch, "a")[0, 0] == 8.0
+    assert engine.read(sketch, "a", steps={"a": 2})[0, 0] == 4.0, "the loop is what stops, not the kernel"
+    assert [v[0, 0] for _, v in engine.steps(sketch, "a")] == [0.0, 2.0, 4.0, 8.0]
+
+
+# ── loops in loops ───────────────────────────────────────────────────────────
+
+INNER = """#pragma kernel(output = "v:r32f")
+uniform sampler2D before; //! input("black")
+uniform sampler2D slow;   //! input
+uniform sampler2D still;  //! input
+float kernel(ivec2 texel) {
+    return texelFetch(before, texel, 0).r * 0.5 + texelFetch(slow, texel, 0).r
+         + texelFetch(still, texel, 0).r + float(iteration);
+}
+"""
+SLOW = """#pragma kernel(output = "slow:r32f")
+uniform sampler2D fed; //! input("black")
+float kernel(ivec2 texel) { return texelFetch(fed, texel, 0).r + float(texel.x); }
+"""
+STILL = """#pragma kernel(output = "still:r32f")
+float kernel(ivec2 texel) { return float(texel.y) * 0.125; }
+"""
+INNER_TOML = """
+[[pass]]
+name = "still"
+use = "./still"
+[[pass]]
+name = "slow"
+use = "./slow"
+[[pass]]
+name = "go"
+use = "./inner"
+[inputs]
+before = "go.before"
+fed = "slow.fed"
+[outputs]
+v = "go:v"
+slow = "slow:slow"
+"""
+OUTER_TOML = """
+[[pass]]
+name = "round"
+use = "./inner_loop"
+repeat = 3
+feedback = { before = "v" }
+[inputs]
+fed = "round.fed"
+[outputs]
+v = "round:v"
+slow = "round:slow"
+"""
+
+
+def test_nested_loops(engine, folder):
+    for name, text in {"inner": INNER, "slow": SLOW, "still": STILL}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("inner_loop.toml", INNER_TOML)
+    folder.write("outer.toml", OUTER_TOML)
+    sketch = folder.sketch(
+        '[[pass]]\nname="o"\nuse="./outer"\nrepeat="floor(time)"\nfeedback={ fed = "v" }\n'
+    )
+    y, x = np.mgrid[0:17, 0:17]
+    for time in (2.0, 5.0, 1.0):
+        fed, v, slow = np.zeros((17, 17)), np.zeros((17, 17)), np.zeros((17, 17))
+        for _ in range(int(time)):
+            slow = fed + x
+            v = np.zeros((17, 17))
+            for turn in range(3):
+                v = v * 0.5 + slow + y * 0.125 + turn
+            fed = v
+        np.testing.assert_allclose(engine.read(sketch, "o:v", time=time), v, rtol=1e-6)
+        np.testing.assert_allclose(engine.read(sketch, "o:slow", time=time), slow, rtol=1e-6)
+        np.testing.assert_allclose(engine.read(sketch, "o.round.still", time=time), y * 0.125, rtol=1e-6)
+        np.testing.assert_allclose(engine.read(sketch, "o", time=time), v, rtol=1e-6)
+    turns = 5 + 1  # 2, then 3 more, then 1 anew
+    assert engine.runs == {
+        "o.round.still": 1,  # nothing changes it
+        "o.round.slow": turns,  # once in a turn of the outer loop
+        "o.round.go": 3 * turns,
+    }
+
+
+def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
+    for name, text in {"inner": INNER, "slow": SLOW, "still": STILL}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("inner_loop.toml", INNER_TOML)
+    folder.write(
+        "sum.glsl",
+        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D v; //! input\nuniform sampler2D last; //! input("black")\n'
+        "float kernel(ivec2 texel) { return texelFetch(last, texel, 0).r + texelFetch(v, texel, 0).r; }\n",
+    )
+    folder.write(
+        "outer.toml",
+        '[[pass]]\nname="round"\nuse="./inner_loop"\nrepeat=3\nfeedback={ before = "v" }\n'
+        '[[pass]]\nname="sum"\nuse="./sum"\ninputs={ v = "round:v" }\n[inputs]\nlast="sum.last"\n',
+    )
+    sketch = folder.sketch('[[pass]]\nname="o"\nuse="./outer"\nrepeat=4\nfeedback={ last = "sum" }\n')
+    y, x = np.mgrid[0:17, 0:17]
+    v = np.zeros((17, 17))
+    for turn in range(3):
+        v = v * 0.5 + x + y * 0.125 + turn
+    np.testing.assert_allclose(engine.read(sketch, "o"), 4 * v, rtol=1e-6)
+    assert engine.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
+
+
+# ── what it costs ────────────────────────────────────────────────────────────
+
+
+def test_five_hundred_turns_need_no_more_memory_than_five(any_engine, rain):
+    sketch = rain("floor(time)")
+    any_engine.texture(sketch, "rain:water", time=5.0)
+    made, kept = any_engine.pool.made, any_engine.cache.bytes
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    any_engine.texture(sketch, "rain:water", time=500.0)
+    assert any_engine.runs["rain.move"] == 500
+    assert any_engine.pool.made == made, "every turn finds its textures in the pool"
+    assert any_engine.cache.bytes == kept
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8 * 1024  # [KiB]
+
+
+def test_a_turn_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch):
+    sketch = rain("floor(time)")
+    any_engine.texture(sketch, "rain:water", time=2.0)
+    run, calls = any_engine.runner.run, []
+
+    def fails_once(step, *arguments, **named):
+        calls.append(step.path)
+        if step.path == "rain.move" and calls.count("rain.move") == 2:
+            raise RuntimeError("on purpose")
+        return run(step, *arguments, **named)
+
+    monkeypatch.setattr(any_engine.runner, "run", fails_once)
+    with pytest.raises(RuntimeError, match="on purpose"):
+        any_engine.texture(sketch, "rain:water", time=6.0)
+    monkeypatch.undo()
+    np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=6.0), expected(6)[0], rtol=1e-6)
+    assert any_engine.ran.count("rain.move") == 3, "three turns were good"

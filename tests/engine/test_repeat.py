@@ -1,0 +1,195 @@
+"""A kernel that repeats gives what the same loop gives in NumPy, by either driver, bit for bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playground.errors import PlaygroundError
+
+COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")
+uniform int turns = 5; //! slider(0, 50)
+float kernel(ivec2 texel) { return previous(texel) * 2.0 + float(iteration) + 0.25 * float(iterations); }
+"""
+SPREAD = """#pragma kernel(output = "a:r32f", repeat = "4")
+uniform sampler2D start; //! input
+float kernel(ivec2 texel) {
+    return (previous(texel + ivec2(1, 0)) + previous(texel - ivec2(1, 0))
+          + previous(texel + ivec2(0, 1)) + previous(texel - ivec2(0, 1))) * 0.25;
+}
+"""
+NUMBERS = """#pragma kernel(output = "n:r32f")
+float kernel(ivec2 texel) { return float((texel.x * 7 + texel.y * 13) % 11); }
+"""
+WITH_START = """
+[[pass]]
+name = "n"
+use = "./numbers"
+[[pass]]
+name = "a"
+use = "./one"
+inputs = { initial = "n" }
+"""
+
+
+def numbers(ny: int = 17, nx: int = 17) -> np.ndarray:
+    y, x = np.mgrid[0:ny, 0:nx]
+    return ((x * 7 + y * 13) % 11).astype(np.float64)
+
+
+def counted(turns: int, whole: int | None = None) -> float:
+    value = 0.0
+    for turn in range(turns):
+        value = value * 2.0 + turn + 0.25 * (turns if whole is None else whole)
+    return value
+
+
+@pytest.mark.parametrize("turns", [1, 2, 5, 6])
+def test_previous_is_the_turn_before_and_zero_on_the_first(engine, folder, turns):
+    sketch = folder.one(COUNT).with_values({"a.turns": turns})
+    np.testing.assert_array_equal(engine.read(sketch, "a"), np.full((17, 17), counted(turns), np.float32))
+    assert engine.texels == 17 * 17 * turns
+    assert engine.runs["a"] == 1
+
+
+def test_no_turn_at_all_gives_zeros(engine, folder):
+    sketch = folder.one(COUNT).with_values({"a.turns": 0})
+    assert not engine.read(sketch, "a").any()
+
+
+def test_stopping_early_gives_the_state_on_the_way(engine, folder):
+    """``iterations`` stays the count of all turns: a picture on the way is one of the way."""
+    sketch = folder.one(COUNT)
+    for turn in (0, 1, 3, 5, 9, 2):
+        found = engine.read(sketch, "a", steps={"a": turn})
+        assert found[3, 4] == counted(min(turn, 5), whole=5)
+
+
+def test_steps_go_on_from_turn_to_turn(engine, folder):
+    sketch = folder.one(COUNT)
+    texels = []
+    for turn, values in engine.steps(sketch, "a"):
+        assert values[0, 0] == counted(turn, whole=5)
+        texels.append(engine.texels // (17 * 17))
+    assert texels == [1, 1, 1, 1, 1, 1], "each turn is run once; the first is the empty texture"
+
+
+def test_steps_of_what_does_not_repeat_have_a_sentence(engine, folder):
+    sketch = folder.one(NUMBERS)
+    with pytest.raises(PlaygroundError, match=r"no .*pass 'b'"):
+        list(engine.steps(sketch, "b"))
+
+
+@pytest.mark.parametrize("shape", [(17, 17), (33, 9)])
+def test_neighbours_are_clamped_at_the_border(engine, folder, shape):
+    folder.write("numbers.glsl", NUMBERS)
+    folder.write("one.glsl", SPREAD.replace("uniform sampler2D start; //! input\n", ""))
+    sketch = folder.sketch(WITH_START, size=f"size = [{shape[1]}, {shape[0]}]")
+    state = numbers(*shape)
+    for _ in range(4):
+        far = np.pad(state, 1, mode="edge")
+        state = (far[1:-1, 2:] + far[1:-1, :-2] + far[2:, 1:-1] + far[:-2, 1:-1]) / 4
+    np.testing.assert_allclose(engine.read(sketch, "a"), state, rtol=1e-6)
+
+
+def test_initial_is_what_the_first_turn_reads(engine, folder):
+    folder.write("numbers.glsl", NUMBERS)
+    folder.write("one.glsl", COUNT)
+    sketch = folder.sketch(WITH_START).with_values({"a.turns": 2})
+    expected = (numbers() * 2 + 0 + 0.5) * 2 + 1 + 0.5
+    np.testing.assert_array_equal(engine.read(sketch, "a"), expected.astype(np.float32))
+    np.testing.assert_array_equal(engine.read(sketch, "a", steps={"a": 0}), numbers().astype(np.float32))
+    np.testing.assert_array_equal(engine.read(sketch, "n"), numbers().astype(np.float32), "it is left alone")
+
+
+def test_an_initial_of_another_size_has_a_sentence(engine, folder):
+    folder.write("numbers.glsl", NUMBERS)
+    folder.write("one.glsl", COUNT)
+    sketch = folder.sketch(WITH_START.replace('use = "./numbers"', 'use = "./numbers"\nsize = 9'))
+    with pytest.raises(PlaygroundError, match=r"initial is 9 x 9 texels, the pass 17 x 17"):
+        engine.read(sketch, "a")
+
+
+TWO = """#pragma kernel(output = "a:r32f, b:rg32f", repeat = "3")
+void kernel(ivec2 texel, out float a, out vec2 b) {
+    a = previous_a(texel) + 1.0;
+    b = vec2(previous_b(texel).y + previous_a(texel), previous_b(texel).x + 2.0);
+}
+"""
+
+
+def test_several_outputs_change_places_together(engine, folder):
+    folder.write("one.glsl", TWO)
+    folder.write("numbers.glsl", NUMBERS)
+    sketch = folder.sketch(
+        '[[pass]]\nname = "n"\nuse = "./numbers"\n'
+        '[[pass]]\nname = "p"\nuse = "./one"\ninputs = { initial_a = "n" }\n'
+    )
+    a, b = numbers(), np.zeros((17, 17, 2))
+    for _ in range(3):
+        a, b = a + 1, np.stack([b[..., 1] + a, b[..., 0] + 2], axis=-1)
+    np.testing.assert_array_equal(engine.read(sketch, "p:a"), a)
+    np.testing.assert_array_equal(engine.read(sketch, "p:b"), b)
+
+
+VISITS = """#pragma kernel(output = "a:r32f, b:rgba16f", repeat = "3", visits = "size.x - 1 - iteration, 2")
+ivec2 visit(ivec2 cell) {
+    if (cell.x == 3) return ivec2(-1);
+    return ivec2(cell.x + 1 + iteration, cell.y * 4 + iteration);
+}
+bool visited(ivec2 texel) {
+    int x = texel.x - 1 - iteration;
+    return x >= 0 && x != 3 && (texel.y == iteration || texel.y == 4 + iteration);
+}
+void kernel(ivec2 texel, out float a, out vec4 b) {
+    a = previous_a(texel);
+    b = previous_b(texel);
+    if (!visited(texel)) return;
+    a = previous_a(texel - ivec2(0, 1)) + float(iteration + 1);
+    b += vec4(1.0, 0.5, float(texel.x), 1.0);
+}
+"""
+
+
+def test_visits_give_the_same_in_place_and_by_every_texel(engine, folder):
+    sketch = folder.one(VISITS)
+    a, b = np.zeros((17, 17)), np.zeros((17, 17, 4))
+    for turn in range(3):
+        before = a.copy()
+        for x in range(17):
+            for y in (turn, 4 + turn):
+                if x - 1 - turn >= 0 and x - 1 - turn != 3:
+                    a[y, x] = before[max(y - 1, 0), x] + turn + 1
+                    b[y, x] += (1.0, 0.5, x, 1.0)
+    np.testing.assert_array_equal(engine.read(sketch, "a:a"), a)
+    np.testing.assert_array_equal(engine.read(sketch, "a:b"), b)
+
+
+def test_steps_of_visits_go_on_in_place(engine, folder):
+    sketch = folder.one(VISITS)
+    whole = engine.read(sketch, "a:a").copy()
+    found = [values for _, values in engine.steps(sketch, "a")]
+    assert len(found) == 4
+    np.testing.assert_array_equal(found[-1], whole)
+    assert not found[0].any()
+
+
+def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
+    kernel = COUNT.replace('"turns"', '"floor(time)"').replace("iterations", "1")
+    sketch = folder.one(kernel)
+    texels = []
+    for time in (0.0, 3.0, 3.5, 7.0, 2.0):
+        value = engine.read(sketch, "a", time=time)[0, 0]
+        fresh = 0.0
+        for turn in range(int(time)):
+            fresh = fresh * 2.0 + turn + 0.25
+        assert value == fresh
+        texels.append(engine.texels // 17**2)
+    assert texels == [1, 3, 0, 4, 2]
+
+
+@pytest.mark.parametrize("repeat", ["-1", "2 ** 40", "log2(3)", "1 / 0", "nobody"])
+def test_a_wrong_count_has_a_place(engine, folder, repeat):
+    with pytest.raises(PlaygroundError) as caught:
+        engine.read(folder.one(COUNT.replace('"turns"', f'"{repeat}"')), "a")
+    assert caught.value.diagnostics[0].file
+    assert caught.value.diagnostics[0].line

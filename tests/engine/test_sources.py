@@ -1,0 +1,80 @@
+"""Sources: what the processor makes of a file becomes a texture, and tells the sketch of its land."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playground.errors import PlaygroundError
+
+SOURCE = """#pragma source("elevation_file", output = "height:r32f")
+uniform sampler2D elevation; //! file("land.npy")
+uniform ivec2 raw_size = ivec2(0);
+uniform int packing = 0; //! menu("grey", "rgb")
+uniform int no_data = 0; //! menu("refuse", "fill")
+uniform int first_row = 0; //! menu("north", "south")
+uniform vec2 metres = vec2(0.0);
+"""
+
+
+@pytest.fixture
+def land(folder):
+    heights = np.linspace(100.0, 300.0, 5 * 7, dtype=np.float32).reshape(5, 7)  # row 0 in the north
+    np.save(folder.path / "land.npy", heights)
+    folder.write("land.glsl", SOURCE)
+    return folder, heights
+
+
+def test_a_file_becomes_heights_row_0_in_the_south(any_engine, land):
+    folder, heights = land
+    sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size="")
+    found = any_engine.read(sketch, "height")
+    span = heights.max() - heights.min()
+    np.testing.assert_allclose(found, (heights[::-1] - heights.min()) / span, atol=1e-6)
+    plan = any_engine.plan
+    assert plan is not None
+    assert plan.land.size == (7, 5)
+
+
+def test_the_sketch_may_ask_for_another_size(any_engine, land):
+    folder, _ = land
+    sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size="size = [13, 9]")
+    found = any_engine.read(sketch, "height")
+    assert found.shape == (9, 13)
+    assert found.min() == pytest.approx(0.0, abs=1e-6)
+    assert found.max() == pytest.approx(1.0, abs=1e-6)
+
+
+def test_it_is_read_again_when_the_file_changes_and_not_before(any_engine, land):
+    folder, heights = land
+    sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size="")
+    any_engine.texture(sketch, "height")
+    any_engine.texture(sketch, "height")
+    assert any_engine.ran == []
+    np.save(folder.path / "land.npy", heights[:, ::-1])
+    found = any_engine.read(sketch, "height")
+    assert any_engine.ran == ["height"]
+    assert found[0, 0] > found[0, -1]
+
+
+def test_a_source_without_its_parameters_has_a_sentence(any_engine, land):
+    folder, _ = land
+    folder.write("land.glsl", SOURCE.replace("uniform vec2 metres = vec2(0.0);\n", ""))
+    with pytest.raises(PlaygroundError, match="needs the parameters metres"):
+        any_engine.read(folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size=""), "height")
+
+
+def test_an_unknown_source_and_an_unknown_output_have_sentences(any_engine, land):
+    folder, _ = land
+    folder.write("land.glsl", SOURCE.replace('"elevation_file"', '"elevation_fil"'))
+    with pytest.raises(PlaygroundError, match="did you mean 'elevation_file'"):
+        any_engine.read(folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size=""), "height")
+    folder.write("land.glsl", SOURCE.replace("height:r32f", "depth:r32f"))
+    with pytest.raises(PlaygroundError, match="gives height, not 'depth'"):
+        any_engine.read(folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size=""), "height")
+
+
+def test_a_missing_file_has_a_sentence(any_engine, land):
+    folder, _ = land
+    (folder.path / "land.npy").unlink()
+    with pytest.raises(PlaygroundError, match="no such file"):
+        any_engine.read(folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size=""), "height")

@@ -1,0 +1,250 @@
+"""A pass runs again when, and only when, something that its textures depend on has changed."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playground.engine.engine import Engine
+from playground.images.files import write_png
+
+LAND = """#pragma kernel(output = "height:r32f")
+uniform float bumps = 3.0;   //! slider(0, 10) How many
+uniform float unused = 1.0;  //! slider(0, 10) Read by nobody
+float kernel(ivec2 texel) { return fract(float(texel.x * texel.y) * bumps * 0.01); }
+"""
+LIGHT = """#pragma kernel(output = "light:r32f")
+uniform sampler2D height; //! input
+uniform vec2 sun = vec2(135.0, 30.0); //! direction
+float kernel(ivec2 texel) { return texelFetch(height, texel, 0).r * sun.y; }
+"""
+SLOPE = """#pragma kernel(output = "slope:r32f")
+uniform sampler2D height; //! input
+float kernel(ivec2 texel) { return (texelFetch(height, texel, 0).r) / spacing.x; }
+"""
+SPAN = """#pragma kernel(output = "span:r32f")
+float kernel(ivec2 texel) { return extent.x + relief; }
+"""
+CLOCK = """#pragma kernel(output = "clock:r32f")
+float kernel(ivec2 texel) { return time; }
+"""
+FOUR = """
+extent = 1000.0
+relief = 100.0
+[[pass]]
+name = "height"
+use = "./land"
+[[pass]]
+name = "slope"
+use = "./slope"
+[[pass]]
+name = "span"
+use = "./span"
+[[pass]]
+name = "clock"
+use = "./clock"
+[[pass]]
+name = "light"
+use = "./light"
+inputs = { height = "height" }
+"""
+EVERYTHING = ("height", "slope", "span", "clock", "light")
+
+
+@pytest.fixture
+def four(folder):
+    for name, text in {"land": LAND, "light": LIGHT, "slope": SLOPE, "span": SPAN, "clock": CLOCK}.items():
+        folder.write(f"{name}.glsl", text)
+    return folder.sketch(FOUR)
+
+
+def ran_after(engine: Engine, sketch, time: float = 0.0) -> set[str]:
+    """Return what runs to bring every pass up to date."""
+    found: set[str] = set()
+    for path in (*EVERYTHING, "view:frame"):
+        engine.texture(sketch, path, size=(32, 18), time=time)
+        found |= set(engine.ran)
+    return found
+
+
+def test_the_same_sketch_twice_runs_nothing(engine, four):
+    assert ran_after(engine, four) == {*EVERYTHING, "view"}
+    assert ran_after(engine, four) == set()
+    assert engine.texels == 0
+    assert engine.runs == dict.fromkeys((*EVERYTHING, "view"), 1)
+
+
+def test_moving_the_light_runs_light_and_view_only(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, four.with_values({"light.sun": (200.0, 10.0)})) == {"light", "view"}
+    assert ran_after(engine, four) == set(), "both are kept"
+
+
+def test_a_changed_land_runs_what_reads_it(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, four.with_values({"height.bumps": 4.0})) == {"height", "slope", "light", "view"}
+
+
+def test_only_what_is_asked_for_runs(engine, four):
+    engine.texture(four, "slope")
+    assert engine.ran == ["height", "slope"]
+    assert engine.texels == 2 * 17 * 17
+
+
+def test_a_value_that_the_text_never_uses_makes_nothing_stale(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, four.with_values({"height.unused": 9.0})) == set()
+
+
+def test_a_comment_makes_nothing_stale(engine, folder, four):
+    ran_after(engine, four)
+    folder.write(
+        "land.glsl", "// a new first line\n" + LAND.replace("How many", "How many bumps /* or not */")
+    )
+    folder.write("light.glsl", LIGHT.replace("\nfloat", "\n\n// a remark\n   float"))
+    assert ran_after(engine, folder.sketch(FOUR)) == set()
+
+
+def test_a_changed_text_runs_it_and_what_reads_it(engine, folder, four):
+    ran_after(engine, four)
+    folder.write("land.glsl", LAND.replace("0.01", "0.02"))
+    assert ran_after(engine, folder.sketch(FOUR)) == {"height", "slope", "light", "view"}
+
+
+def test_a_changed_way_of_reading_an_input_runs_it(engine, folder, four):
+    ran_after(engine, four)
+    folder.write("light.glsl", LIGHT.replace("//! input", '//! input("linear")'))
+    assert ran_after(engine, folder.sketch(FOUR)) == {"light", "view"}
+
+
+def test_extent_and_relief_matter_to_texts_that_name_them(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, replace(four, extent=(2000.0, 1000.0))) == {"slope", "span"}
+    assert ran_after(engine, replace(four, relief=50.0)) == {"span"}
+
+
+def test_time_matters_to_texts_that_name_it(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, four, time=1.0) == {"clock"}
+    assert ran_after(engine, four, time=0.0) == set()
+
+
+def test_the_size_matters_to_all_but_the_view_of_the_same_frame(engine, four):
+    ran_after(engine, four)
+    assert ran_after(engine, replace(four, size=(33, 17))) == {*EVERYTHING, "view"}
+
+
+def test_the_camera_matters_to_what_names_it(engine, folder):
+    folder.write(
+        "eye.glsl", '#pragma kernel(output = "e:r32f")\nfloat kernel(ivec2 texel) { return eye.x; }\n'
+    )
+    folder.write("land.glsl", LAND)
+    sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "e"\nuse = "./eye"\n')
+    engine.texture(sketch, "e")
+    engine.texture(sketch, "height")
+    turned = replace(sketch, camera=replace(sketch.camera, azimuth=10.0))
+    engine.texture(turned, "height")
+    assert engine.ran == []
+    engine.texture(turned, "e")
+    assert engine.ran == ["e"]
+
+
+def test_a_file_matters_by_its_contents(engine, folder, tmp_path):
+    picture = np.full((4, 4, 4), 255, np.uint8)
+    write_png(tmp_path / "p.png", picture)
+    sketch = folder.one(
+        '#pragma kernel(output = "p:r32f")\nuniform sampler2D image; //! file("p.png")\n'
+        "float kernel(ivec2 texel) { return texelFetch(image, texel / 5, 0).r; }\n"
+    )
+    assert engine.read(sketch, "a").max() == 1.0
+    os.utime(tmp_path / "p.png", ns=(1, 1))  # another time, the same contents
+    engine.texture(sketch, "a")
+    assert engine.ran == []
+    write_png(tmp_path / "p.png", picture // 255)
+    assert engine.read(sketch, "a").max() < 0.001
+    assert engine.ran == ["a"]
+
+
+def test_a_count_of_visits_may_depend_on_a_parameter_that_the_code_never_names(any_engine, folder):
+    kernel = """#pragma kernel(output = "h:r32f", repeat = "2", visits = "count, 1")
+uniform int count = 3; //! slider(1, 17)
+ivec2 visit(ivec2 cell) { return cell; }
+float kernel(ivec2 texel) { return previous(texel) + 1.0; }
+"""
+    if not any_engine.info.compute:
+        pytest.skip("without compute every texel is run")
+    sketch = folder.one(kernel)
+    assert (any_engine.read(sketch, "a") > 0).sum() == 3
+    assert (any_engine.read(sketch.with_values({"a.count": 5}), "a") > 0).sum() == 5
+
+
+def test_the_driver_and_the_form_enter_the_key(ctx, four):
+    with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="auto") as two:
+        one.texture(four, "height")
+        two.texture(four, "height")
+        assert set(one.cache._kept) == set(two.cache._kept), "auto draws a plain kernel by fragment"
+    if ctx.version_code >= 430:
+        with Engine(ctx, driver="compute") as three:
+            three.texture(four, "height")
+            assert set(three.cache._kept) != set(one.cache._kept)
+
+
+# ── the bound ────────────────────────────────────────────────────────────────
+
+
+def test_the_cache_keeps_its_bound_and_drops_the_oldest(ctx, folder):
+    sketch = folder.one(LAND, size="size = 64")  # 16 KiB
+    each = 64 * 64 * 4
+    with Engine(ctx, cache_bytes=4 * each) as engine:
+        for bumps in range(10):
+            engine.texture(sketch.with_values({"a.bumps": bumps}), "a")
+            assert engine.cache.bytes <= 4 * each
+        assert len(engine.cache) == 4
+        for bumps, runs in ((9, 0), (6, 0), (5, 1), (9, 0), (7, 1)):
+            engine.texture(sketch.with_values({"a.bumps": bumps}), "a")
+            assert len(engine.ran) == runs, f"bumps {bumps}"
+
+
+def test_what_a_frame_uses_is_kept_even_over_the_bound(ctx, four):
+    with Engine(ctx, cache_bytes=1000) as engine:
+        values = engine.read(four, "light", size=(32, 18))
+        assert engine.cache.bytes == 2 * 17 * 17 * 4 > 1000
+        assert values.shape == (17, 17)
+        engine.texture(four, "span")
+        assert engine.cache.bytes == 17 * 17 * 4, "the next frame needs one texture only"
+
+
+def test_a_texture_lives_until_the_next_frame(ctx, four):
+    with Engine(ctx, cache_bytes=0) as engine:
+        texture = engine.texture(four, "span")
+        assert np.frombuffer(texture.read(), "f4")[0] == 1100.0
+
+
+def test_mipmaps_count(ctx, folder):
+    folder.write(
+        "far.glsl", LIGHT.replace("//! input", '//! input("linear", "mipmap")').replace("height", "a")
+    )
+    folder.write("one.glsl", LAND)
+    sketch = folder.sketch(
+        '[[pass]]\nname="a"\nuse="./one"\n[[pass]]\nname="b"\nuse="./far"\n', size="size = 64"
+    )
+    with Engine(ctx) as engine:
+        engine.texture(sketch, "a")
+        before = engine.cache.bytes
+        engine.texture(sketch, "b")
+        assert engine.cache.bytes == 2 * before + before // 3
+
+
+def test_keys_and_plan_take_little_time(any_engine, four):
+    import time
+
+    any_engine.texture(four, "light", size=(32, 18))
+    spent = []
+    for i in range(30):
+        start = time.perf_counter()
+        any_engine.texture(four, "light", size=(32, 18), time=float(i))
+        spent.append(time.perf_counter() - start)
+    assert any_engine.ran == []
+    assert min(spent) < 0.005, "a second of Python in every frame would be felt"

@@ -1,0 +1,712 @@
+"""Sketches from TOML: what each says, each mistake with file and line, and nothing from outside."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
+from playground.paths import GLSL, SKETCHES
+from playground.sketch.load import (
+    find,
+    is_technique,
+    load,
+    read_technique,
+    shipped_names,
+    shipped_sketches,
+    shipped_techniques,
+)
+from playground.sketch.model import Camera, Kernel
+from playground.sketch.values import coerce
+
+LAND = """\
+// land.glsl -- a slope.
+#pragma kernel(output = "height:r32f")
+uniform float rise = 0.5;  //! slider(0, 2) How steep
+float kernel(ivec2 texel) { return rise * float(texel.x); }
+"""
+PASS = '[[pass]]\nname = "height"\nuse = "./land"\n'
+TAIL = '[view]\nuse = "./look"\n'
+IMAGE = """\
+#pragma kernel(output = "height:r32f")
+uniform sampler2D picture;  //! file("")
+float kernel(ivec2 texel) { return texelFetch(picture, texel, 0).r; }
+"""
+
+
+# What a sketch says
+
+
+def test_a_whole_sketch(folder):
+    found = folder.sketch(
+        head="""\
+format = 1
+title = "A slope"
+size = [65, 33]
+extent = 1000
+relief = 250.5
+base_elevation = -10
+""",
+        body="""
+[[pass]]
+name = "height"
+use = "./land"
+size = "size // 2"
+set = { rise = 0.25 }
+""",
+        tail="""
+[view]
+use = "./look"
+samples = 2
+camera = { azimuth = 10, target = [1, 2, 3.5] }
+[[preset]]
+name = "steep"
+set = { "height.rise" = 2, relief = 900, size = 17 }
+[[shot]]
+name = "from-here"
+size = [64, 36]
+time = 2
+preset = "steep"
+samples = 1
+camera = { elevation = 80 }
+set = { height.rise = 1.5 }
+""",
+    )
+    assert (found.name, found.title, found.size, found.extent) == ("s", "A slope", (65, 33), (1000.0, 1000.0))
+    assert (found.relief, found.base_elevation, found.samples) == (250.5, -10.0, 2)
+    assert found.camera == Camera(azimuth=10.0, target=(1.0, 2.0, 3.5))
+    height, view = found.graph.passes
+    assert (height.name, height.size, height.values, height.line) == (
+        "height",
+        ("size.x // 2", "size.y // 2"),
+        (("rise", 0.25),),
+        8,
+    )
+    assert (view.name, view.use) == ("view", "./look")
+    shot = found.shot("from-here")
+    assert (shot.size, shot.time, shot.preset, shot.samples) == ((64, 36), 2.0, "steep", 1)
+    assert shot.camera == Camera(azimuth=10.0, elevation=80.0, target=(1.0, 2.0, 3.5))
+    seen = found.for_shot(shot)
+    assert (seen.relief, seen.size, seen.samples) == (900.0, (17, 17), 1)
+    assert dict(seen.overrides) == {"height.rise": 1.5}
+    assert [Path(p).name for p in found.files] == ["s.toml", "land.glsl", "look.glsl"]
+
+
+def test_what_is_absent_has_its_default(folder):
+    found = folder.sketch()
+    assert (found.size, found.extent, found.relief, found.base_elevation) == (None,) * 4
+    assert (found.camera, found.samples, found.shots, found.presets) == (Camera(), 4, (), ())
+    assert found.title == found.name == "s"
+    plain = folder.sketch(tail="")
+    assert plain.graph.passes[-1].use == "view/map"
+    assert plain.graph.passes[-1].inputs == (("shown", "height"),)
+
+
+def test_a_folder_with_sketch_toml_has_the_folder_s_name(folder):
+    folder.write("sketch.toml", "format = 1\n" + PASS + TAIL)
+    assert load(folder.path).name == "mine"
+    assert load(folder.path / "sketch.toml").folder == str(folder.path)
+
+
+def test_a_sketch_that_is_a_link_has_the_folder_it_lies_in(folder, tmp_path: Path):
+    folder.write("s.toml", "format = 1\n" + PASS + TAIL)
+    (tmp_path / "link.toml").symlink_to(folder.path / "s.toml")
+    assert load(tmp_path / "link.toml").folder == str(folder.path)
+
+
+def test_any_line_ends_and_mark(folder):
+    text = ("format = 1\n" + PASS + TAIL).replace("\n", "\r\n")
+    (folder.path / "s.toml").write_bytes(b"\xef\xbb\xbf" + text.encode())
+    assert load(folder.path / "s.toml").graph.passes[0].line == 2
+
+
+def test_dotted_keys_and_tables_are_paths(folder):
+    folder.write("inner.toml", "[[pass]]\nname = 'shape'\nuse = './land'\n")
+    body = '[[pass]]\nname = "height"\nuse = "./inner"\n'
+    for given in (
+        'set = { "shape.rise" = 0.5 }',
+        "set = { shape.rise = 0.5 }",
+        "[pass.set.shape]\nrise = 0.5",
+    ):
+        assert folder.sketch(body + given + "\n").graph.passes[0].values == (("shape.rise", 0.5),)
+    folder.refused(
+        "'shape.rise' is set twice", 5, body=body + 'set = { "shape.rise" = 0.5, shape = { rise = 1 } }\n'
+    )
+
+
+# Values that travel
+
+
+def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
+    found = folder.sketch(tail=TAIL + '[[shot]]\nname = "one"\nset = { height.rise = 1 }\n')
+    again = load(folder.path / "s.toml")
+    assert found == again and hash(found) == hash(again) and {found: 1}[again] == 1
+    other = found.with_values({"height.rise": 1.0})
+    assert other != found and len({found, again, other}) == 2
+    back = pickle.loads(pickle.dumps(other))
+    assert back == other and hash(back) == hash(other)
+    code = (
+        "import pickle, sys; s = pickle.load(sys.stdin.buffer);"
+        "s = s.with_values({'height.rise': 1.5}).for_shot(s.shot('one'));"
+        "sys.stdout.buffer.write(pickle.dumps((s, hash(s) is not None)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], input=pickle.dumps(found), capture_output=True, check=True
+    )
+    child, _ = pickle.loads(done.stdout)
+    assert child == found.with_values({"height.rise": 1.0})
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_every_shipped_sketch_loads_and_is_a_value(name):
+    found = load(name)
+    assert found.title and hash(found) == hash(load(name))
+    assert pickle.loads(pickle.dumps(found)) == found
+    for shot in found.shots:
+        found.for_shot(shot)
+
+
+# Names
+
+
+def test_what_ships_is_listed_and_found():
+    assert "jacksboro" in shipped_sketches()
+    techniques = shipped_techniques()
+    assert {"generation/heightmap", "view/terrain", "texturing/height_blend"} <= set(techniques)
+    assert not {"noise/hash", "colour/encode"} & set(techniques)
+    assert set(techniques) <= set(shipped_names())
+    assert find("jacksboro") == SKETCHES / "jacksboro.toml"
+    for name in techniques:
+        read_technique(name, GLSL, GLSL)
+
+
+def test_a_shipped_name_wins_over_a_folder_that_holds_no_sketch(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "jacksboro").mkdir()
+    assert find("jacksboro") == SKETCHES / "jacksboro.toml"
+    (tmp_path / "jacksboro" / "sketch.toml").write_text("")
+    assert find("jacksboro").parent.name == "jacksboro"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("jacksborro", "did you mean 'jacksboro'"),
+        ("../sketches/jacksboro", "no file and no shipped sketch"),
+        ("README.md", "no file and no shipped sketch|a sketch is a .toml"),
+        ("a\0b", "no file"),
+        ("x" * 5000, "no file"),
+        ("~nobody-of-that-name/x", "no file"),
+        ("nothing/at/all.toml", "no file"),
+    ],
+)
+def test_what_is_not_found_is_one_sentence(name, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SketchError, match=words):
+        find(name)
+
+
+def test_a_file_of_another_kind_or_an_empty_folder_is_refused(tmp_path):
+    (tmp_path / "notes.txt").write_text("")
+    with pytest.raises(SketchError, match=r"a sketch is a \.toml, a shader ends in"):
+        find(tmp_path / "notes.txt")
+    with pytest.raises(SketchError, match=r"holds no sketch\.toml"):
+        find(tmp_path)
+
+
+# One technique alone
+
+
+def test_a_kernel_alone_takes_its_place_in_the_default_sketch(folder):
+    found = load(folder.path / "land.glsl")
+    stage = load()
+    assert [p.name for p in found.graph.passes] == [p.name for p in stage.graph.passes]
+    height = found.graph.find("height")
+    assert (
+        height is not None and isinstance(height.technique, Kernel) and height.technique.title == "a slope."
+    )
+    assert (found.name, found.title, found.camera) == ("land", "a slope.", stage.camera)
+
+
+def test_what_stays_of_the_default_sketch_keeps_its_files(folder):
+    folder.write("light.glsl", LAND.replace("height:r32f", "light:r16f"))
+    found = load(folder.path / "light.glsl")
+    paths = [str(v) for _, v in found.overrides]
+    assert paths and all(Path(p).is_absolute() and Path(p).is_file() for p in paths)
+
+
+def test_other_outputs_are_shown_from_above(folder):
+    folder.write("odd.glsl", LAND.replace("height:r32f", "oddity:r32f"))
+    found = load(folder.path / "odd.glsl")
+    assert [p.name for p in found.graph.passes[-2:]] == ["oddity", "view"]
+    assert found.graph.passes[-1].inputs == (("shown", "oddity"),)
+    assert load(folder.path / "look.glsl").graph.passes[-1].technique.title == ""
+
+
+def test_a_technique_alone(folder):
+    path = folder.write("t.toml", "[[pass]]\nname='a'\nuse='./land'\n[parameters]\nsteep='a.rise'\n")
+    assert is_technique(path) and not is_technique(folder.write("s.toml", "format = 1\n" + PASS + TAIL))
+    assert not is_technique(folder.write("bad.toml", "= 1"))
+    found = load(path).with_values({"height.steep": 1.0})
+    assert found.name == "t" and len(load("generation/layered_noise").graph.passes) > 2
+
+
+def test_a_plain_shader_is_the_whole_picture(folder):
+    path = folder.write("p.frag", "#version 330\n// Plain\nout vec4 c;\nvoid main() { c = vec4(1); }\n")
+    found = load(path)
+    assert [p.name for p in found.graph.passes] == ["view"] and found.samples == 1
+
+
+def test_a_library_file_and_a_lonely_companion_are_sentences(folder):
+    with pytest.raises(SketchError, match="a library file"):
+        load(folder.write("lib.glsl", "float f;\n"))
+    with pytest.raises(SketchError, match=r"in place of only\.glsl, which is missing"):
+        load(folder.write("only.comp", '#pragma compute(groups = "1, 1")\n'))
+    folder.write("land.comp", '#pragma compute(groups = "1, 1")\nuniform float rise;\n')
+    assert load(folder.path / "land.comp").graph.find("height").technique.companion is not None
+
+
+# Mistakes
+
+P = PASS
+
+
+@pytest.mark.parametrize(
+    ("parts", "words", "line"),
+    [
+        ({"head": ""}, "a sketch begins with format = 1", 0),
+        ({"head": "format = 2\n"}, "format = 2: this version reads format = 1", 1),
+        ({"head": "format = true\n"}, "format = true", 1),
+        ({"head": "format = 1\nformat = 1\n"}, "not TOML", 2),
+        ({"head": "format = 1\ntitel = 'x'\n"}, "no key 'titel' here; did you mean 'title'", 2),
+        ({"head": "format = 1\ntitle = 3\n"}, "title = 3: expected text in quotes", 2),
+        ({"head": "format = 1\nsize = 0\n"}, "size = 0: expected 1 to 16384 texels", 2),
+        ({"head": "format = 1\nsize = [1, 2, 3]\n"}, "a whole number of texels, or [x, y]", 2),
+        ({"head": "format = 1\nsize = 1.5\n"}, "a whole number of texels", 2),
+        ({"head": "format = 1\nsize = true\n"}, "size = true", 2),
+        ({"head": "format = 1\nsize = []\n"}, "size = []", 2),
+        ({"head": "format = 1\nsize = '513'\n"}, "a whole number of texels", 2),
+        ({"head": "format = 1\nextent = -1\n"}, "expected metres above 0", 2),
+        ({"head": "format = 1\nextent = nan\n"}, "expected metres above 0", 2),
+        ({"head": "format = 1\nrelief = [1, 2]\n"}, "relief = [1, 2]: expected metres", 2),
+        ({"head": "format = 1\nrelief = -1\n"}, "0 or more", 2),
+        ({"head": "format = 1\nbase_elevation = inf\n"}, "a number of metres", 2),
+        (
+            {"head": "format = 1\nrelief = 0x" + "f" * 5000 + "\n"},
+            "relief = a number of thousands of digits",
+            2,
+        ),
+        ({"head": "format = 1\nrelief = 1" + "0" * 5000 + "\n"}, "not TOML", None),
+        ({"head": "format = 1\nx = " + "[" * 3000 + "\n"}, "not TOML", None),
+        ({"body": ""}, "no passes; a [[pass]]", None),
+        ({"body": "[pass]\nname = 'a'\n"}, "[pass]: expected [[pass]]", 2),
+        ({"body": "pass = 3\n"}, "each begun by [[pass]]", 2),
+        ({"body": "pass = [1]\n"}, "each begun by [[pass]]", 2),
+        ({"body": "[[pass]]\nuse = './land'\n"}, "name = '': a pass needs a name", 2),
+        ({"body": "[[pass]]\nname = 'a b'\nuse = './land'\n"}, "letters, digits and _", 3),
+        ({"body": "[[pass]]\nname = 'view'\nuse = './land'\n"}, "may not be named 'view'", 3),
+        ({"body": P + P}, "a second pass named 'height'", 6),
+        ({"body": "[[pass]]\nname = 'a'\n"}, "pass 'a' needs use", 2),
+        ({"body": "[[pass]]\nname = 'a'\nuse = 3\n"}, "use = 3: expected text", 4),
+        (
+            {"body": "[[pass]]\nname = 'a'\nuse = './lnad'\n"},
+            "no technique './lnad'; did you mean './land'",
+            4,
+        ),
+        ({"body": "[[pass]]\nname = 'a'\nuse = './land.glsl'\n"}, "(without '.glsl')", 4),
+        (
+            {"body": "[[pass]]\nname = 'a'\nuse = 'generation/heigtmap'\n"},
+            "did you mean 'generation/heightmap'",
+            4,
+        ),
+        ({"body": "[[pass]]\nname = 'a'\nuse = 'noise/hash'\n"}, "is a library file", 4),
+        ({"body": P + "sett = {}\n"}, "no key 'sett' here; did you mean 'set'", 5),
+        ({"body": P + "set = 3\n"}, "set = 3: expected a table", 5),
+        ({"body": P + "set = { rize = 1 }\n"}, "no parameter 'rize'; did you mean 'rise'", 5),
+        ({"body": P + "set = { rise = 3 }\n"}, "rise = 3 is outside its range 0 to 2", 5),
+        ({"body": P + "set = { rise = 'x' }\n"}, "expected a number from 0 to 2", 5),
+        ({"body": P + "set = { rise = 1979-05-27 }\n"}, "expected a number", 5),
+        ({"body": P + "[pass.set]\n\nrise = 3\n"}, "outside its range", 7),
+        ({"body": P + "set = { a.b.c = 3 }\n"}, "no parameter 'a.b.c'", 5),
+        ({"body": P + "inputs = { height = 'x' }\n"}, "./land has no input 'height'", 5),
+        ({"body": P + "inputs = 'x'\n"}, "expected a table", 5),
+        ({"body": P + "size = 0.5\n"}, "size = 0.5: expected a number, an expression", 5),
+        ({"body": P + "size = [1]\n"}, "or [x, y]", 5),
+        ({"body": P + "size = true\n"}, "size = true", 5),
+        ({"body": P + "size = 'size.w'\n"}, "names 'size.w', which is not known here; did you mean", 2),
+        ({"body": P + "size = 'size +'\n"}, "is not an expression", 2),
+        ({"body": P + "size = ['heigt.size.x', 1]\n"}, "did you mean 'height.size.x'", 2),
+        ({"body": P + "repeat = 3\n"}, "repeat needs feedback", 5),
+        ({"body": P + "repeat = true\n"}, "repeat = true", 5),
+        ({"body": P + "repeat = ''\n"}, "repeat = ''", 5),
+        ({"body": P + "feedback = { height = 'height' }\n"}, "feedback needs a repeat", 5),
+        ({"tail": "[view]\nuse = './look'\nname = 'x'\n"}, "no key 'name' here", 7),
+        ({"tail": "[[view]]\nuse = './look'\n"}, "view = [{'use': './look'}]: expected a table", 5),
+        ({"tail": TAIL + "samples = 3\n"}, "samples = 3: expected 1, 2, 4 or 8", 7),
+        ({"tail": TAIL + "samples = true\n"}, "samples = true", 7),
+        ({"tail": TAIL + "camera = { azimut = 3 }\n"}, "no key 'azimut' here; did you mean 'azimuth'", 7),
+        ({"tail": TAIL + "camera = { elevation = 90 }\n"}, "elevation = 90: expected -89 to 89", 7),
+        ({"tail": TAIL + "camera = { azimuth = nan }\n"}, "expected a finite number", 7),
+        ({"tail": TAIL + "camera = { distance = 1" + "0" * 400 + " }\n"}, "distance = 1000", 7),
+        ({"tail": TAIL + "camera = { target = [1, 2] }\n"}, "expected [east, north, up]", 7),
+        ({"tail": TAIL + "camera = { target = [1, 2, nan] }\n"}, "expected [east, north, up]", 7),
+        ({"tail": TAIL + "camera = { target = [1, 2, true] }\n"}, "expected [east, north, up]", 7),
+        (
+            {"tail": "[view]\nuse = './look'\ninputs = { heigth = 'height' }\n"},
+            "no input 'heigth'; did you mean 'height'",
+            7,
+        ),
+        (
+            {"tail": "[view]\nuse = './look'\ninputs = { height = 'hieght' }\n"},
+            "names no pass 'hieght'; did you mean 'height'",
+            5,
+        ),
+        (
+            {"tail": "[view]\nuse = './look'\ninputs = { height = 'height:hight' }\n"},
+            "no output 'hight'; did you mean 'height'",
+            5,
+        ),
+        (
+            {"tail": "[view]\nuse = './look'\ninputs = { height = 'height.x' }\n"},
+            "nothing named 'height.x' inside 'height'",
+            5,
+        ),
+        ({"tail": "[view]\nuse = './look'\ninputs = { height = '' }\n"}, "names no pass ''", 5),
+        (
+            {"tail": "[view]\nuse = './look'\ninputs = { height = 3 }\n"},
+            "height = 3: expected text in quotes",
+            7,
+        ),
+        ({"tail": TAIL + "[preset]\nname = 'a'\n"}, "expected [[preset]]", 7),
+        ({"tail": TAIL + "[[preset]]\nset = {}\n"}, "a preset needs a name", 7),
+        (
+            {"tail": TAIL + "[[preset]]\nname = 'a'\nset = { height.rize = 1 }\n"},
+            "preset 'a': no parameter 'height.rize' in sketch s; did you mean 'height.rise'",
+            9,
+        ),
+        ({"tail": TAIL + "[[preset]]\nname = 'a'\nset = { size = 0 }\n"}, "preset 'a': size = 0", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a b'\n"}, "a shot needs a name", 8),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\n[[shot]]\nname = 'a'\n"}, "a second shot named 'a'", 10),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\nsize = [true, 5]\n"}, "[width, height] in pixels", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\nsize = 640\n"}, "expected a list", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\ntime = inf\n"}, "time = inf: expected a finite number", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\npreset = 'x'\n"}, "no preset 'x'", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\nsteps = { height = 1 }\n"}, "no repeated pass 'height'", 9),
+        ({"tail": TAIL + "[[shot]]\nname = 'a'\nsteps = { height = -1 }\n"}, "a whole number, 0 or more", 9),
+        (
+            {"tail": TAIL + "[[shot]]\nname = 'a'\nstep = { height = 1 }\n"},
+            "no key 'step' here; did you mean 'steps'",
+            9,
+        ),
+        (
+            {"tail": TAIL + "[[shot]]\nname = 'a'\nset = { height.rise = 9 }\n"},
+            "shot 'a': height.rise = 9 is outside",
+            9,
+        ),
+    ],
+)
+def test_every_mistake_has_its_line(folder, parts, words, line):
+    folder.refused(words, line, **parts)
+
+
+def test_a_mistake_in_toml_itself_shows_the_line(folder):
+    error = folder.refused("not TOML", 3, head="format = 1\ntitle = 'x'\nsize = 3 4\n")
+    assert "size = 3 4" in str(error) and error.diagnostics[0].column == 10
+    folder.refused("not TOML", None, head='format = 1\ntitle = """x\n')
+    (folder.path / "s.toml").write_bytes(b"format = 1\n# \xff\n")
+    with pytest.raises(SketchError, match="not UTF-8"):
+        load(folder.path / "s.toml")
+
+
+def test_a_mistake_in_a_kernel_is_told_in_the_kernel(folder):
+    folder.write("land.glsl", LAND.replace("slider(0, 2)", "slidr(0, 2)"))
+    folder.refused("no widget 'slidr'", 3, file="land.glsl")
+
+
+def test_a_mistake_inside_a_technique_is_told_there(folder):
+    body = "[[pass]]\nname = 'height'\nuse = './t'\n"
+    inner = "[[pass]]\nname = 'a'\nuse = './land'\n"
+    for text, words, line in (
+        (inner + "set = { rise = 3 }\n", "outside its range", 4),
+        (inner + "[parameters]\nx = 'a.rize'\n", "x: no parameter 'a.rize'; did you mean 'a.rise'", 5),
+        (inner + "[parameters]\nx = 'x'\n", "x: 'x' should be a path inside", 5),
+        (inner + "[parameters]\nx = 'y'\ny = 'x'\n", "should be a path inside", 5),
+        (inner + "[parameters]\nx = []\n", "expected a path inside, or a list", 5),
+        (inner + "[parameters]\nx = [1]\n", "expected a path inside, or a list", 5),
+        (inner + "[parameters]\n'x y' = 'a.rise'\n", "expected a name of letters", 5),
+        (inner + "[inputs]\nh = 'a.height'\n", "nothing inside takes 'a.height'", 5),
+        (inner + "[outputs]\nheight = 'b:height'\n", "no pass 'b' inside", 4),
+        (inner + "[outputs]\nheight = 'a:hight'\n", "'a' has no 'hight'; did you mean 'height'", 4),
+        (inner + "[outputs]\nheight = 3\n", "expected text in quotes", 5),
+        (inner + "size = 'y.size.x'\n", "names 'y.size.x'", 1),
+        (inner + "[view]\n", "no key 'view' here", 4),
+        ("format = 3\n" + inner, "this version reads", 1),
+        ("[[pass]]\nname='a'\nuse='./look'\n", "needs its input 'height' wired", 1),
+    ):
+        folder.write("t.toml", text)
+        folder.refused(words, line, file="t.toml", body=body)
+
+
+def test_an_export_s_targets_have_one_type(folder):
+    folder.write(
+        "two.glsl", LAND.replace("uniform float rise = 0.5;  //! slider(0, 2)", "uniform int n = 1; //!")
+    )
+    text = "[[pass]]\nname='a'\nuse='./land'\n[[pass]]\nname='b'\nuse='./two'\n"
+    text += "[parameters]\nx=['a.rise', 'b.n']\n"
+    folder.write("t.toml", text.replace("float(texel.x)", "1"))
+    folder.refused(
+        "types of their own: a.rise float, b.n int", 8, file="t.toml", body=PASS.replace("land", "t")
+    )
+
+
+def test_two_files_of_one_name_are_refused(folder):
+    folder.write("land.toml", "[[pass]]\nname = 'a'\nuse = './look'\n")
+    error = folder.refused("is both", 4)
+    assert "land.toml" in str(error) and "land.glsl" in str(error)
+
+
+def test_techniques_that_use_each_other_are_a_circle(folder):
+    folder.write("a.toml", "[[pass]]\nname = 'x'\nuse = './b'\n")
+    folder.write("b.toml", "[[pass]]\nname = 'x'\nuse = './a'\n")
+    error = folder.refused("use each other in a circle", 3, file="b.toml", body=PASS.replace("land", "a"))
+    assert str(error).count("a.toml") == 2
+
+
+def test_a_few_lines_cannot_nest_millions(folder):
+    for i in range(14):
+        inner = f"./t{i + 1}" if i < 13 else "./land"
+        folder.write(f"t{i}.toml", "".join(f"[[pass]]\nname = '{n}'\nuse = '{inner}'\n" for n in "abcd"))
+    folder.refused("1000 is the most", None, file="t9.toml", body=PASS.replace("land", "t0"))
+    for i in range(20):
+        folder.write(f"t{i}.toml", f"[[pass]]\nname = 'a'\nuse = './t{i + 1}'\n")
+    folder.refused("nest more than 16 deep", None, file="t15.toml", body=PASS.replace("land", "t0"))
+
+
+def test_one_technique_in_two_passes_is_read_once(folder):
+    found = folder.sketch(PASS + PASS.replace('"height"', '"again"'))
+    assert found.graph.passes[0].technique is found.graph.passes[1].technique
+
+
+# Nothing from outside
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        "./../land",
+        "../land",
+        "/tmp/land",
+        "./",
+        ".",
+        "./.",
+        "..",
+        "./..",
+        "./link",
+        "./linked/secret",
+        "./a\\u0000b",
+        "/",
+    ],
+)
+def test_a_technique_stays_in_the_folder_and_the_library(folder, tmp_path: Path, use):
+    for name in ("land.glsl", "secret.glsl", "mine.glsl", ".glsl"):
+        (tmp_path / name).write_text(LAND)
+    (folder.path / "link.glsl").symlink_to(tmp_path / "secret.glsl")
+    (folder.path / "linked").symlink_to(tmp_path)
+    folder.refused("lies outside", 4, body=f'[[pass]]\nname = "height"\nuse = "{use}"\n')
+
+
+def test_a_companion_stays_there_too(folder, tmp_path: Path):
+    (tmp_path / "land.comp").write_text('#pragma compute(groups = "1, 1")\n')
+    (folder.path / "land.comp").symlink_to(tmp_path / "land.comp")
+    with pytest.raises(SketchError, match="lies outside"):
+        folder.sketch()
+
+
+def test_a_technique_in_a_folder_below_uses_what_is_beside_it(folder):
+    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './land'\n")
+    folder.write("below/land.glsl", LAND.replace("a slope", "below"))
+    found = folder.sketch(PASS.replace("land", "below/t"))
+    assert found.graph.passes[0].technique.passes[0].technique.title == "below."
+    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './../land'\n")
+    assert folder.sketch(PASS.replace("land", "below/t"))
+
+
+OUTSIDE = [
+    "/etc/hostname",
+    "../secret.png",
+    "a/../../secret.png",
+    "C:/x.png",
+    "C:x.png",
+    "//host/x.png",
+    "~/x.png",
+    "link.png",
+    "linked/secret.png",
+    "\\\\x.png",
+]
+
+
+@pytest.mark.parametrize("path", OUTSIDE)
+def test_a_sketch_s_own_files_stay_in_its_folder(folder, tmp_path: Path, path):
+    (tmp_path / "secret.png").write_bytes(b"")
+    (folder.path / "link.png").symlink_to(tmp_path / "secret.png")
+    (folder.path / "linked").symlink_to(tmp_path)
+    folder.write("land.glsl", IMAGE)
+    folder.refused(
+        "lies outside the sketch's own folder and glsl/", 5, body=PASS + f'set = {{ picture = "{path}" }}\n'
+    )
+    for key in ("shot", "preset"):
+        tail = TAIL + f'[[{key}]]\nname = "a"\nset = {{ height.picture = "{path}" }}\n'
+        folder.refused("lies outside", 9, tail=tail)
+    folder.write("t.toml", PASS + f'set = {{ picture = "{path}" }}\n')
+    folder.refused("lies outside", 4, file="t.toml", body=PASS.replace("land", "t"))
+    folder.write("land.glsl", IMAGE.replace('file("")', f'file("{path}")'))
+    folder.refused("lies outside", 2, file="land.glsl")
+    with pytest.raises(PlaygroundError, match="lies outside"):
+        load(folder.path / "land.glsl")
+
+
+@pytest.mark.parametrize(
+    "path", ["a.png", "deep/er/a.png", "x/../a.png", "sketches/data/jacksboro_fault_dem.npz", "none.png", ""]
+)
+def test_files_inside_may_be_named_whether_or_not_they_are_there(folder, path):
+    folder.write("a.png", "")
+    folder.write("land.glsl", IMAGE)
+    assert folder.sketch(PASS + f'set = {{ picture = "{path}" }}\n').graph.passes[0].values == (
+        ("picture", path),
+    )
+
+
+def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
+    folder.write("land.glsl", IMAGE)
+    found = folder.sketch()
+    for path in (str(tmp_path / "secret.png"), tmp_path / "secret.png"):
+        assert dict(found.with_values({"height.picture": path}).overrides) == {"height.picture": str(path)}
+
+
+# Anything at all
+
+
+def test_mutated_sketches_raise_nothing_but_sentences(folder):
+    chance = random.Random(7)
+    folder.write("t.toml", "[[pass]]\nname = 'a'\nuse = './land'\n[parameters]\nsteep = 'a.rise'\n")
+    folder.write("back.glsl", LAND + "uniform sampler2D before; //! input\n")
+    valid = """\
+format = 1
+title = "x"
+size = [65, 33]
+relief = 10.5
+[[pass]]
+name = "height"
+use = "./t"
+set = { steep = 0.5, "a.rise" = 0.25 }
+size = ["size.x", "2 * 4"]
+[[pass]]
+name = "water"
+use = "./back"
+repeat = "2 + 1"
+feedback = { before = "height" }
+inputs = { before = "height.a:height" }
+[view]
+use = "./look"
+camera = { azimuth = 20.0, target = [1, 2, 3] }
+samples = 2
+[[preset]]
+name = "p"
+set = { height.steep = 1, size = 9 }
+[[shot]]
+name = "s"
+size = [64, 36]
+steps = { water = 2 }
+set = { "height.a.rise" = 1.5 }
+preset = "p"
+"""
+    path = folder.write("s.toml", valid)
+    load(path)
+    words = [
+        "[",
+        "]",
+        "[[",
+        "{",
+        "}",
+        "=",
+        '"',
+        "'",
+        '"""',
+        "\n",
+        ".",
+        ",",
+        "1",
+        "-",
+        "nan",
+        "true",
+        "./",
+        "\\",
+        "height",
+        "é",
+        "#",
+    ]
+    loaded = 0
+    for _ in range(2500):
+        text = valid
+        for _ in range(chance.randint(1, 3)):
+            at = chance.randrange(len(text))
+            match chance.randrange(3):
+                case 0:
+                    text = text[:at] + text[at + chance.randint(1, 12) :]
+                case 1:
+                    text = text[:at] + chance.choice(words) + text[at:]
+                case _:
+                    lines = text.split("\n")
+                    chance.shuffle(lines) if chance.random() < 0.1 else lines.insert(
+                        chance.randrange(len(lines)), chance.choice(lines)
+                    )
+                    text = "\n".join(lines)
+        path.write_text(text)
+        try:
+            hash(load(path))
+            loaded += 1
+        except PlaygroundError as error:
+            assert error.diagnostics[0].file and "\n" not in error.diagnostics[0].message
+    assert loaded > 10
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "a." * 3000 + "b = 1",
+        "format = 1\nset." + "a." * 3000 + "b = 1",
+        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nset." + "a." * 3000 + "b = 1\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./land'\ninputs." + "a." * 3000 + "b = 1\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./" + "a" * 100_000 + "'\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./" + "a/" * 10_000 + "b'\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nsize='" + "(" * 100_000 + "'\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nsize=" + "9" * 4000 + "\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nset = { rise = " + "9" * 4000 + " }\n",
+    ],
+    ids=range(10),
+)
+def test_monsters_are_one_sentence(folder, text):
+    with pytest.raises(PlaygroundError):
+        load(folder.write("s.toml", text))
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read everything")
+def test_a_file_that_may_not_be_read_is_a_sentence(folder):
+    path = folder.write("s.toml", "format = 1\n")
+    path.chmod(0)
+    with pytest.raises(SketchError, match="cannot be read"):
+        load(path)
+
+
+def test_the_kinds_of_error():
+    assert issubclass(ParameterError, SketchError) and issubclass(ShaderError, PlaygroundError)
+    with pytest.raises(ParameterError):
+        coerce(load().graph.passes[0].technique.parameters[0], 3)
+    assert not issubclass(DataError, SketchError)

@@ -1,0 +1,89 @@
+"""Sources: what an elevation file tells of its land, and the heights it becomes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.errors import DataError, SketchError
+from playground.paths import GLSL
+from playground.sketch.load import read_technique
+from playground.terrain.sources import SOURCES, source_kind
+
+KIND = source_kind("elevation_file")
+LAND = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
+
+
+@pytest.fixture
+def values(tmp_path):
+    np.save(tmp_path / "a.npy", LAND.astype(np.float32))
+
+    def values_(**changes):
+        found = {p.name: p.default for p in read_technique("generation/heightmap", GLSL, GLSL).parameters}
+        return found | {"elevation": str(tmp_path / "a.npy")} | changes
+
+    return values_
+
+
+def test_the_kernel_declares_what_the_source_reads():
+    parameters = read_technique("generation/heightmap", GLSL, GLSL).parameters
+    assert set(KIND.parameters) == {p.name for p in parameters}
+    menus = {p.name: p.widget.choices for p in parameters if p.widget.kind == "menu"}
+    assert menus == {
+        "packing": ("grey", "rgb"),
+        "no_data": ("refuse", "fill"),
+        "first_row": ("north", "south"),
+    }
+    assert all(name in KIND.parameters for name in KIND.files)
+
+
+@pytest.mark.parametrize(("first_row", "south_first"), [(0, LAND[::-1]), (1, LAND)])
+def test_the_first_row_is_north_unless_it_is_said_to_be_south(values, first_row, south_first):
+    made = KIND.make(values(first_row=first_row), (3, 2))["height"]
+    np.testing.assert_allclose(made, (south_first - 10.0) / 50.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("size", [(3, 2), (64, 33), (257, 300), (2, 2)])
+def test_heights_stay_from_0_to_1_at_any_size(values, size):
+    made = KIND.make(values(), size)["height"]
+    assert made.shape == size[::-1] and made.dtype == np.float32
+    assert made.min() >= 0.0 and made.max() <= 1.0
+
+
+def test_a_steep_file_stays_in_its_range_too(values, tmp_path):
+    steps = np.zeros((64, 64), np.float32)
+    steps[::5] = 100.0
+    np.save(tmp_path / "b.npy", steps)
+    for size in ((300, 300), (129, 65), (50, 40)):
+        made = KIND.make(values(elevation=str(tmp_path / "b.npy")), size)["height"]
+        assert made.min() >= 0.0 and made.max() <= 1.0
+
+
+def test_flat_land_is_0(values, tmp_path):
+    np.save(tmp_path / "flat.npy", np.full((4, 4), 7.0))
+    assert (KIND.make(values(elevation=str(tmp_path / "flat.npy")), (9, 9))["height"] == 0).all()
+
+
+def test_metres_that_the_user_gives_are_those_of_the_file_s_codes(values, tmp_path):
+    from PIL import Image
+
+    Image.fromarray(LAND).save(tmp_path / "a.png")
+    found = KIND.describe(values(elevation=str(tmp_path / "a.png"), metres=(100.0, 355.0)))
+    assert (found.size, found.extent) == ((3, 2), None)
+    assert (found.base_elevation, found.relief) == pytest.approx((110.0, 50.0))  # a metre a grey
+    silent = KIND.describe(values(elevation=str(tmp_path / "a.png")))
+    assert (silent.base_elevation, silent.relief) == (None, None)
+
+
+def test_a_file_is_read_anew_when_it_changes(values, tmp_path):
+    first = KIND.make(values(), (3, 2))["height"]
+    np.save(tmp_path / "a.npy", np.flip(LAND).astype(np.float64))
+    assert not np.array_equal(KIND.make(values(), (3, 2))["height"], first)
+
+
+def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
+    with pytest.raises(DataError, match="cannot be read"):
+        KIND.describe(values(elevation=str(tmp_path / "none.npy")))
+    with pytest.raises(SketchError, match="did you mean 'elevation_file'"):
+        source_kind("elevation_fil")
+    assert list(SOURCES) == ["elevation_file"]
