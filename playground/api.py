@@ -42,5 +42,6 @@ def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:
     """Return every parameter of a sketch with its value, by path."""
     leaves = values_of(sketch)
     return {
-        shown.path: (shown.parameter, value_of(sketch, shown.path, leaves)) for shown in shown_parameters(sketch)
+        shown.path: (shown.parameter, value_of(sketch, shown.path, leaves))
+        for shown in shown_parameters(sketch)
     }

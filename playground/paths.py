@@ -13,7 +13,11 @@ GLSL: Path = next((folder for folder in _CANDIDATES if folder.is_dir()), _CANDID
 SKETCHES: Path = GLSL / "sketches"
 """The sketches that ship."""
 
-CHECKOUT: Path | None = _PACKAGE.parent if (_PACKAGE.parent / "pyproject.toml").is_file() and GLSL == _PACKAGE.parent / "glsl" else None
+CHECKOUT: Path | None = (
+    _PACKAGE.parent
+    if (_PACKAGE.parent / "pyproject.toml").is_file() and GLSL == _PACKAGE.parent / "glsl"
+    else None
+)
 """The repository's root where the package runs from one (so that its own shots are found), else None."""
 
 

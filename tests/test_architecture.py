@@ -1,4 +1,4 @@
-"""The shape of the project, kept: imports point down, importing does nothing, the engine names no technique."""
+"""The project's shape, kept: imports point down and do nothing, the engine names no technique."""
 
 from __future__ import annotations
 
@@ -115,7 +115,8 @@ import sys, time
 start = time.perf_counter()
 import playground
 spent = time.perf_counter() - start
-heavy = sorted({"moderngl", "glfw", "numpy", "imgui_bundle", "PIL", "pyrr", "typer", "rich"} & set(sys.modules))
+slow = {"moderngl", "glfw", "numpy", "imgui_bundle", "PIL", "pyrr", "typer", "rich"}
+heavy = sorted(slow & set(sys.modules))
 print(spent, ",".join(heavy), playground.__version__)
 """
 

@@ -25,7 +25,12 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _need_network(result: subprocess.CompletedProcess[str]) -> None:
-    offline = ("NewConnectionError", "No matching distribution", "Could not find a version", "Temporary failure")
+    offline = (
+        "NewConnectionError",
+        "No matching distribution",
+        "Could not find a version",
+        "Temporary failure",
+    )
     if result.returncode and any(word in result.stderr for word in offline) and not os.environ.get("CI"):
         pytest.skip("no package registry can be reached")
     assert result.returncode == 0, result.stderr[-2000:]
@@ -47,17 +52,26 @@ def test_an_empty_environment_renders_the_default_sketch(wheel: Path, tmp_path: 
     environment = tmp_path / "env"
     venv.create(environment, with_pip=True)
     scripts = environment / ("Scripts" if os.name == "nt" else "bin")
-    clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "PLAYGROUND"))} | {"HOME": str(home)}
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "PLAYGROUND"))} | {
+        "HOME": str(home)
+    }
     _need_network(
         subprocess.run(
             [str(scripts / "python"), "-m", "pip", "install", "-q", str(wheel)],
-            capture_output=True, text=True, env=clean, timeout=600,
+            capture_output=True,
+            text=True,
+            env=clean,
+            timeout=600,
         )
     )
     picture = tmp_path / "land.png"
     done = subprocess.run(
         [str(scripts / "playground"), "render", "-o", str(picture), "--size", "320x180"],
-        capture_output=True, text=True, env=clean, cwd=tmp_path, timeout=120,
+        capture_output=True,
+        text=True,
+        env=clean,
+        cwd=tmp_path,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     array, _ = read_png(picture)

@@ -73,6 +73,7 @@ class Engine:
         self._keys = KeyMaker()
         self._timer: Timer | None = None
         self._owns_context = owns_context
+        self._default = ctx.detect_framebuffer(0)
         self._plan: Plan | None = None
 
     @property
@@ -93,6 +94,7 @@ class Engine:
 
     def release(self) -> None:
         """Give back every texture and program, and the context if it is the engine's own."""
+        self._make_current()
         self.cache.clear()
         self.pool.clear()
         self.runner.release()
@@ -186,6 +188,7 @@ class Engine:
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
+        self._make_current()
         self._plan = plan
         self.ran, self.texels, self.times = [], 0, {}
         self.cache.begin()
@@ -207,8 +210,8 @@ class Engine:
             execution.run(needed(plan.nodes, ref))
         finally:
             self.runner.end()
-            if bound is not None and bound.mglo is not None and _is_alive(bound):
-                bound.use()
+            # What stays bound here is bound again by later calls, so it may not be one that goes.
+            (bound if bound is not None and _is_alive(bound) else self._default).use()
         self.cache.trim()
         return execution.results[ref.path].textures[ref.output]
 
@@ -271,6 +274,13 @@ class Engine:
         if kernel.kind == "draw" and self._plan is not None:
             given["samples"] = self.runner.samples_for(self._plan)
         return given
+
+    def _make_current(self) -> None:
+        """Make this engine's context the one that OpenGL speaks to: there may be others in the process.
+
+        It stays so, since glcontext's way back leaves no context at all.
+        """
+        self.ctx.__enter__()
 
     def _timer_of(self) -> Timer:
         if self._timer is None:

@@ -115,7 +115,7 @@ def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
     r8 and r16 formats give 0..1.
     """
     raw = _read(texture)
-    values = np.asarray(raw, np.float32)
+    values = np.array(raw, np.float32)  # a copy: what is read may be written to
     if raw.dtype.kind == "u":
         values /= np.float32(np.iinfo(raw.dtype).max)
     return values

@@ -101,7 +101,7 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
 
 
 def _whole(kernel: Kernel) -> Stage:
-    """Return a plain shader as it is, with // for blank lines above its #version: Mesa does not count those."""
+    """Return a plain shader as it is, but // for blank lines above #version: Mesa does not count those."""
     lines = [line.code for line in kernel.source.lines]
     above = next((i for i, code in enumerate(lines) if code.strip()), 0)
     text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"

@@ -27,7 +27,7 @@ from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
-from playground.live.session import Session
+from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
@@ -139,6 +139,8 @@ class Live:
             return 0.0
         if self.session.testing:
             return _TRIAL
+        if self.session.hasty:
+            return REST / 2
         if self.actions.notices or imgui.get_io().want_text_input:
             return 0.1
         return IDLE

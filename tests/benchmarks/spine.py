@@ -32,7 +32,9 @@ KERNEL = "height_blend_mix.glsl"
 
 def main() -> None:
     """Run every measurement and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--saves", type=int, default=25, help="saves to time (default 25)")
     options = parser.parse_args()
     with playground.headless() as engine:
@@ -45,7 +47,9 @@ def main() -> None:
     table.add_row("render jacksboro 1280x720, process start to PNG", f"{warm:.2f} s", "2.5 s", "warm")
     table.add_row("the same", f"{cold:.2f} s", "", "cold")
     ran, milliseconds = sun()
-    table.add_row(f"moving the sun re-runs {', '.join(ran)}", f"{milliseconds:.0f} ms", "light and view only", "warm")
+    table.add_row(
+        f"moving the sun re-runs {', '.join(ran)}", f"{milliseconds:.0f} ms", "light and view only", "warm"
+    )
     for trial in (False, True):
         times = sorted(save_to_picture(options.saves, trial=trial))
         median, worst = statistics.median(times), times[int(0.95 * (len(times) - 1))]
@@ -67,7 +71,16 @@ def render_times() -> tuple[float, float]:
     """Return the seconds of ``playground render`` with a cold and with a warm shader cache."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"MESA_SHADER_CACHE_DIR": f"{folder}/cache"}
-        command = [sys.executable, "-m", "playground", "render", "-o", f"{folder}/land.png", "--size", "1280x720"]
+        command = [
+            sys.executable,
+            "-m",
+            "playground",
+            "render",
+            "-o",
+            f"{folder}/land.png",
+            "--size",
+            "1280x720",
+        ]
         times = []
         for _ in range(6):
             start = time.perf_counter()
@@ -107,7 +120,9 @@ def save_to_picture(saves: int, *, trial: bool) -> list[float]:
                     _settle(session, engine)
                     watcher.follow(session.files)
                     time.sleep(0.3)
-                    return [_one_save(session, engine, watcher, woken, kernel, text, n) for n in range(saves + 3)][3:]
+                    return [
+                        _one_save(session, engine, watcher, woken, kernel, text, n) for n in range(saves + 3)
+                    ][3:]
             finally:
                 session.release()
                 if child is not None:
@@ -125,7 +140,9 @@ def _one_save(
 ) -> float:
     woken.clear()
     drawn = session.draws
-    edited = text.replace("vec4 kernel(", f"const float EDIT = {1 + (number + time.time() % 1) * 1e-4:.9f};\nvec4 kernel(")
+    edited = text.replace(
+        "vec4 kernel(", f"const float EDIT = {1 + (number + time.time() % 1) * 1e-4:.9f};\nvec4 kernel("
+    )
     edited = edited.replace("return vec4(", "return EDIT * vec4(")
     if "EDIT *" not in edited:
         raise SystemExit(f"{KERNEL} has changed: this benchmark cannot edit it any more")

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
@@ -138,7 +139,11 @@ uniform sampler2D doubled; //! input
 uniform float scale = 1.0; //! slider(0, 10)
 float kernel(ivec2 texel) { return texelFetch(doubled, texel, 0).r + scale * texelFetch(values, texel, 0).r; }
 """
-TRIPLE = """#pragma compute(groups = "size.x / 4, size.y / 2", local = "4, 2", repeat = "3", buffers = "kept:float:size.x * size.y; marks:vec4:1")
+TRIPLE_HEAD = (
+    '#pragma compute(groups = "size.x / 4, size.y / 2", local = "4, 2", repeat = "3", '
+    'buffers = "kept:float:size.x * size.y; marks:vec4:1")'
+)
+TRIPLE = """
 uniform sampler2D values; //! input
 uniform float scale = 1.0; //! slider(0, 10)
 void main() {
@@ -158,7 +163,7 @@ def test_one_beside_a_technique_stands_for_all_of_it(ctx, folder):
     for name, text in {"values": VALUES, "doubled": DOUBLED, "add": ADD}.items():
         folder.write(f"{name}.glsl", text)
     folder.write("triple.toml", GRAPH)
-    folder.write("triple.comp", TRIPLE)
+    folder.write("triple.comp", TRIPLE_HEAD + TRIPLE)
     body = '[[pass]]\nname = "values"\nuse = "./values"\n[[pass]]\nname = "t"\nuse = "./triple"\n'
     sketch = folder.sketch(body, size="size = 16").with_values({"t.scale": 2.0})
     with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
@@ -178,6 +179,7 @@ def test_a_draw_leaves_the_context_as_it_was(ctx, any_engine, plates):
         array.release()
         buffer.release()
     assert np.frombuffer(mine.read(components=1, dtype="f4"), "f4")[0] == 0.5
+    ctx.detect_framebuffer(0).use()
     program.release()
     mine.release()
     texture.release()

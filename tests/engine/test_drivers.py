@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.sketch.header import FORMATS
 
@@ -16,7 +17,8 @@ name = "a"
 use = "./one"
 """
 START = """#pragma kernel(output = "start:rgba32f")
-uint scrambled(uint x) { x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu; return x ^ (x >> 16); }
+uint scrambled(uint x) { x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu;
+    return x ^ (x >> 16); }
 vec4 kernel(ivec2 texel) {
     uint h = scrambled(uint(texel.x) + scrambled(uint(texel.y)));
     return vec4(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u, h >> 24) / 255.0 * 3.0 - 1.0;
@@ -50,7 +52,9 @@ def test_every_format(both, folder, form, size):
         f'#pragma kernel(output = "a:{form}", repeat = "2")\nuniform sampler2D start; //! input\n'
         f"{kind} kernel(ivec2 texel) {{\n"
         f"    {kind} other = texelFetch(start, texel, 0).{swizzle};\n"
-        f"    return iteration == 0 ? other * 0.4 : previous(texel) * 0.9 + previous(texel + ivec2(1, 0)) * 0.25;\n}}\n",
+        "    if (iteration == 0) return other * 0.4;\n"
+        "    return previous(texel) * 0.9 + previous(texel + ivec2(1, 0)) * 0.25;\n"
+        "}\n",
     )
     found = both(folder.sketch(BODY, size=size))
     assert np.isfinite(found).all()
@@ -62,13 +66,31 @@ def test_every_format(both, folder, form, size):
 
 
 CHECKS = {
-    "mathematics": "return sin(v.x * 9.0) + exp2(v.y) + pow(abs(v.z), 1.7) + atan(v.x, v.y) + inversesqrt(abs(v.w) + 0.1);",
-    "products": "vec3 n = normalize(v.xyz); return dot(n, vec3(0.3, 0.5, 0.8)) * length(v) + mix(v.x, v.y, fract(v.z));",
-    "whole numbers": "int i = int(v.x * 100.0); uint u = floatBitsToUint(v.y); return float((i << 3) ^ int(u & 1023u)) + float(i / 7 % 5);",
-    "branches": "float s = 0.0; for (int i = 0; i < 40; i++) { if (s > 5.0) break; s += abs(v[i & 3]); } return s;",
-    "matrices": "mat2 m = mat2(v.x, v.y, v.z, v.w); vec2 r = m * vec2(1.0, 2.0); return determinant(m) + r.x / (r.y + 4.0);",
-    "the size": "return float(texel.x) / float(size.x) + float(size.y) * 0.5 + spacing.x * 0.001 + relief * 1e-4 + time;",
-    "extremes": "return texel.x == 3 ? 1.0 / 0.0 : texel.x == 4 ? -1.0 / 0.0 : v.x * 1e30;",
+    "mathematics": """
+    return sin(v.x * 9.0) + exp2(v.y) + pow(abs(v.z), 1.7) + atan(v.x, v.y) + inversesqrt(abs(v.w) + 0.1);""",
+    "products": """
+    vec3 n = normalize(v.xyz);
+    return dot(n, vec3(0.3, 0.5, 0.8)) * length(v) + mix(v.x, v.y, fract(v.z));""",
+    "whole numbers": """
+    int i = int(v.x * 100.0);
+    uint u = floatBitsToUint(v.y);
+    return float((i << 3) ^ int(u & 1023u)) + float(i / 7 % 5);""",
+    "branches": """
+    float s = 0.0;
+    for (int i = 0; i < 40; i++) {
+        if (s > 5.0) break;
+        s += abs(v[i & 3]);
+    }
+    return s;""",
+    "matrices": """
+    mat2 m = mat2(v.x, v.y, v.z, v.w);
+    vec2 r = m * vec2(1.0, 2.0);
+    return determinant(m) + r.x / (r.y + 4.0);""",
+    "the size": """
+    float share = float(texel.x) / float(size.x) + float(size.y) * 0.5;
+    return share + spacing.x * 0.001 + relief * 1e-4 + time;""",
+    "extremes": """
+    return texel.x == 3 ? 1.0 / 0.0 : texel.x == 4 ? -1.0 / 0.0 : v.x * 1e30;""",
 }
 
 
@@ -89,10 +111,13 @@ def test_every_way_to_read_a_texture(both, folder, way, wrap):
     folder.write("start.glsl", START)
     folder.write(
         "one.glsl",
-        f'#pragma kernel(output = "a:rgba32f")\nuniform sampler2D start; //! input("{way}", "{wrap}", "mipmap")\n'
+        f'#pragma kernel(output = "a:rgba32f")\n'
+        f'uniform sampler2D start; //! input("{way}", "{wrap}", "mipmap")\n'
         "vec4 kernel(ivec2 texel) {\n"
         "    vec2 uv = (vec2(texel) * 1.37 - 3.0) / vec2(textureSize(start, 0));\n"
-        "    return textureLod(start, uv, 0.0) + textureLod(start, uv, 1.0) + 0.1 * textureLod(start, uv, 1.5);\n}\n",
+        "    vec4 between = 0.1 * textureLod(start, uv, 1.5);\n"
+        "    return textureLod(start, uv, 0.0) + textureLod(start, uv, 1.0) + between;\n"
+        "}\n",
     )
     found = both(folder.sketch(BODY))
     assert found.std() > 0.1
@@ -118,10 +143,10 @@ TYPES = {
 @pytest.mark.parametrize("kind", TYPES)
 def test_every_type_of_parameter_arrives(both, folder, kind):
     """The kernel compares what arrives with what its own initialiser says."""
-    same = "value == expected" if kind in ("float", "int", "uint", "bool") else "value == expected"
     sketch = folder.one(
         f'#pragma kernel(output = "a:r32f")\nuniform {kind} value = {TYPES[kind]};\n'
-        f"float kernel(ivec2 texel) {{ {kind} expected = {kind}({TYPES[kind]}); return {same} ? 1.0 : 0.0; }}\n"
+        f"float kernel(ivec2 texel) {{ {kind} expected = {kind}({TYPES[kind]}); "
+        f"return value == expected ? 1.0 : 0.0; }}\n"
     )
     assert np.all(both(sketch) == 1.0)
 
@@ -131,7 +156,9 @@ def test_several_outputs_of_several_formats(both, folder):
         '#pragma kernel(output = "x:r8, y:rg16f, z:rgba32f, w:r16", repeat = "3")\n'
         "void kernel(ivec2 texel, out float x, out vec2 y, out vec4 z, out float w) {\n"
         "    x = previous_x(texel) + 0.1; y = previous_y(texel + ivec2(1)) + vec2(texel) * 0.1;\n"
-        "    z = previous_z(texel) + vec4(x, y, 1.0); w = previous_w(texel - ivec2(1)) + 0.01 * float(texel.x);\n}\n"
+        "    z = previous_z(texel) + vec4(x, y, 1.0);\n"
+        "    w = previous_w(texel - ivec2(1)) + 0.01 * float(texel.x);\n"
+        "}\n"
     )
     for output in "xyzw":
         both(sketch, f"a:{output}")
@@ -139,7 +166,9 @@ def test_several_outputs_of_several_formats(both, folder):
 
 def test_an_input_that_nothing_is_wired_to_has_its_fallback(both, folder):
     sketch = folder.one(
-        '#pragma kernel(output = "a:rgba32f")\nuniform sampler2D p; //! input("white")\nuniform sampler2D q; //! input("black")\n'
-        "vec4 kernel(ivec2 texel) { return vec4(texelFetch(p, ivec2(0), 0).rg, texelFetch(q, ivec2(0), 0).ra); }\n"
+        '#pragma kernel(output = "a:rgba32f")\nuniform sampler2D p; //! input("white")\n'
+        'uniform sampler2D q; //! input("black")\n'
+        "vec4 kernel(ivec2 texel) { return vec4(texelFetch(p, ivec2(0), "
+        "0).rg, texelFetch(q, ivec2(0), 0).ra); }\n"
     )
     np.testing.assert_array_equal(both(sketch)[2, 2], (1.0, 1.0, 0.0, 1.0))

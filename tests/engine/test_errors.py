@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from playground.errors import ContextError, PlaygroundError, ShaderError
 
 GOOD = """#pragma kernel(output = "a:r32f")
@@ -121,7 +122,10 @@ def test_previous_without_a_repeat(engine, folder):
 
 
 def test_previous_by_the_wrong_name(engine, folder):
-    two = '#pragma kernel(output = "a:r32f, b:r32f", repeat = "2")\nvoid kernel(ivec2 texel, out float a, out float b) {\n'
+    two = (
+        '#pragma kernel(output = "a:r32f, b:r32f", repeat = "2")\n'
+        "void kernel(ivec2 texel, out float a, out float b) {\n"
+    )
     error = mistake(engine, folder, two + "    a = previous(texel);\n    b = 0.0;\n}\n")
     assert "previous_a and previous_b, not previous" in error.diagnostics[0].message
     one = GOOD.replace('r32f"', 'r32f", repeat = "2"').replace("1.0", "previous_a(texel)")
@@ -171,7 +175,7 @@ def test_an_impossible_picture_is_a_sentence(any_engine, folder, size):
 
 
 def test_an_unknown_texture_names_the_nearest(any_engine, folder):
-    with pytest.raises(PlaygroundError, match="no pass 'aa' in sketch .*did you mean 'a'"):
+    with pytest.raises(PlaygroundError, match=r"no pass 'aa' in sketch .*did you mean 'a'"):
         any_engine.texture(folder.one(GOOD), "aa")
     with pytest.raises(PlaygroundError, match="no output 'b'"):
         any_engine.texture(folder.one(GOOD), "a:b")

@@ -7,6 +7,7 @@ import io
 import numpy as np
 import pytest
 from PIL import Image
+
 from playground.engine.frame import Frame
 
 CORNERS = """#pragma kernel(output = "frame:{form}")

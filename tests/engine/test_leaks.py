@@ -1,9 +1,11 @@
-"""What is drawn a thousand times costs no more memory than what is drawn once, and all of it is given back."""
+"""What is drawn a thousand times costs no more memory than once, and all of it is given back."""
 
 from __future__ import annotations
 
 import contextlib
 import gc
+import os
+import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -12,9 +14,11 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.images.files import write_png
 
+ROOT = Path(__file__).resolve().parents[2]
 KINDS = (
     moderngl.Texture,
     moderngl.Framebuffer,
@@ -28,7 +32,8 @@ KINDS = (
 LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float bumps = 3.0; //! slider(0, 1000)
 uniform sampler2D image;   //! file("p.png")
-float kernel(ivec2 texel) { return previous(texel) + sin(float(texel.x) * bumps) + texelFetch(image, ivec2(0), 0).r; }
+float kernel(ivec2 texel) { return previous(texel) + sin(float(texel.x) * bumps)
+    + texelFetch(image, ivec2(0), 0).r; }
 """
 DRAW = """#pragma draw(mesh = "grid", output = "frame:rgba16f")
 uniform sampler2D height; //! input("linear", "mipmap")
@@ -52,7 +57,15 @@ feedback = { height = "height" }
 use = "./draw"
 inputs = { height = "turned:height" }
 """
-LOOP = '[[pass]]\nname = "add"\nuse = "./add"\n[inputs]\nheight = "add.before"\n[outputs]\nheight = "add:height"\n'
+LOOP = """
+[[pass]]
+name = "add"
+use = "./add"
+[inputs]
+height = "add.before"
+[outputs]
+height = "add:height"
+"""
 ADD = """#pragma kernel(output = "height:r32f")
 uniform sampler2D before; //! input
 float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r * 0.9; }
@@ -172,9 +185,38 @@ def test_an_engine_that_was_released_works_again(ctx, sketch):
     engine.release()
 
 
-def test_a_context_that_belongs_to_the_engine_goes_with_it():
-    from playground.gpu.context import open_context
+TWO_CONTEXTS = """
+import sys
+import moderngl
+import numpy as np
+import playground
+from playground.engine.engine import Engine
+from playground.gpu.context import open_context
+sketch = playground.load(sys.argv[1])
+one, two = playground.headless(), playground.headless()
+first = one.render(sketch, size=(64, 36)).array
+two.render(sketch, size=(96, 96))
+for engine in (one, two, one):
+    engine.cache.clear()
+    assert np.array_equal(engine.render(sketch, size=(64, 36)).array, first)
+    assert engine.ran
+two.release()
+assert isinstance(two.ctx.mglo, moderngl.InvalidObject), "its own context goes with it"
+one.cache.clear()
+assert np.array_equal(one.render(sketch, size=(64, 36)).array, first)
+ctx = open_context()
+with Engine(ctx) as borrowed:
+    assert np.array_equal(borrowed.render(sketch, size=(64, 36)).array, first)
+assert not isinstance(ctx.mglo, moderngl.InvalidObject), "a borrowed one stays"
+one.release()
+"""
 
-    ctx = open_context()
-    Engine(ctx, owns_context=True).release()
-    assert isinstance(ctx.mglo, moderngl.InvalidObject)
+
+def test_each_engine_draws_in_its_own_context(sketch):
+    done = subprocess.run(
+        [sys.executable, "-c", TWO_CONTEXTS, sketch.file],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr

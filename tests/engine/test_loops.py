@@ -1,4 +1,4 @@
-"""A loop over a technique of several passes gives what the same loop gives in NumPy, and runs no turn twice."""
+"""A loop over a technique gives what the same loop gives in NumPy, and runs no turn twice."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import resource
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 
 START = """#pragma kernel(output = "water:r32f")
@@ -27,7 +28,8 @@ uniform sampler2D rough; //! input
 uniform sampler2D silt;  //! input("black")
 uniform float bias = 0.0; //! slider(-1, 1)
 void kernel(ivec2 texel, out float moved, out float left) {
-    moved = texelFetch(water, texel, 0).r - texelFetch(flow, texel, 0).r + texelFetch(rough, texel, 0).r + bias;
+    moved = texelFetch(water, texel, 0).r - texelFetch(flow, texel, 0).r
+        + texelFetch(rough, texel, 0).r + bias;
     left = texelFetch(silt, texel, 0).r + texelFetch(flow, texel, 0).r;
 }
 """
@@ -174,7 +176,8 @@ def test_the_turn_is_known_inside(engine, folder):
     folder.write(
         "add.glsl",
         '#pragma kernel(output = "sum:r32f")\nuniform sampler2D sum_before; //! input("black")\n'
-        "float kernel(ivec2 texel) { return texelFetch(sum_before, texel, 0).r + float(iteration) + 0.01 * float(iterations); }\n",
+        "float kernel(ivec2 texel) { return texelFetch(sum_before, texel, 0).r + "
+        "float(iteration) + 0.01 * float(iterations); }\n",
     )
     folder.write(
         "add_up.toml", '[[pass]]\nname="add"\nuse="./add"\n[inputs]\nsum_before = "add.sum_before"\n'
@@ -283,7 +286,8 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
     folder.write("inner_loop.toml", INNER_TOML)
     folder.write(
         "sum.glsl",
-        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D v; //! input\nuniform sampler2D last; //! input("black")\n'
+        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D v; //! input\n'
+        'uniform sampler2D last; //! input("black")\n'
         "float kernel(ivec2 texel) { return texelFetch(last, texel, 0).r + texelFetch(v, texel, 0).r; }\n",
     )
     folder.write(

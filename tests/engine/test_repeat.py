@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from playground.errors import PlaygroundError
 
 COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")

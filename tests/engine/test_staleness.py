@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.images.files import write_png
 

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 from playground.engine.trial import Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import ShaderError, TrialCrash, TrialTimeout
 

@@ -10,6 +10,7 @@ import textwrap
 from pathlib import Path
 
 import pytest
+
 from playground.errors import ContextError
 from playground.gpu import context as module
 from playground.gpu.context import ContextInfo, context_info, open_context
@@ -19,10 +20,13 @@ KERNELS = {
     "start": '#pragma kernel(output = "h:r32f", repeat = "4", visits = "size.x, 1")\n'
     "ivec2 visit(ivec2 cell) { return ivec2(cell.x, iteration); }\n"
     "float kernel(ivec2 texel) { return texel.y == iteration ? float(texel.x) + 0.5 : previous(texel); }\n",
-    "view": '#pragma draw(mesh = "grid", output = "frame:rgba16f")\nuniform sampler2D h; //! input("linear")\n'
+    "view": '#pragma draw(mesh = "grid", output = "frame:rgba16f")\n'
+    'uniform sampler2D h; //! input("linear")\n'
     "uniform int grid = 9; //! slider(2, 99)\nuniform uint seed = 4000000000u;\n"
-    "vec4 vertex(vec3 corner, out vec2 place) { place = corner.xy; return vec4(corner.xy * 1.6 - 0.8, 0.0, 1.0); }\n"
-    "vec4 fragment(vec2 place) { return vec4(texture(h, place).r / 17.0, place.y, float(seed >> 24) / 255.0, 1.0); }\n",
+    "vec4 vertex(vec3 corner, out vec2 place) { place = corner.xy; return "
+    "vec4(corner.xy * 1.6 - 0.8, 0.0, 1.0); }\n"
+    "vec4 fragment(vec2 place) { return vec4(texture(h, place).r / 17.0, "
+    "place.y, float(seed >> 24) / 255.0, 1.0); }\n",
 }
 SKETCH = 'format = 1\nsize = 17\n[[pass]]\nname = "h"\nuse = "./start"\n[view]\nuse = "./view"\n'
 SCRIPT = """
@@ -124,7 +128,8 @@ def test_one_that_is_too_old_says_what_it_offers():
 @pytest.mark.parametrize("device", [99, 2**31, -1])
 def test_an_impossible_device_is_one_sentence(device):
     done = in_a_child(
-        "import sys\nfrom playground.gpu.context import open_context\ntry:\n    open_context(device=int(sys.argv[1]))\n"
+        "import sys\nfrom playground.gpu.context import open_context\n"
+        "try:\n    open_context(device=int(sys.argv[1]))\n"
         "except Exception as e: print(type(e).__name__, e)",
         str(device),
     )
@@ -136,7 +141,8 @@ def test_an_impossible_device_is_one_sentence(device):
 
 def test_software_is_software():
     done = in_a_child(
-        "from playground.gpu.context import context_info, open_context\ni = context_info(open_context(software=True))\n"
+        "from playground.gpu.context import context_info, open_context\n"
+        "i = context_info(open_context(software=True))\n"
         "print(i.software, i.slug)"
     )
     assert done.stdout.split() == ["True", "llvmpipe"], done.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from playground.engine.programs import Programs
 from playground.errors import ShaderError
 from playground.gpu.program import compile_library, compile_wrapped, explain
@@ -100,7 +101,10 @@ def test_a_wrong_text_is_tried_again(programs, kernel):
 
 def test_a_link_error_has_at_least_its_file(kernel):
     wrapped = wrap(kernel(), FRAGMENT)
-    text = "GLSL Linker failed\n\nProgram\n=======\nerror: fragment shader varying x not written by vertex shader\n"
+    text = (
+        "GLSL Linker failed\n\nProgram\n=======\n"
+        "error: fragment shader varying x not written by vertex shader\n"
+    )
     error = explain(text, wrapped)
     assert error.diagnostics[0].file.endswith("k.glsl")
     assert "varying x" in error.diagnostics[0].message
@@ -115,7 +119,10 @@ def test_a_driver_that_gives_no_reason_is_told_so(kernel):
 def test_a_complaint_about_the_wrapper_s_own_lines_becomes_a_sentence(kernel):
     wrapped = wrap(kernel(), FRAGMENT)
     last = wrapped.stages["fragment"].text.count("\n")
-    log = f"GLSL Compiler failed\n\nfragment_shader\n===============\n0:{last}(3): error: no function with name 'kernel'\n"
+    log = (
+        f"GLSL Compiler failed\n\nfragment_shader\n===============\n"
+        f"0:{last}(3): error: no function with name 'kernel'\n"
+    )
     first = explain(log, wrapped).diagnostics[0]
     assert first.line == 8 or first.line == 7
     assert "the file needs float kernel(ivec2 texel)" in first.message

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from playground.errors import ContextError
 from playground.gpu.textures import (
     bytes_of,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from playground.errors import ShaderError
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap, wrap_library
 from playground.sketch.header import parse_kernel
@@ -80,7 +81,8 @@ def test_no_line_directive_and_no_quotes_are_left(kernel):
 def test_each_image_has_its_format_and_access(kernel):
     two = ONE.replace('"a:r16f"', '"a:r16f, b:rgba8"').replace(
         "float kernel(ivec2 texel) {\n    return previous(texel) + amount * time;",
-        "void kernel(ivec2 texel, out float a, out vec4 b) {\n    a = previous_a(texel) + amount * time; b = vec4(a);",
+        "void kernel(ivec2 texel, out float a, out vec4 b) {\n"
+        "    a = previous_a(texel) + amount * time; b = vec4(a);",
     )
     text = wrap(kernel(two), COMPUTE).stages["compute"].text
     assert "layout(r16f, binding = 0) uniform writeonly image2D k_image_a;" in text

@@ -41,6 +41,16 @@ name = "high"
 set = { "height.level" = 1.0 }
 """
 
+SKETCH_3D = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+[view]
+use = "view/terrain"
+samples = 4
+"""
+
 
 class Bench:
     """A sketch's folder and a session on it."""
@@ -180,14 +190,40 @@ def test_a_sketch_that_is_not_there_is_refused(tmp_path: Path, any_engine: Engin
 def test_nothing_is_drawn_while_nothing_changes(bench: Bench) -> None:
     bench.picture()
     draws = bench.session.draws
-    assert not bench.session.stale(SIZE)
     bench.session.clock.advance(1.0)
     bench.picture()
     assert bench.session.draws == draws, "nothing in it names time"
     bench.session.set("height.level", 0.5)
-    assert bench.session.stale(SIZE)
     bench.picture()
     assert bench.session.draws == draws + 1
+
+
+def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_rests(
+    tmp_path: Path, any_engine: Engine
+) -> None:
+    if not any_engine.info.software:
+        pytest.skip("on a GPU every picture is drawn in full")
+    now = [100.0]
+    (tmp_path / "land.toml").write_text(SKETCH_3D, encoding="utf-8")
+    session = Session(any_engine, tmp_path / "land.toml", now=lambda: now[0])
+    session.frame(SIZE)
+    assert session.hasty and session.draws == 1
+    session.frame(SIZE)
+    assert session.draws == 1, "it has not rested yet"
+    now[0] += 1.0
+    session.frame(SIZE)
+    assert not session.hasty and session.draws == 2
+    now[0] += 1.0
+    session.frame(SIZE)
+    assert session.draws == 2
+    session.set("height.smoothing", 0.5)
+    session.frame(SIZE)
+    assert session.hasty
+    saved = session.read()
+    assert saved is not None and session.sketch is not None
+    expected = any_engine.render(session.sketch, size=SIZE).array
+    np.testing.assert_array_equal(saved.array[..., :3], expected[..., :3], "what is saved is drawn in full")
+    session.release()
 
 
 def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:

@@ -1,4 +1,4 @@
-"""Where known points of the land land in the picture, by slow linear algebra that shares nothing with the camera."""
+"""Where known points of the land are in the picture, by slow trigonometry of its own."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+
 from playground.sketch.model import Camera
 from playground.terrain.camera import look, orbit, pan, zoom
 
@@ -100,9 +101,9 @@ def test_straight_down_keeps_north_where_the_azimuth_puts_it(elevation):
     camera = Camera(180.0, elevation)
     middle = np.array([6_000.0, 4_000.0, 750.0])
     assert np.isfinite(look(camera, EXTENT, RELIEF, WIDE).clip_from_world).all()
-    assert place(camera, middle + [1_000, 0, 0])[0] > 0.02
+    assert place(camera, middle + np.array([1_000, 0, 0]))[0] > 0.02
     sign = 1 if elevation > 0 else -1
-    assert sign * place(camera, middle + [0, 1_000, 0])[1] > 0.02
+    assert sign * place(camera, middle + np.array([0, 1_000, 0]))[1] > 0.02
 
 
 # ── moving it ────────────────────────────────────────────────────────────────
@@ -117,7 +118,7 @@ def test_orbit_turns_and_stops_short_of_overhead():
 
 @pytest.mark.parametrize("azimuth", [0.0, 60.0, 200.0])
 def test_pan_carries_what_was_to_the_right_to_the_middle(azimuth):
-    """After a pan by half the picture's width, what stood at its right edge, level with the target, stands in its middle."""
+    """After a pan by half the picture's width, what stood at its right edge stands in its middle."""
     camera = Camera(azimuth, 30.0, 20_000.0, (6_000.0, 4_000.0, 0.0))
     eye = look(camera, EXTENT, RELIEF, WIDE)
     a = math.radians(azimuth)

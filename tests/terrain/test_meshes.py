@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+
 from playground.errors import SketchError
 from playground.terrain.meshes import MESHES, Mesh, build_mesh, mesh_key, mesh_parameters
 
