@@ -84,6 +84,18 @@ def test_it_starts_from_an_earlier_draw_with_its_depth(any_engine, plates, sampl
     assert any_engine.ran == []
 
 
+def test_an_earlier_draw_hands_on_each_sample(any_engine, plates):
+    """Where the first covers half a pixel, what the second hides behind it shows in the other half only."""
+    sketch = plates(
+        ("one", "", {"right": 0.5 / 8, "depth": 0.0}, ""),
+        ("two", "", {"depth": 0.5, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
+        samples=4,
+    )
+    red, _, blue, alpha = any_engine.read(sketch, "two")[4, 8]
+    assert 0.0 < red < 1.0
+    assert (red + blue, alpha) == (1.0, 1.0)
+
+
 def test_without_a_depth_test_the_later_one_shows(any_engine, plates):
     sketch = plates(
         ("one", "", {"depth": 0.0}, ""),
@@ -183,6 +195,35 @@ def test_a_draw_leaves_the_context_as_it_was(ctx, any_engine, plates):
     program.release()
     mine.release()
     texture.release()
+
+
+def test_a_frame_leaves_no_sampler_behind(ctx, any_engine, folder):
+    """A sampler stays on its unit whatever texture comes after it: others would read theirs by it."""
+    folder.write("back.glsl", BACK)
+    folder.write(
+        "blur.glsl",
+        '#pragma kernel(output = "b:rgba32f")\nuniform sampler2D frame; //! input("linear", "repeat")\n'
+        "vec4 kernel(ivec2 texel) { return textureLod(frame, vec2(0.1), 0.0); }\n",
+    )
+    sketch = folder.sketch('[[pass]]\nname = "back"\nuse = "./back"\n[[pass]]\nname = "b"\nuse = "./blur"\n')
+    any_engine.texture(sketch, "b")
+    texture = ctx.texture((2, 1), 1, np.array([0.0, 1.0], "f4").tobytes(), dtype="f4")
+    texture.filter = (ctx.NEAREST, ctx.NEAREST)
+    target = ctx.texture((1, 1), 1, dtype="f4")
+    framebuffer = ctx.framebuffer([target])
+    _ = ctx.error
+    program = ctx.program(
+        vertex_shader="#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0, 1); }",
+        fragment_shader="#version 330\nuniform sampler2D t; out float o; void main() { o = texture(t, vec2(0.45, 0.5)).r; }",
+    )
+    array = ctx.vertex_array(program, [])
+    framebuffer.use()
+    texture.use(0)
+    array.render(ctx.TRIANGLES, vertices=3)
+    assert np.frombuffer(target.read(), "f4")[0] == 0.0, "its own way of reading, nearest"
+    ctx.detect_framebuffer(0).use()
+    for made in (array, program, framebuffer, target, texture):
+        made.release()
 
 
 @pytest.mark.parametrize(

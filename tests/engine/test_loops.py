@@ -190,6 +190,28 @@ def test_the_turn_is_known_inside(engine, folder):
     np.testing.assert_allclose(stopped, sum(range(3)) + 3 * 0.05, rtol=1e-5)
 
 
+def test_what_reads_the_turn_runs_in_every_turn_though_nothing_is_fed_to_it(engine, folder):
+    folder.write(
+        "turn.glsl",
+        '#pragma kernel(output = "now:r32f")\nfloat kernel(ivec2 texel) { return float(iteration * iteration); }\n',
+    )
+    folder.write(
+        "add.glsl",
+        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D now; //! input\n'
+        'uniform sampler2D sum_before; //! input("black")\nfloat kernel(ivec2 texel) {\n'
+        "    return texelFetch(sum_before, texel, 0).r + texelFetch(now, texel, 0).r;\n}\n",
+    )
+    folder.write(
+        "add_up.toml",
+        '[[pass]]\nname="now"\nuse="./turn"\n[[pass]]\nname="add"\nuse="./add"\n[inputs]\nsum_before = "add.sum_before"\n',
+    )
+    sketch = folder.sketch(
+        '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
+    )
+    assert engine.read(sketch, "a")[2, 2] == 0 + 1 + 4 + 9 + 16
+    assert engine.runs["a.now"] == 5
+
+
 def test_a_single_kernel_may_be_looped_as_well(engine, folder):
     folder.write(
         "twice.glsl",
@@ -302,6 +324,43 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
         v = v * 0.5 + x + y * 0.125 + turn
     np.testing.assert_allclose(engine.read(sketch, "o"), 4 * v, rtol=1e-6)
     assert engine.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
+
+
+def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, folder):
+    """Inside, ``a`` reads only what the inner loop feeds back; that comes from ``b``, which reads the outer loop."""
+    one = '#pragma kernel(output = "{out}:r32f")\nuniform sampler2D {of}; //! input("black")\n'
+    one += "float kernel(ivec2 texel) {{ return texelFetch({of}, texel, 0).r {more}; }}\n"
+    folder.write("a.glsl", one.format(out="a", of="back", more="+ 1.0"))
+    folder.write("c.glsl", one.format(out="c", of="seen", more="* 10.0"))
+    folder.write(
+        "b.glsl",
+        '#pragma kernel(output = "b:r32f")\nuniform sampler2D a; //! input\nuniform sampler2D far; //! input("black")\n'
+        "float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(far, texel, 0).r; }\n",
+    )
+    folder.write(
+        "inner.toml",
+        '[[pass]]\nname="a"\nuse="./a"\n[[pass]]\nname="b"\nuse="./b"\n'
+        '[inputs]\nback="a.back"\nfar="b.far"\n[outputs]\nb="b:b"\na="a:a"\n',
+    )
+    folder.write(
+        "outer.toml",
+        '[[pass]]\nname="i"\nuse="./inner"\nrepeat=2\nfeedback={ back = "b" }\n'
+        '[inputs]\nfar="i.far"\n[outputs]\nb="i:b"\na="i:a"\n',
+    )
+    sketch = folder.sketch(
+        '[[pass]]\nname="o"\nuse="./outer"\nrepeat="floor(time)"\nfeedback={ far = "b" }\n'
+        '[[pass]]\nname="c"\nuse="./c"\ninputs={ seen = "o:a" }\n'
+    )
+    for time in (1, 2, 4, 3):
+        far = a = 0.0
+        for _ in range(time):
+            b = 0.0
+            for _ in range(2):
+                a = b + 1.0
+                b = a + far
+            far = b
+        assert engine.read(sketch, "o:b", time=time)[1, 1] == far
+        assert engine.read(sketch, "c", time=time)[1, 1] == a * 10.0
 
 
 # ── what it costs ────────────────────────────────────────────────────────────

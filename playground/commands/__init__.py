@@ -1,0 +1,1 @@
+"""The commands, one a file: each reads its arguments, calls what does the work, and prints."""

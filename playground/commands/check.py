@@ -1,0 +1,74 @@
+"""Check shaders and sketches in the trial child."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
+from playground.terminal import count, painted, progress
+
+if TYPE_CHECKING:
+    from playground.engine.check import FileReport
+
+
+HELP = help_text(
+    "Check shaders and sketches.\n\n"
+    "Compiles every kernel by both drivers, loads every sketch, draws a small frame of each. A folder is"
+    " searched for .glsl, .comp, .frag and .toml. What hangs or crashes the driver is stopped and"
+    " reported. Where there are no compute shaders, they are skipped. Exit status 1 when anything fails.",
+    "playground check my-land",
+    "playground check land.glsl sketch.toml",
+    "playground check --json glsl | jq 'select(.ok | not)'",
+)
+
+
+def check(
+    ctx: typer.Context,
+    paths: Annotated[list[Path], typer.Argument(help="Files, and folders to search.", metavar="PATH...")],
+    as_json: Annotated[
+        bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
+    ] = False,
+    software: SoftwareOption = False,
+    device: DeviceOption = "",
+) -> None:
+    """Check shaders and sketches."""
+    from playground.engine.check import check_file, find_files
+    from playground.engine.trial import Trial
+
+    renderer: Renderer = ctx.obj.or_else(software, device)
+    files = find_files(paths)
+    failed, skipped = 0, False
+    with (
+        Trial(software=renderer.software, device=renderer.device) as trial,
+        progress("checking", len(files)) as advance,
+    ):
+        for path, root in files:
+            report = check_file(path, trial, root)
+            failed += not report.ok
+            skipped |= bool(report.skipped)
+            if as_json:
+                print(json.dumps(report.as_json(), ensure_ascii=False), flush=True)
+            else:
+                _print_report(report)
+            advance()
+    if not as_json:
+        print(f"{count(len(files), 'file')} checked, {failed or 'none'} failed{_why_skipped(skipped)}")
+    if failed:
+        raise typer.Exit(FAILED)
+
+
+def _why_skipped(skipped: bool) -> str:
+    return "; compute was skipped, because this context has no compute shaders" if skipped else ""
+
+
+def _print_report(report: FileReport) -> None:
+    mark = painted("ok", "32", sys.stdout) if report.ok else painted("FAILED", "1;31", sys.stdout)
+    skipped = f"  (skipped: {', '.join(report.skipped)})" if report.skipped else ""
+    print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
+    for diagnostic in report.errors:
+        print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")), flush=True)

@@ -1,0 +1,79 @@
+"""Say what this machine offers."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import typer
+
+from playground._version import __version__
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    JsonOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
+from playground.terminal import complain
+
+if TYPE_CHECKING:
+    from playground.gpu.doctor import Health
+
+
+HELP = help_text(
+    "Say what this machine offers, and what to do where something is missing.\n\n"
+    "The OpenGL context, its limits, the display, the packages. Exit status 1 when no context opens.",
+    "playground doctor",
+    "playground doctor --software",
+    "playground doctor --json",
+)
+
+
+def doctor(
+    ctx: typer.Context,
+    as_json: JsonOption = False,
+    software: SoftwareOption = False,
+    device: DeviceOption = "",
+) -> None:
+    """Say what this machine offers."""
+    from playground.gpu.doctor import examine
+
+    renderer: Renderer = ctx.obj.or_else(software, device)
+    health = examine(software=renderer.software, device=renderer.device)
+    if as_json:
+        print(json.dumps(health.as_json(), indent=2, ensure_ascii=False))
+    else:
+        findings = list(_findings(health))
+        width = max(len(label) for label, _ in findings) + 2
+        for label, text in findings:
+            print(f"{label:<{width}}{text}")
+        if health.trouble:
+            sys.stdout.flush()
+            complain(health.trouble)
+    if not health.ok:
+        raise typer.Exit(FAILED)
+
+
+def _findings(health: Health) -> Iterator[tuple[str, str]]:
+    if health.context is None:
+        yield "context", "none"
+    else:
+        info = health.context
+        yield "context", f"OpenGL {info.version_code // 100}.{info.version_code % 100 // 10}"
+        yield "renderer", info.renderer
+        yield "vendor", info.vendor
+        yield "driver", info.version
+        yield "compute shaders", "yes" if info.compute else "no: they need OpenGL 4.3; everything else works"
+        yield "software renderer", "yes: the processor draws" if info.software else "no"
+        for name, value in health.limits.items():
+            yield f"most {name}", str(value)
+    yield "display", health.display or "none: live needs one, render does not"
+    yield "system", health.system
+    yield "Python", health.python
+    yield "playground", __version__
+    for name, version in health.packages.items():
+        yield name, version or "missing"

@@ -1,0 +1,72 @@
+"""Open a sketch in a window."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+
+import typer
+
+from playground.commands.arguments import (
+    DEFAULT_SIZE,
+    DriverOption,
+    Renderer,
+    SetOption,
+    SizeOption,
+    SketchArgument,
+    SoftwareOption,
+    help_text,
+    read_driver,
+    read_pixels,
+    read_values,
+    with_whole_paths,
+)
+from playground.errors import ContextError, PlaygroundError
+
+HELP = help_text(
+    "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters.",
+    "playground live",
+    "playground live jacksboro --size 1600x900",
+    "playground live my-land --set height.seed=3",
+    "playground live shader.frag",
+)
+
+
+def live(
+    ctx: typer.Context,
+    sketch: SketchArgument = "",
+    size: SizeOption = None,
+    settings: SetOption = None,
+    driver: DriverOption = "auto",
+    software: SoftwareOption = False,
+) -> None:
+    """Open a sketch in a window."""
+    from playground.gpu.doctor import where_to_show
+
+    renderer: Renderer = ctx.obj.or_else(software)
+    pixels = read_pixels(size) or DEFAULT_SIZE
+    values = read_values(settings)
+    if renderer.device is not None:
+        raise ContextError("--device is for pictures without a window; a window opens where its display is")
+    if not where_to_show(os.environ, sys.platform):
+        from playground.gpu.mend import mend
+
+        raise ContextError(mend("unable to open display", sys.platform, os.environ))
+    open_window(sketch, pixels, renderer, read_driver(driver), values)
+
+
+def open_window(
+    sketch: str, size: tuple[int, int], renderer: Renderer, driver: str, values: dict[str, object]
+) -> None:
+    """Open a window and stay until it is closed."""
+    from playground.live.app import run
+
+    if values:
+        from playground.sketch.load import load
+
+        with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
+            values = with_whole_paths(load(sketch), values)
+    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values)
+    if status:
+        raise typer.Exit(status)

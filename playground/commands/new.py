@@ -1,0 +1,39 @@
+"""Make a fresh sketch folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from playground.commands.arguments import help_text, quoted
+from playground.terminal import note
+
+HELP = help_text(
+    "Make a folder with a sketch and a kernel of your own.\n\nIt never overwrites anything.",
+    "playground new my-land",
+    "playground live my-land",
+)
+
+
+def new(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="The folder to make; letters, digits, - and _.", metavar="NAME", show_default=False
+        ),
+    ],
+) -> None:
+    """Make a fresh sketch folder."""
+    from playground.templates import make_sketch
+
+    folder = make_sketch(Path(name).expanduser())
+    for path in sorted(folder.iterdir()):
+        print(path)
+    shell = quoted(str(folder))
+    note(
+        f"next: playground live {shell}     opens it; edit {folder / 'my_land.glsl'}, save, and look\n"
+        f"      playground render {shell}   makes a PNG\n"
+        f"      playground check {shell}    says what is wrong with it, if anything"
+    )

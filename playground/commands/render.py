@@ -1,0 +1,237 @@
+"""Render a sketch to a file."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands.arguments import (
+    DEFAULT_SIZE,
+    DeviceOption,
+    DriverOption,
+    Renderer,
+    SetOption,
+    SizeOption,
+    SketchArgument,
+    SoftwareOption,
+    help_text,
+    read_driver,
+    read_pixels,
+    read_seconds,
+    read_values,
+    with_whole_paths,
+)
+from playground.errors import DataError, ParameterError
+from playground.terminal import busy, console_for, note
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+    from playground.sketch.model import Sketch
+
+
+HELP = help_text(
+    "Render a sketch to a PNG and print its path.\n\n"
+    "With --texture, write the values of one pass instead: .npy (float32, south row first), .png (16"
+    " bits, 0 to 1) or .tif (float32).",
+    "playground render",
+    "playground render jacksboro -o land.png --size 1920x1080",
+    "playground render jacksboro --set light.sun=250,12",
+    "playground render jacksboro --shot morning -o morning.png",
+    "playground render jacksboro --texture height -o height.npy",
+    "playground render my-land/my_land.glsl --profile",
+    "playground render shader.frag --time 2.5 -o - > frame.png",
+)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What ``render`` was asked for."""
+
+    sketch: str = ""
+    output: str = ""
+    size: tuple[int, int] | None = None
+    time: float | None = None
+    values: dict[str, object] | None = None
+    driver: str = "auto"
+    shot: str = ""
+    preset: str = ""
+    texture: str = ""
+    profile: bool = False
+
+
+def render(
+    ctx: typer.Context,
+    sketch: SketchArgument = "",
+    output: Annotated[
+        str,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The file to write, or - for standard output. Without it, a new name in this folder.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = "",
+    size: SizeOption = None,
+    time: Annotated[
+        str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)
+    ] = "",
+    settings: SetOption = None,
+    driver: DriverOption = "auto",
+    shot: Annotated[
+        str, typer.Option("--shot", help="Render a shot of the sketch.", metavar="NAME", show_default=False)
+    ] = "",
+    preset: Annotated[
+        str, typer.Option("--preset", help="Begin with a preset.", metavar="NAME", show_default=False)
+    ] = "",
+    texture: Annotated[
+        str,
+        typer.Option(
+            "--texture",
+            help="Write this pass's own values, not the picture.",
+            metavar="PASS",
+            show_default=False,
+        ),
+    ] = "",
+    profile: Annotated[
+        bool, typer.Option("--profile", metavar="", help="Print the milliseconds of each pass.")
+    ] = False,
+    software: SoftwareOption = False,
+    device: DeviceOption = "",
+) -> None:
+    """Render a sketch to a file and print its path."""
+    picture = Picture(
+        sketch,
+        output,
+        read_pixels(size),
+        read_seconds(time),
+        read_values(settings),
+        read_driver(driver),
+        shot,
+        preset,
+        texture,
+        profile,
+    )
+    make_picture(picture, ctx.obj.or_else(software, device))
+
+
+def make_picture(picture: Picture, renderer: Renderer) -> None:
+    """Render what was asked for to its file, and print the file's path."""
+    from playground.sketch.load import load
+
+    sketch = load(picture.sketch)
+    size, time, steps = DEFAULT_SIZE, 0.0, {}
+    if picture.shot:
+        shot = sketch.shot(picture.shot)
+        sketch = sketch.for_shot(shot)
+        size, time, steps = shot.size, shot.time, dict(shot.steps)
+    if picture.preset:
+        sketch = sketch.with_preset(picture.preset)
+    if picture.values:
+        sketch = sketch.with_values(with_whole_paths(sketch, picture.values))
+    size = picture.size or size
+    time = time if picture.time is None else picture.time
+    target = _target(picture, sketch)
+
+    from playground.api import headless
+
+    with (
+        busy(f"rendering {sketch.name}"),
+        headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
+    ):
+        if picture.profile:
+            _prepare_profile(engine, sketch, picture.texture, size, time, steps)
+        if picture.texture:
+            from playground.images.files import write_values
+
+            values = engine.read(sketch, picture.texture, size=size, time=time, steps=steps)
+            clamped = write_values(target, values)
+            if clamped:
+                note(clamped)
+        else:
+            frame = engine.render(sketch, size=size, time=time, steps=steps)
+            if picture.output == "-":
+                from playground.images.files import encode_png
+
+                sys.stdout.buffer.write(encode_png(frame.array))
+            else:
+                frame.save(target)
+        if picture.profile:
+            _print_profile(engine)
+    if picture.output != "-":
+        print(target)
+
+
+def _target(picture: Picture, sketch: Sketch) -> Path:
+    """Return the file to write; refuse what could not be written before anything is drawn."""
+    endings = (".npy", ".png", ".tif", ".tiff") if picture.texture else (".png",)
+    if picture.output == "-":
+        if picture.texture:
+            raise ParameterError("--texture needs a file: -o NAME.npy, NAME.png or NAME.tif")
+        if sys.stdout.isatty():
+            raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
+        return Path("-")
+    if not picture.output:
+        parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]
+        return _unused(Path("-".join(filter(None, parts)) + endings[0]))
+    path = Path(picture.output).expanduser()
+    if path.is_dir():
+        raise DataError("is a folder; expected the name of a file to write", file=picture.output)
+    if path.suffix.lower() not in endings:
+        what = "values are" if picture.texture else "a picture is"
+        raise DataError(f"{what} written to a name ending in {' or '.join(endings)}", file=picture.output)
+    if not path.parent.is_dir():
+        raise DataError(f"there is no folder '{path.parent}' to write into", file=picture.output)
+    return path
+
+
+def _unused(path: Path) -> Path:
+    """Return a name that no file has yet: land.png, else land-2.png, else land-3.png and so on."""
+    candidate, number = path, 1
+    while candidate.exists():
+        number += 1
+        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
+    return candidate
+
+
+def _prepare_profile(
+    engine: Engine, sketch: Sketch, texture: str, size: tuple[int, int], time: float, steps: dict[str, int]
+) -> None:
+    """Draw once unmeasured, so that the measured frame compiles nothing, then forget every texture."""
+    if texture:
+        engine.texture(sketch, texture, size=size, time=time, steps=steps)
+    else:
+        engine.draw(sketch, size=size, time=time, steps=steps)
+    engine.ctx.finish()
+    engine.cache.clear()
+    engine.runs.clear()
+    engine.profiling = True
+
+
+def _print_profile(engine: Engine) -> None:
+    from rich.table import Table
+
+    plan = engine.plan
+    table = Table(title="one frame, every pass run anew, nothing compiled", title_justify="left")
+    table.add_column("pass", overflow="fold")
+    for heading in ("texels", "turns", "ms"):
+        table.add_column(heading, justify="right")
+    for path, milliseconds in engine.times.items():
+        step = plan.step(path) if plan is not None else None
+        if step is not None:
+            turns = engine.runs[path] * step.repeat
+            table.add_row(path, f"{step.size[0]} x {step.size[1]}", str(turns), f"{milliseconds:.2f}")
+    table.add_section()
+    table.add_row("together", "", "", f"{sum(engine.times.values()):.2f}")
+    console = console_for(sys.stderr)
+    console.print(table)
+    compiled = sum(engine.runner.compile_times.values())
+    console.print(
+        f"clock: {engine.clock}; compiling took {compiled:.0f} ms before that ({engine.info.renderer})",
+        highlight=False,
+        soft_wrap=True,
+    )
