@@ -29,9 +29,10 @@ def render(
     time: float = 0.0,
     values: Mapping[str, object] | None = None,
 ) -> Frame:
-    """Render one picture with a context of its own: ``size`` in pixels, ``time`` in seconds, ``values`` by path.
+    """Render one picture with a context of its own.
 
-    For more than one picture, keep an engine from ``headless()``.
+    ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path. For more than
+    one picture, keep an engine from ``headless()``.
     """
     found = sketch if isinstance(sketch, Sketch) else load(sketch)
     with headless() as engine:

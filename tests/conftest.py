@@ -8,6 +8,7 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
+
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
 

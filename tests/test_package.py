@@ -10,6 +10,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+
 from playground.images.files import read_png
 
 ROOT = Path(__file__).resolve().parent.parent

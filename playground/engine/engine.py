@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -280,7 +280,8 @@ class Engine:
 
         It stays so, since glcontext's way back leaves no context at all.
         """
-        self.ctx.__enter__()
+        context: Any = self.ctx
+        context.__enter__()
 
     def _timer_of(self) -> Timer:
         if self._timer is None:

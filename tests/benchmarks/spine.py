@@ -18,13 +18,14 @@ import threading
 import time
 from pathlib import Path
 
+from rich.console import Console
+from rich.table import Table
+
 import playground
 from playground.engine.trial import Trial
 from playground.live.session import Session
 from playground.live.watch import Watcher
 from playground.paths import GLSL
-from rich.console import Console
-from rich.table import Table
 
 SIZE = (1280, 720)
 KERNEL = "height_blend_mix.glsl"

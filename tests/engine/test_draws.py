@@ -213,8 +213,10 @@ def test_a_frame_leaves_no_sampler_behind(ctx, any_engine, folder):
     framebuffer = ctx.framebuffer([target])
     _ = ctx.error
     program = ctx.program(
-        vertex_shader="#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0, 1); }",
-        fragment_shader="#version 330\nuniform sampler2D t; out float o; void main() { o = texture(t, vec2(0.45, 0.5)).r; }",
+        vertex_shader="#version 330\n"
+        "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0, 1); }",
+        fragment_shader="#version 330\n"
+        "uniform sampler2D t; out float o; void main() { o = texture(t, vec2(0.45, 0.5)).r; }",
     )
     array = ctx.vertex_array(program, [])
     framebuffer.use()

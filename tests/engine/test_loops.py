@@ -193,7 +193,8 @@ def test_the_turn_is_known_inside(engine, folder):
 def test_what_reads_the_turn_runs_in_every_turn_though_nothing_is_fed_to_it(engine, folder):
     folder.write(
         "turn.glsl",
-        '#pragma kernel(output = "now:r32f")\nfloat kernel(ivec2 texel) { return float(iteration * iteration); }\n',
+        '#pragma kernel(output = "now:r32f")\n'
+        "float kernel(ivec2 texel) { return float(iteration * iteration); }\n",
     )
     folder.write(
         "add.glsl",
@@ -203,7 +204,8 @@ def test_what_reads_the_turn_runs_in_every_turn_though_nothing_is_fed_to_it(engi
     )
     folder.write(
         "add_up.toml",
-        '[[pass]]\nname="now"\nuse="./turn"\n[[pass]]\nname="add"\nuse="./add"\n[inputs]\nsum_before = "add.sum_before"\n',
+        '[[pass]]\nname="now"\nuse="./turn"\n[[pass]]\nname="add"\n'
+        'use="./add"\n[inputs]\nsum_before = "add.sum_before"\n',
     )
     sketch = folder.sketch(
         '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
@@ -327,14 +329,16 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
 
 
 def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, folder):
-    """Inside, ``a`` reads only what the inner loop feeds back; that comes from ``b``, which reads the outer loop."""
+    """Inside, ``a`` reads only what the inner loop feeds back;
+    that comes from ``b``, which reads the outer loop."""
     one = '#pragma kernel(output = "{out}:r32f")\nuniform sampler2D {of}; //! input("black")\n'
     one += "float kernel(ivec2 texel) {{ return texelFetch({of}, texel, 0).r {more}; }}\n"
     folder.write("a.glsl", one.format(out="a", of="back", more="+ 1.0"))
     folder.write("c.glsl", one.format(out="c", of="seen", more="* 10.0"))
     folder.write(
         "b.glsl",
-        '#pragma kernel(output = "b:r32f")\nuniform sampler2D a; //! input\nuniform sampler2D far; //! input("black")\n'
+        '#pragma kernel(output = "b:r32f")\nuniform sampler2D a; //! input\n'
+        'uniform sampler2D far; //! input("black")\n'
         "float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(far, texel, 0).r; }\n",
     )
     folder.write(
