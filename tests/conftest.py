@@ -34,8 +34,10 @@ def shared_context() -> Iterator[moderngl.Context]:
 @pytest.fixture
 def ctx(shared_context: moderngl.Context) -> Iterator[moderngl.Context]:
     """Give the context, and see that the test leaves no OpenGL error behind."""
+    shared_context.__enter__()  # a test before may have opened another, which then was the current one
     assert shared_context.error == "GL_NO_ERROR"
     yield shared_context
+    shared_context.__enter__()
     assert shared_context.error == "GL_NO_ERROR"
 
 

@@ -108,10 +108,11 @@ class Engine:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        wanted: str = "",
     ) -> Plan:
-        """Make a sketch concrete for this engine's context and driver."""
+        """Make a sketch concrete for this engine's context and driver; see ``make_plan``."""
         compute = self.info.compute and self.driver != FRAGMENT
-        return make_plan(sketch, frame_size=size, time=time, compute=compute, steps=steps)
+        return make_plan(sketch, frame_size=size, time=time, compute=compute, steps=steps, wanted=wanted)
 
     def render(
         self,
@@ -155,7 +156,7 @@ class Engine:
 
         Runs only what it needs.
         """
-        plan = self.plan_for(sketch, size, time, steps)
+        plan = self.plan_for(sketch, size, time, steps, ref)
         return self._texture(plan, plan.flat.ref(ref, sketch.name))
 
     def read(

@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from playground.engine.files import find_file
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch import expressions
+from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Flat, Leaf, Loop, Node, Ref, Source, flatten, leaves_of
-from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.sketch.flatten import Fed, Flat, Leaf, Loop, Node, Ref, Source, flatten, leaves_of
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
 
@@ -108,8 +110,8 @@ def sources_of(node: PlanNode) -> list[Source]:
     if isinstance(node, Step):
         return [source for _, source in node.inputs if source is not None]
     found = [first for _, first, _ in node.feedback if first is not None]
-    for inner in node.body:
-        found += sources_of(inner)
+    for inside in node.body:
+        found += sources_of(inside)
     return found
 
 
@@ -120,19 +122,19 @@ def make_plan(
     time: float = 0.0,
     compute: bool = False,
     steps: Mapping[str, int] | None = None,
+    wanted: str = "",
 ) -> Plan:
     """Make a sketch concrete for one frame.
 
-    ``compute`` lets companions stand for whole techniques; ``steps`` stops repeated
-    passes early, by path. Raises ``SketchError`` or ``DataError`` at the pass that is wrong.
+    ``compute`` lets companions stand for whole techniques, but not for those around the
+    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path. Raises
+    ``SketchError`` or ``DataError`` at the pass that is wrong.
     """
     if not (1 <= frame_size[0] <= 16384 and 1 <= frame_size[1] <= 16384):
         raise SketchError(
             f"a picture of {frame_size[0]} x {frame_size[1]} pixels; 1 to 16384 a side were expected"
         )
-    flat = flatten(sketch, compute=compute)
-    if compute and steps and not all(path in flat.specs for path in steps):
-        flat = flatten(sketch, compute=False)  # what is stopped early is inside what a companion stands for
+    flat = flatten(sketch, compute=compute, opened=(*(steps or ()), *filter(None, [wanted])))
     return _Planner(sketch, flat, frame_size, time, dict(steps or {})).plan()
 
 
@@ -254,7 +256,16 @@ class _Planner:
         return values
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        return self.size_of(leaf.path)
+        """Return a leaf's size; a companion's is that of the pass whose output it gives."""
+        path = leaf.path
+        technique: Technique = self.flat.graphs.get(path, leaf.kernel)
+        while isinstance(technique, Graph):
+            where = target_of(technique, output_names(technique)[0]).partition(":")[0]
+            path, found = f"{path}.{where}", inner(technique, where)
+            if found is None:
+                break
+            technique = found
+        return self.size_of(path)
 
     def size_of(self, path: str) -> tuple[int, int]:
         """Return the size in texels of a pass at any level."""
@@ -301,8 +312,6 @@ class Names:
 
     def __call__(self, name: str) -> Number:
         """Return the number of a name, or raise ``KeyError``."""
-        from playground.sketch.assign import resolve
-
         planner = self.planner
         if name == "time":
             return planner.time
@@ -312,8 +321,7 @@ class Names:
             path = f"{self.prefix}.{self.spec.name}" if self.prefix else self.spec.name
             return planner._base(path, self.prefix)[axes[axis]]
         if axis in axes and head.endswith(".size"):
-            path = head.removesuffix(".size")
-            return planner.size_of(f"{self.prefix}.{path}" if self.prefix else path)[axes[axis]]
+            return planner.size_of(self._path_of(head.removesuffix(".size")))[axes[axis]]
         graph = planner.flat.graphs[self.prefix]
         try:
             target = resolve(graph, name)[0].path
@@ -323,3 +331,17 @@ class Names:
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
+
+    def _path_of(self, name: str) -> str:
+        """Return the path of the pass, or of what feeds the technique's input, that a name stands for."""
+        flat = self.planner.flat
+        path = f"{self.prefix}.{name}" if self.prefix else name
+        if path in flat.specs:
+            return path
+        source = flat.wires[self.prefix][name]
+        if isinstance(source, Fed):
+            output = dict(flat.specs[source.loop].feedback)[source.name]
+            source = flat.outputs[source.loop][output]
+        if source is None:
+            raise KeyError(name)
+        return source.path

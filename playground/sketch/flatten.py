@@ -109,6 +109,7 @@ class Flat:
     graphs: dict[str, Graph]  # every technique of several passes, by path; "" is the sketch
     values: dict[str, Value]  # every leaf parameter, by path
     outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
+    wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
 
     def ref(self, text: str, sketch: str) -> Ref:
         """Return the texture that ``pass[.inner…][:output]`` stands for; raise ``SketchError``."""
@@ -131,6 +132,7 @@ class _Shape:
     specs: dict[str, PassSpec]
     graphs: dict[str, Graph]
     outputs: dict[str, dict[str, Ref]]
+    wires: dict[str, dict[str, Source | None]]
     paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
 
@@ -151,7 +153,7 @@ def flatten(sketch: Sketch, *, compute: bool, opened: tuple[str, ...] = ()) -> F
         for target in shape.targets[path]:
             values[target] = value
     nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
-    return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs)
+    return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs, shape.wires)
 
 
 def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
@@ -167,7 +169,7 @@ def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
 def _shape(key: Same[Graph], compute: bool, opened: tuple[str, ...]) -> _Shape:
     maker = _Flattener(key.object, compute, opened)
     nodes = tuple(maker.expand(key.object, "", {}))
-    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.paths)
+    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.wires, maker.paths)
 
 
 def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str) -> Node:
@@ -184,6 +186,7 @@ class _Flattener:
         self.specs: dict[str, PassSpec] = {}
         self.graphs: dict[str, Graph] = {}
         self.outputs: dict[str, dict[str, Ref]] = {}
+        self.wires: dict[str, dict[str, Source | None]] = {}
         self.paths: dict[str, tuple[tuple[str, str], ...]] = {}
         self.opened: set[str] = set()
         if compute:
@@ -219,6 +222,7 @@ class _Flattener:
     def expand(self, graph: Graph, prefix: str, wires: Mapping[str, Source | None]) -> list[Node]:
         """Return the nodes of a graph; ``wires`` maps inputs, as paths inside it, to what feeds them."""
         self.graphs[prefix] = graph
+        self.wires[prefix] = dict(wires)
         for spec in graph.passes:
             path = _join(prefix, spec.name)
             self.specs[path] = spec
@@ -283,7 +287,8 @@ class _Flattener:
             self.paths[path] = tuple((p.name, _join(path, p.name)) for p in kernel.parameters)
         elif companion:
             kernel = companion
-            self.graphs[path] = technique
+            self.wires[path] = dict(wires)
+            self._know(technique, path)
             self.paths[path] = tuple(
                 (p.name, _join(path, resolve(technique, p.name)[0].path)) for p in kernel.parameters
             )
@@ -291,6 +296,14 @@ class _Flattener:
             return self.expand(technique, path, wires)
         wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
         return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
+
+    def _know(self, graph: Graph, prefix: str) -> None:
+        """Know the passes that a companion stands for: their sizes are still asked for."""
+        self.graphs[prefix] = graph
+        for spec in graph.passes:
+            self.specs[_join(prefix, spec.name)] = spec
+            if isinstance(spec.technique, Graph):
+                self._know(spec.technique, _join(prefix, spec.name))
 
     def _ref(self, text: str, wanted: str, prefix: str, spec: PassSpec) -> Ref:
         where, _, output = text.partition(":")

@@ -135,8 +135,10 @@ def _is_number(graph: Graph, name: str) -> bool:
     if name in ("time", "size.x", "size.y"):
         return True
     head, _, axis = name.rpartition(".")
-    if axis in ("x", "y") and head.endswith(".size") and inner(graph, head.removesuffix(".size")) is not None:
-        return True
+    if axis in ("x", "y") and head.endswith(".size"):
+        sized = head.removesuffix(".size")
+        if inner(graph, sized) is not None or sized in input_names(graph):
+            return True
     try:
         return resolve(graph, name)[0].parameter.type in ("float", "int", "uint", "bool")
     except SketchError:
@@ -148,6 +150,8 @@ def _numbers(graph: Graph) -> Iterable[str]:
     yield from ("time", "size.x", "size.y")
     for spec in graph.passes:
         yield from (f"{spec.name}.size.x", f"{spec.name}.size.y")
+    for name in input_names(graph):
+        yield from (f"{name}.size.x", f"{name}.size.y")
     for export in graph.parameters:
         yield export.name
     for spec in graph.passes:

@@ -1,0 +1,105 @@
+"""Sizes as a sketch writes them: of passes, of what feeds an input, and of what a companion stands for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+
+LAND = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return float(texel.x + 100 * texel.y); }
+"""
+ROWS = """#pragma kernel(output = "rows:r32f")
+uniform sampler2D height; //! input
+float kernel(ivec2 texel) {
+    float total = 0.0;
+    for (int x = 0; x < textureSize(height, 0).x; x++) total += texelFetch(height, ivec2(x, texel.y), 0).r;
+    return total;
+}
+"""
+ALL = """#pragma kernel(output = "total:r32f")
+uniform sampler2D rows; //! input
+float kernel(ivec2 texel) {
+    float total = 0.0;
+    for (int y = 0; y < textureSize(rows, 0).y; y++) total += texelFetch(rows, ivec2(0, y), 0).r;
+    return total;
+}
+"""
+SUM = """[[pass]]
+name = "rows"
+use = "./rows"
+size = [1, "height.size.y"]
+[[pass]]
+name = "total"
+use = "./all"
+size = 1
+[inputs]
+height = "rows.height"
+"""
+COMPANION = """// The same sum at once.
+#pragma compute(groups = "1, 1", local = "1, 1")
+uniform sampler2D height; //! input
+void main() {
+    ivec2 whole = textureSize(height, 0);
+    float total = 0.0;
+    for (int y = 0; y < whole.y; y++) {
+        for (int x = 0; x < whole.x; x++) total += texelFetch(height, ivec2(x, y), 0).r;
+    }
+    imageStore(out_total, ivec2(0), vec4(total));
+}
+"""
+SKETCH = """format = 1
+size = [17, 9]
+[[pass]]
+name = "land"
+use = "./land"
+size = ["size.x // 2", "size.y + 3"]
+[[pass]]
+name = "sum"
+use = "./sum"
+inputs = { height = "land" }
+[view]
+use = "view/map"
+inputs = { shown = "sum" }
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in {"land.glsl": LAND, "rows.glsl": ROWS, "all.glsl": ALL, "sum.toml": SUM}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    return tmp_path
+
+
+def total(engine: Engine, folder: Path) -> float:
+    land = engine.read(load(folder), "land")
+    assert land.shape == (12, 8)
+    return float(land.astype(np.float64).sum())
+
+
+def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, folder: Path):
+    sketch = load(folder)
+    assert engine.read(sketch, "sum.rows").shape == (12, 1)
+    found = engine.read(sketch, "sum")
+    assert found.shape == (1, 1)
+    assert float(found[0, 0]) == total(engine, folder)
+
+
+def test_a_companion_has_the_size_of_the_pass_it_stands_for(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+    sketch = load(folder)
+    found = engine.read(sketch, "sum")
+    stood_in = engine.driver == "compute"
+    assert ("sum" in engine.runs) == stood_in
+    assert found.shape == (1, 1)
+    assert float(found[0, 0]) == total(engine, folder)
+
+
+def test_a_pass_that_a_companion_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+    assert engine.read(load(folder), "sum.rows").shape == (12, 1)
