@@ -12,6 +12,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.assign import LAND, Shown, shown_parameters, value_of, values_of
+from playground.sketch.find import is_part
 from playground.sketch.flatten import input_names, output_names
 from playground.sketch.load import load, read_technique, shipped_names, shipped_sketches
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
@@ -108,9 +109,14 @@ def sketches() -> list[Entry]:
 
 
 def techniques(within: str = "") -> list[Entry]:
-    """List the techniques in ``glsl/``, or in one of its folders; library files are none."""
+    """List the techniques in ``glsl/``, or in one of its folders; library files are none.
+
+    The parts of a technique are listed only where its own folder is asked for.
+    """
     found = []
     for name in shipped_names():
+        if is_part(name) and not (within and is_part(f"{within}/x")):
+            continue
         if within and not name.startswith(f"{within.rstrip('/')}/"):
             continue
         try:

@@ -13,9 +13,10 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.assign import resolve
-from playground.sketch.flatten import flatten, output_names, takes_input
+from playground.sketch.find import is_part
+from playground.sketch.flatten import flatten, output_names, outputs_with_formats, takes_input
 from playground.sketch.load import read_technique, shipped_names
-from playground.sketch.model import PassSpec, Sketch, Technique, Value
+from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.values import coerce
 
 _OWN_SUFFIXES = (".glsl", ".toml", ".frag")
@@ -30,7 +31,8 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     spec = _pass(sketch, pass_name)
     outputs = set(output_names(spec.technique))
     found = []
-    for use in dict.fromkeys([*shipped_names(), *_own_names(sketch), spec.use]):
+    whole = [name for name in shipped_names() if not is_part(name)]
+    for use in dict.fromkeys([*whole, *_own_names(sketch), spec.use]):
         if use == spec.use or _fits(sketch, spec, use, outputs):
             found.append(use)
     return found
@@ -75,10 +77,18 @@ def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:
         technique = _read(sketch, use)
         if set(output_names(technique)) != outputs:
             return False
+        if spec.name == "view" and _formats(technique) != _formats(spec.technique):
+            return False  # a picture of linear light is a step on the way to the one that is shown
         _refilled(sketch, spec, use, technique)
     except PlaygroundError:
         return False
     return True
+
+
+def _formats(technique: Technique) -> list[str]:
+    """Return the formats of a technique's outputs."""
+    found = technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
+    return [output.format for output in found]
 
 
 def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) -> Sketch:

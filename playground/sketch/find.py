@@ -46,3 +46,8 @@ def shipped_names() -> list[str]:
     """List every name that ``use`` may take in ``glsl/``, library files too, without reading the files."""
     found = [p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".toml") and not p.is_relative_to(SKETCHES)]
     return sorted({p.relative_to(GLSL).with_suffix("").as_posix() for p in found})
+
+
+def is_part(name: str) -> bool:
+    """Say whether a name in ``glsl/`` is a part of a technique: it lies in a folder named after one."""
+    return any(is_file(GLSL / folder.with_suffix(".toml")) for folder in Path(name).parents if folder.name)

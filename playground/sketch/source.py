@@ -85,6 +85,26 @@ class SourceText:
         return frozenset(re.findall(r"[A-Za-z_]\w*", self.code))
 
 
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """What a flattened text was made of: reading it again gives the same as long as this holds."""
+
+    texts: tuple[tuple[str, str], ...]  # of each file read, by absolute path
+    places: tuple[tuple[Path, Path | None], ...]  # where includes were looked for, and the file found there
+
+    def holds(self) -> bool:
+        """Say whether every file still has the same text, and every place still leads where it led.
+
+        Texts are compared, not times: two saves may fall into one tick of a file system's clock.
+        """
+        try:
+            return all(_file_at(place) == found for place, found in self.places) and all(
+                read_text(Path(path)) == text for path, text in self.texts
+            )
+        except SketchError:
+            return False
+
+
 def read_source(path: Path, roots: Sequence[Path]) -> SourceText:
     """Read a GLSL file and everything it includes.
 
@@ -95,11 +115,17 @@ def read_source(path: Path, roots: Sequence[Path]) -> SourceText:
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
+    return read_source_and_origin(path, roots)[0]
+
+
+def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceText, Origin]:
+    """Read a GLSL file as ``read_source`` does; say as well what it was made of."""
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
     reader = _Reader(own, GLSL.resolve())
     reader.flatten(path, read_text(path), (), (str(path),))
-    return SourceText(str(path), tuple(reader.lines), tuple(reader.texts))
+    source = SourceText(str(path), tuple(reader.lines), tuple(reader.texts))
+    return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()))
 
 
 def read_text(path: Path) -> str:
@@ -127,6 +153,7 @@ class _Reader:
         self.library = library
         self.lines: list[Line] = []
         self.texts: dict[str, str] = {}  # of each file read, outermost first
+        self.looked_at: dict[Path, Path | None] = {}  # where includes may be, and what file is there
         self.includes = 0
 
     def flatten(self, path: Path, text: str, chain: tuple[str, ...], stack: tuple[str, ...]) -> None:
@@ -181,12 +208,19 @@ class _Reader:
         from_library = includer.is_relative_to(self.library) and not in_own
         allowed = (self.library,) if from_library else tuple(dict.fromkeys([*self.own, self.library]))
         for folder in (includer.parent, *allowed):
-            candidate = real(folder / name)
-            if candidate is not None and is_file(candidate):
+            place = folder / name
+            candidate = self.looked_at[place] = _file_at(place)
+            if candidate is not None:
                 if not is_inside(candidate, allowed):
                     raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/")
                 return candidate
         raise line.error(f"no file '{name}' to include{nearest(name, names_below(allowed, ('.glsl',)))}")
+
+
+def _file_at(place: Path) -> Path | None:
+    """Return the file that a path leads to, its links followed; None if there is none."""
+    found = real(place)
+    return found if found is not None and is_file(found) else None
 
 
 def _joined(lines: list[str], index: int) -> tuple[str, int]:

@@ -8,10 +8,9 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.find import shipped_names
-from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Output, Technique
+from playground.sketch.parsed import parsed_kernel
 from playground.sketch.places import is_file, is_inside, leads_outside, names_below
-from playground.sketch.source import read_source
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.wiring import outputs_with_formats
@@ -27,7 +26,7 @@ def read_kernel(path: Path, folder: Path) -> Kernel | None:
     """
     path = path.resolve()
     name = path.relative_to(GLSL).with_suffix("").as_posix() if path.is_relative_to(GLSL) else path.stem
-    kernel = parse_kernel(name, read_source(path, (folder,)))
+    kernel = parsed_kernel(name, path, (folder,))
     if kernel is None:
         return None
     _check_files(kernel, folder)
@@ -151,7 +150,7 @@ def _known_names(own: bool, folder: Path) -> list[str]:
 def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple[Output, ...]) -> Kernel:
     if not is_inside(path, (folder, GLSL)):
         raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
-    companion = parse_kernel(path.stem, read_source(path, (folder,)))
+    companion = parsed_kernel(path.stem, path, (folder,))
     if companion is None or companion.kind != "compute":
         raise SketchError(
             'a .comp beside a kernel begins with #pragma compute(groups = "…")', file=shown(path)

@@ -212,7 +212,7 @@ use = "view/terrain"
 
 
 def memory(side: int) -> float:
-    """Return the greatest resident memory, in GiB, of a process that renders the default sketch at ``side`` texels."""
+    """Return the most memory, in GiB, that a process takes to render the default sketch at ``side`` texels."""
     code = (
         "import resource, playground\n"
         f"frame = playground.render(size={SIZE}, values={{'size': {side}}})\n"

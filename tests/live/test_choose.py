@@ -117,3 +117,14 @@ def test_a_technique_that_cannot_be_wired_is_refused_by_name(folder: Path) -> No
         choices(load(folder), "hieght")
     with pytest.raises(SketchError, match="there is no technique"):
         with_technique(load(folder), "height", "./flatt")
+
+
+def test_the_parts_of_a_technique_are_not_offered() -> None:
+    sketch = load("jacksboro")
+    offered = choices(sketch, "height")
+    assert "generation/diamond_square" in offered
+    assert not [name for name in offered if name.startswith("generation/diamond_square/")]
+
+
+def test_a_view_is_not_replaced_by_linear_light() -> None:
+    assert choices(load("jacksboro"), "view") == ["view/terrain"]

@@ -1,11 +1,11 @@
-// terrain/range_blocks.comp -- the lowest and the highest height in each block of a land, sixty-four readers a block.
+// terrain/range/blocks.comp -- the lowest and the highest height in each block of a land, sixty-four readers a block.
 //
 //   gives    range: lowest in red, highest in green; a block of the land for each texel
 //   needs    terrain/extremes.glsl, maths/whole.glsl
 //   units    as the heights
 //   source   a tree reduction in shared memory, as in M. Harris 2007, "Optimizing Parallel
 //            Reduction in CUDA"
-//   tested   tests/glsl/test_drivers.py, against range_blocks.glsl
+//   tested   tests/glsl/test_drivers.py, against terrain/range/blocks.glsl
 //   agrees   to the last bit: the lowest of numbers is the same in any order
 //
 // The kernel beside it has one thread walk a whole block. Here a work group shares the block:

@@ -1,4 +1,4 @@
-// generation/layered_noise_sum.glsl -- a sum of random layers, each finer and weaker than the one before.
+// generation/layered_noise/sum.glsl -- a sum of random layers, each finer and weaker than the one before.
 //
 //   gives    height, for any land; not normalised
 //   needs    noise/hash.glsl, maths/whole.glsl

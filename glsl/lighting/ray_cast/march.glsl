@@ -1,4 +1,4 @@
-// lighting/ray_cast_march.glsl -- light where a walk towards the sun meets no land, none elsewhere.
+// lighting/ray_cast/march.glsl -- light where a walk towards the sun meets no land, none elsewhere.
 //
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 or 1
 //   needs    lighting/sun.glsl, terrain/heightfield.glsl; the range of the heights as an input

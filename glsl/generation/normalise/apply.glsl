@@ -1,4 +1,4 @@
-// generation/normalise_apply.glsl -- heights moved and stretched by a range that is known.
+// generation/normalise/apply.glsl -- heights moved and stretched by a range that is known.
 //
 //   gives    height: as it is, highest at 1, or lowest at 0 and highest at 1
 //   needs    nothing

@@ -1,4 +1,4 @@
-// terrain/range_whole.glsl -- one range that holds all of a texture's ranges.
+// terrain/range/whole.glsl -- one range that holds all of a texture's ranges.
 //
 //   gives    range: lowest in red, highest in green; 1 texel is enough
 //   needs    terrain/extremes.glsl

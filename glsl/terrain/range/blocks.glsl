@@ -1,4 +1,4 @@
-// terrain/range_blocks.glsl -- the lowest and the highest height in each block of a land.
+// terrain/range/blocks.glsl -- the lowest and the highest height in each block of a land.
 //
 //   gives    range: lowest in red, highest in green; a block of the land for each texel
 //   needs    terrain/extremes.glsl, maths/whole.glsl

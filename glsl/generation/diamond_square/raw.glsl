@@ -1,4 +1,4 @@
-// generation/diamond_square_raw.glsl -- land by halving a square: its centres, then its edges, over and over.
+// generation/diamond_square/raw.glsl -- land by halving a square: its centres, then its edges, over and over.
 //
 //   gives    height, for any land of 2^n + 1 texels a side
 //   needs    noise/hash.glsl

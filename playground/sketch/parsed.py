@@ -1,0 +1,33 @@
+"""Keep parsed kernels for as long as the files that they were made of stay the same.
+
+A live session reads its sketch anew at every save, and most of its kernels have not
+changed; parsing them all again would take longer than drawing. A kernel that is kept is
+also the same object, which whoever works something out from its text can go by.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from pathlib import Path
+
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Kernel
+from playground.sketch.source import Origin, read_source_and_origin
+
+_MOST = 256
+
+_kept: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
+
+
+def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
+    """Return what ``parse_kernel`` makes of ``read_source(path, roots)``, parsed again only if that changed."""
+    key = (name, path, tuple(roots))
+    known = _kept.get(key)
+    if known is None or not known[1].holds():
+        source, origin = read_source_and_origin(path, roots)
+        known = _kept[key] = (parse_kernel(name, source), origin)
+        while len(_kept) > _MOST:
+            _kept.popitem(last=False)
+    _kept.move_to_end(key)
+    return known[0]
