@@ -33,6 +33,7 @@ class Draws:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
+        self.finest: int | None = None  # no mesh is finer than this, whatever its draw asks for
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
 
@@ -50,7 +51,7 @@ class Draws:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
         output = kernel.outputs[0]
-        program = self.kernels.programs.get(kernel, "draw")
+        program = self.kernels.program(step, "draw")
         array = self._array(program, step)
         surface = self._surface(step.size, output.format, job.samples)
         self._start_from(job, surface)
@@ -120,6 +121,8 @@ class Draws:
             key = (step.kernel.registry, mesh_key(step.kernel.registry, step.values))
         except SketchError as error:
             raise step.spec.error(str(error)) from None
+        if self.finest is not None:
+            key = key[0], tuple((name, min(value, self.finest)) for name, value in key[1])
         if key not in self._meshes:
             self._meshes[key] = _Loaded(self.ctx, key)
             while len(self._meshes) > _MAX_MESHES:

@@ -80,7 +80,7 @@ class Kernels:
     def run(self, job: Job, driver: str) -> Result:
         """Run a kernel by a driver; the result is the caller's."""
         step = job.step
-        program = self.programs.get(step.kernel, driver)
+        program = self.program(step, driver)
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
@@ -88,6 +88,17 @@ class Kernels:
         if driver == COMPUTE and step.kernel.visits:
             return self._in_place(job, program, state)
         return self._by_turns(job, program, driver, state, unit)
+
+    def program(self, step: Step, driver: str) -> Program:
+        """Return the program of a step; where the processor draws, one for each choice of menus."""
+        if not self.software:
+            return self.programs.get(step.kernel, driver)
+        choices = (
+            (p.name, step.values[p.name])
+            for p in step.kernel.parameters
+            if p.type == "bool" or p.widget.kind == "menu"
+        )
+        return self.programs.get(step.kernel, driver, tuple((n, int(v)) for n, v in choices))  # type: ignore[arg-type]
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
@@ -108,7 +119,7 @@ class Kernels:
     def companion(self, job: Job) -> Result:
         """Run a companion: its textures and buffers are zeros when it begins."""
         step, kernel = job.step, job.step.kernel
-        program = self.programs.get(kernel, COMPUTE)
+        program = self.program(step, COMPUTE)
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
         result = self.empty(step)
@@ -207,7 +218,7 @@ class Kernels:
             program.fill()
         finally:
             self.ctx.enable_only(self.ctx.NOTHING)
-            self.ctx.blend_func = self.ctx.DEFAULT_BLENDING
+            self.ctx.blend_func = self.ctx.DEFAULT_BLENDING  # type: ignore[assignment]
 
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel

@@ -11,11 +11,14 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 from playground.gpu.program import compile_wrapped
-from playground.gpu.wrap import wrap
+from playground.gpu.wrap import with_choices, wrap
 from playground.sketch.model import Kernel
 
 if TYPE_CHECKING:
     import moderngl
+
+Choices = tuple[tuple[str, int], ...]
+"""Checkboxes and menus with their values."""
 
 _SPARE = 64  # programs kept beyond those of the current frame
 _TRIANGLE = """#version 330
@@ -72,7 +75,7 @@ class Programs:
         self._frame = 0
         self._by_text: OrderedDict[tuple[str, ...], Program] = OrderedDict()
         # The kernel stands beside its texts so that its identity stays its own.
-        self._texts: OrderedDict[tuple[int, str], tuple[Kernel, tuple[str, ...]]] = OrderedDict()
+        self._texts: OrderedDict[tuple[int, str, Choices], tuple[Kernel, tuple[str, ...]]] = OrderedDict()
 
     def __len__(self) -> int:
         return len(self._by_text)
@@ -81,15 +84,21 @@ class Programs:
         """Begin a frame."""
         self._frame += 1
 
-    def get(self, kernel: Kernel, driver: str) -> Program:
-        """Return the program of a kernel; raise ``ShaderError`` where its text is wrong."""
-        known = self._texts.get((id(kernel), driver))
+    def get(self, kernel: Kernel, driver: str, choices: Choices = ()) -> Program:
+        """Return the program of a kernel, some of its checkboxes and menus written in as constants.
+
+        Raises ``ShaderError`` where its text is wrong.
+        """
+        wanted = (id(kernel), driver, choices)
+        known = self._texts.get(wanted)
         if known is not None and known[1] in self._by_text:
-            self._texts.move_to_end((id(kernel), driver))
+            self._texts.move_to_end(wanted)
             return self._used(known[1])
         wrapped = wrap(kernel, driver)
+        if choices:
+            wrapped = with_choices(wrapped, choices)
         text = tuple(stage.text for stage in wrapped.stages.values())
-        self._texts[(id(kernel), driver)] = (kernel, text)
+        self._texts[wanted] = (kernel, text)
         while len(self._texts) > 4 * _SPARE:
             self._texts.popitem(last=False)
         if text not in self._by_text:

@@ -8,7 +8,8 @@ given back its file and line.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
 from playground.sketch.model import Kernel, Output
@@ -70,6 +71,27 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
         return Wrapped(kernel, COMPUTE, {"compute": _whole(kernel)})
     _check_signature(kernel)
     return _wrap_compute(kernel) if driver == COMPUTE else _wrap_fragment(kernel)
+
+
+def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
+    """Write checkboxes and menus into a wrapped text as constants, lines and columns kept.
+
+    A processor that draws goes both ways of every ``if``: what was not chosen costs as much
+    as what was, unless the compiler can see that it never happens.
+    """
+    stages = {}
+    for name, stage in wrapped.stages.items():
+        text = stage.text
+        for choice, value in choices:
+            pattern = rf"^([ \t]*)uniform([ \t]+(bool|int)[ \t]+{choice}\b)[^;\n]*;"
+
+            def constant(match: re.Match[str], value: int = value) -> str:
+                literal = ("true" if value else "false") if match.group(3) == "bool" else str(value)
+                return f"{match.group(1)}const  {match.group(2)} = {literal};"
+
+            text = re.sub(pattern, constant, text, flags=re.MULTILINE)
+        stages[name] = replace(stage, text=text)
+    return replace(wrapped, stages=stages)
 
 
 def wrap_library(kernel: Kernel, driver: str) -> Wrapped:

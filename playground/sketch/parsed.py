@@ -21,7 +21,7 @@ _kept: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Orig
 
 
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
-    """Return what ``parse_kernel`` makes of ``read_source(path, roots)``, parsed again only if that changed."""
+    """Return what ``parse_kernel`` makes of a file, parsed again only if anything it is made of changed."""
     key = (name, path, tuple(roots))
     known = _kept.get(key)
     if known is None or not known[1].holds():

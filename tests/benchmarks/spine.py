@@ -28,7 +28,7 @@ from playground.live.watch import Watcher
 from playground.paths import GLSL
 
 SIZE = (1280, 720)
-KERNEL = "height_blend_mix.glsl"
+KERNELS = ("texturing/height_blend/mix", "texturing/tiled")  # one that fetches, one that filters
 
 
 def main() -> None:
@@ -51,14 +51,14 @@ def main() -> None:
     table.add_row(
         f"moving the sun re-runs {', '.join(ran)}", f"{milliseconds:.0f} ms", "light and view only", "warm"
     )
-    for trial in (False, True):
-        times = sorted(save_to_picture(options.saves, trial=trial))
+    for name, trial in [(name, trial) for name in KERNELS for trial in (False, True)]:
+        times = sorted(save_to_picture(name, options.saves, trial=trial))
         median, worst = statistics.median(times), times[int(0.95 * (len(times) - 1))]
         label = "with a trial child" if trial else "drawn at once"
-        row = f"save to picture, {KERNEL} at 1025², {label}"
+        row = f"save to picture, {name} at 1025², {label}"
         table.add_row(row, f"{median:.0f} ms (95th {worst:.0f})", "150 ms", "each text new to it")
     table.add_row("memory of jacksboro at 4097²", f"{memory(4097):.2f} GiB", "2 GiB", "warm")
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else 130).print(table)
 
 
 def import_time() -> float:
@@ -105,10 +105,10 @@ def sun() -> tuple[list[str], float]:
         return sorted({path.split(".")[0] for path in engine.ran}), statistics.median(times)
 
 
-def save_to_picture(saves: int, *, trial: bool) -> list[float]:
+def save_to_picture(name: str, saves: int, *, trial: bool) -> list[float]:
     """Return the milliseconds from each save of a texturing kernel to the finished picture."""
     with tempfile.TemporaryDirectory() as folder:
-        sketch, kernel = _texturing_sketch(Path(folder))
+        sketch, kernel = _texturing_sketch(Path(folder), name)
         text = kernel.read_text()
         with playground.headless() as engine:
             child = Trial() if trial else None
@@ -146,7 +146,7 @@ def _one_save(
     )
     edited = edited.replace("return vec4(", "return EDIT * vec4(")
     if "EDIT *" not in edited:
-        raise SystemExit(f"{KERNEL} has changed: this benchmark cannot edit it any more")
+        raise SystemExit(f"{kernel.name} has changed: this benchmark cannot edit it any more")
     start = time.perf_counter()
     kernel.write_text(edited)
     while not watcher.take():
@@ -174,40 +174,21 @@ def _settle(session: Session, engine: playground.Engine) -> None:
     engine.ctx.finish()
 
 
-def _texturing_sketch(folder: Path) -> tuple[Path, Path]:
-    """Write a sketch whose texturing kernel is a copy, so that it can be saved over and over."""
+def _texturing_sketch(folder: Path, name: str) -> tuple[Path, Path]:
+    """Write a sketch one of whose texturing kernels is a copy, so that it can be saved over and over."""
     kernel = folder / "mine.glsl"
-    kernel.write_text((GLSL / "texturing" / KERNEL).read_text())
+    kernel.write_text((GLSL / f"{name}.glsl").read_text())
+    uses = [("height", "generation/diamond_square", "")]
+    for ground in ("grass", "rock", "snow"):
+        uses += [(f"{ground}_tile", f"texturing/{ground}", "size = 512"), (ground, "texturing/tiled", "")]
+    uses += [("colour", "texturing/height_blend/mix", ""), ("light", "lighting/ray_cast", "")]
+    text = "format = 1\nsize = 1025\n"
+    for called, use, more in uses:
+        # The last pass of its kind: a save of texturing/tiled lays the snow anew.
+        mine = use == name and called in ("snow", "colour")
+        text += f'[[pass]]\nname = "{called}"\nuse = "{"./mine" if mine else use}"\n{more}\n'
     sketch = folder / "sketch.toml"
-    sketch.write_text(
-        """
-format = 1
-size = 1025
-[[pass]]
-name = "height"
-use = "generation/diamond_square"
-[[pass]]
-name = "grass"
-use = "texturing/grass"
-size = 512
-[[pass]]
-name = "rock"
-use = "texturing/rock"
-size = 512
-[[pass]]
-name = "snow"
-use = "texturing/snow"
-size = 512
-[[pass]]
-name = "colour"
-use = "./mine"
-[[pass]]
-name = "light"
-use = "lighting/ray_cast"
-[view]
-use = "view/terrain"
-"""
-    )
+    sketch.write_text(text + '[view]\nuse = "view/terrain"\n')
     return sketch, kernel
 
 

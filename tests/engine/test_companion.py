@@ -66,9 +66,9 @@ def ran(monkeypatch):
     asked: list[str] = []
     get = Programs.get
 
-    def spy(self, kernel, driver):
+    def spy(self, kernel, driver, choices=()):
         asked.append(kernel.path.rpartition("/")[2])
-        return get(self, kernel, driver)
+        return get(self, kernel, driver, choices)
 
     monkeypatch.setattr(Programs, "get", spy)
     return asked

@@ -36,7 +36,7 @@ size = 1
 [[pass]]
 name = "colour"
 use = "texturing/height_blend"
-inputs = {{ "mix.grass" = "meadow", "mix.rock" = "stone", "mix.snow" = "ice" }}
+inputs = {{ "grass.colour" = "meadow", "rock.colour" = "stone", "snow.colour" = "ice" }}
 {}
 """
 
@@ -138,4 +138,5 @@ def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
     grass, rock, snow = (colour[:, a:b, :3].mean(axis=(0, 1)) for a, b in ((0, 50), (135, 175), (225, 256)))
     assert grass[1] > grass[0] > grass[2]
     assert grass.sum() < rock.sum() < snow.sum()
-    assert any_engine.ran == ["height", "colour.grass", "colour.rock", "colour.snow", "colour.mix"]
+    inside = ("grass_tile", "grass", "rock_tile", "rock", "snow_tile", "snow", "ragged", "mix")
+    assert any_engine.ran == ["height", *(f"colour.{name}" for name in inside)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from playground.errors import ShaderError
-from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap, wrap_library
+from playground.gpu.wrap import COMPUTE, FRAGMENT, with_choices, wrap, wrap_library
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel
 from playground.sketch.source import read_source
@@ -165,3 +165,20 @@ def test_a_plain_shader_is_left_as_it_is_but_for_its_blank_lines(kernel):
     located = stage.locate(5)
     assert located is not None
     assert located.number == 5
+
+
+def test_choices_become_constants_and_nothing_else_moves(kernel):
+    text = """#pragma kernel(output = "a:r16f")
+uniform bool on = false;  //! Whether
+uniform int  way=0;  //! menu("one", "other") Which
+uniform int ways = 3;
+float kernel(ivec2 texel) { return on ? float(way) : float(ways); }
+"""
+    plain = wrap(kernel(text), FRAGMENT)
+    before = plain.stages["fragment"].text.split("\n")
+    after = with_choices(plain, (("on", 1), ("way", 1))).stages["fragment"].text.split("\n")
+    changed = {b.strip(): a.strip() for b, a in zip(before, after, strict=True) if a != b}
+    assert changed == {
+        "uniform bool on = false;": "const   bool on = true;",
+        "uniform int  way=0;": "const   int  way = 1;",
+    }

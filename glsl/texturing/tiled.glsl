@@ -1,0 +1,36 @@
+// texturing/tiled.glsl -- an image laid over the whole land in tiles, without its repeats showing.
+//
+//   gives    colour, linear light
+//   needs    maths/land.glsl; an image that repeats
+//   units    the image stands `repeats` times side by side from west to east
+//   source   Belaiche 2010, section 2.3.1, without the second reading
+//   tested   tests/glsl/test_height_blend.py: so many repeats, and the image's mean where they are too fine
+//
+// The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
+// many times over the land, whatever the size of either, and is read at the level of
+// detail where its texels are as large as this texture's: read at level 0, a fine image
+// in a small texture is a few texels picked at random.
+//
+// rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
+#include "maths/land.glsl"
+#pragma kernel(output = "colour:rgba16f")
+
+uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
+
+uniform float repeats = 24.0;      //! slider(1, 256) step(1) How often the images stand side by side from west to east
+uniform float variety = 0.5;       //! slider(0, 1) step(0.01) How much of each image is read a second time, larger and turned, so that its repeats do not show
+
+// 31 degrees: no whole turns bring it back onto the tiles.
+const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
+const float LARGER = 0.29;
+
+vec4 kernel(ivec2 texel) {
+    // Tiles are square on the ground, so a long land has more of them along its length.
+    vec2 tile = share_of_texel(texel, size) * repeats * vec2(1.0, extent.y / extent.x);
+    float texels = float(max(size.x - 1, 1)) / repeats;
+    float level = log2(float(textureSize(colour, 0).x) / texels);
+    // A whole level: a blend of two would cost twice the reads and only blur.
+    vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
+    vec3 again = textureLod(colour, TURNED * tile * LARGER, max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
+    return vec4(mix(once, again, 0.5 * variety), 1.0);
+}
