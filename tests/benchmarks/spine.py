@@ -193,7 +193,7 @@ def _texturing_sketch(folder: Path, name: str) -> tuple[Path, Path]:
 
 
 def memory(side: int) -> float:
-    """Return the most memory, in GiB, that a process takes to render the default sketch at ``side`` texels."""
+    """Return the most memory, in GiB, that a process takes to render the default sketch so large."""
     code = (
         "import resource, playground\n"
         f"frame = playground.render(size={SIZE}, values={{'size': {side}}})\n"
