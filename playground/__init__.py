@@ -8,7 +8,8 @@
         frame.save("land.png")
         height = engine.read(sketch, "height")               # float32, row 0 in the south
         evening = sketch.with_values({"light.sun": (250.0, 12.0)})
-        for turn, values in engine.steps(other, "height"):   # a repeated kernel, turn by turn
+        square = playground.load("diamond_square")
+        for turn, values in engine.steps(square, "height"):  # a repeated kernel, turn by turn
             ...
 
 A sketch is a frozen value; setting a parameter makes a new one. Importing this opens
@@ -21,23 +22,28 @@ from typing import TYPE_CHECKING
 
 from playground._version import __version__
 
-if TYPE_CHECKING:
-    from playground.api import headless, parameters, render
-    from playground.engine.engine import Engine
-    from playground.engine.frame import Frame
-    from playground.errors import (
-        ContextError,
-        DataError,
-        ParameterError,
-        PlaygroundError,
-        ShaderError,
-        SketchError,
-        TrialCrash,
-        TrialError,
-        TrialTimeout,
-    )
-    from playground.sketch.load import load, shipped_sketches, shipped_techniques
-    from playground.sketch.model import Camera, Parameter, Shot, Sketch
+if TYPE_CHECKING:  # the same once more, for tools that read types and run nothing
+    from playground.api import headless as headless
+    from playground.api import parameters as parameters
+    from playground.api import render as render
+    from playground.engine.engine import Engine as Engine
+    from playground.engine.frame import Frame as Frame
+    from playground.errors import ContextError as ContextError
+    from playground.errors import DataError as DataError
+    from playground.errors import ParameterError as ParameterError
+    from playground.errors import PlaygroundError as PlaygroundError
+    from playground.errors import ShaderError as ShaderError
+    from playground.errors import SketchError as SketchError
+    from playground.errors import TrialCrash as TrialCrash
+    from playground.errors import TrialError as TrialError
+    from playground.errors import TrialTimeout as TrialTimeout
+    from playground.sketch.find import shipped_sketches as shipped_sketches
+    from playground.sketch.load import load as load
+    from playground.sketch.model import Camera as Camera
+    from playground.sketch.model import Parameter as Parameter
+    from playground.sketch.model import Shot as Shot
+    from playground.sketch.model import Sketch as Sketch
+    from playground.sketch.techniques import shipped_techniques as shipped_techniques
 
 _HOMES = {
     "headless": "playground.api",
@@ -46,8 +52,8 @@ _HOMES = {
     "Engine": "playground.engine.engine",
     "Frame": "playground.engine.frame",
     "load": "playground.sketch.load",
-    "shipped_sketches": "playground.sketch.load",
-    "shipped_techniques": "playground.sketch.load",
+    "shipped_sketches": "playground.sketch.find",
+    "shipped_techniques": "playground.sketch.techniques",
     "Camera": "playground.sketch.model",
     "Parameter": "playground.sketch.model",
     "Shot": "playground.sketch.model",
@@ -63,30 +69,7 @@ _HOMES = {
     "TrialCrash": "playground.errors",
 }
 
-__all__ = [
-    "Camera",
-    "ContextError",
-    "DataError",
-    "Engine",
-    "Frame",
-    "Parameter",
-    "ParameterError",
-    "PlaygroundError",
-    "ShaderError",
-    "Shot",
-    "Sketch",
-    "SketchError",
-    "TrialCrash",
-    "TrialError",
-    "TrialTimeout",
-    "__version__",
-    "headless",
-    "load",
-    "parameters",
-    "render",
-    "shipped_sketches",
-    "shipped_techniques",
-]
+__all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> object:

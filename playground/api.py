@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from playground.engine.engine import Engine
+from playground.engine.engine import Engine, opened
 from playground.engine.frame import Frame
 from playground.gpu.context import open_context
 from playground.sketch.assign import shown_parameters, value_of, values_of
-from playground.sketch.load import load
-from playground.sketch.model import Parameter, Sketch, Value
+from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
 
 
 def headless(*, software: bool = False, device: int | None = None, driver: str = "auto") -> Engine:
@@ -25,7 +24,7 @@ def headless(*, software: bool = False, device: int | None = None, driver: str =
 def render(
     sketch: Sketch | str | Path = "",
     *,
-    size: tuple[int, int] = (1280, 720),
+    size: tuple[int, int] = DEFAULT_PICTURE,
     time: float = 0.0,
     values: Mapping[str, object] | None = None,
 ) -> Frame:
@@ -34,7 +33,7 @@ def render(
     ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path. For more than
     one picture, keep an engine from ``headless()``.
     """
-    found = sketch if isinstance(sketch, Sketch) else load(sketch)
+    found = opened(sketch)
     with headless() as engine:
         return engine.render(found.with_values(values or {}), size=size, time=time)
 

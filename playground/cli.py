@@ -21,7 +21,6 @@ import typer
 from playground._version import __version__
 from playground.commands import check, doctor, listing, live, new, render
 from playground.commands.arguments import (
-    DEFAULT_SIZE,
     DeviceOption,
     Renderer,
     SoftwareOption,
@@ -31,6 +30,7 @@ from playground.commands.arguments import (
     read_device,
 )
 from playground.errors import PlaygroundError, nearest
+from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import complain, note
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -118,7 +118,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_SIZE, renderer, "auto", {})
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {})
         return
     note("no display here, so a picture is made instead; playground --help says what else there is")
     render.make_picture(render.Picture(), renderer)

@@ -22,6 +22,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.paths import shown
+
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
@@ -61,7 +63,7 @@ class PlaygroundError(Exception):
     """A mistake that a sentence can explain.
 
     ``diagnostics`` holds each mistake with its place; ``str(error)`` is all of
-    them, one below the other.
+    them, one below the other. A ``Path`` given as the file is named as its user would name it.
     """
 
     exit_status = 2
@@ -78,7 +80,8 @@ class PlaygroundError(Exception):
     ) -> None:
         found = tuple(diagnostics)
         if not found:
-            found = (Diagnostic(message, str(file), line, column, excerpt=excerpt),)
+            named = shown(file) if isinstance(file, Path) else file
+            found = (Diagnostic(message, named, line, column, excerpt=excerpt),)
         self.diagnostics: tuple[Diagnostic, ...] = found
         super().__init__("\n".join(map(str, found)))
 
@@ -117,6 +120,11 @@ class TrialTimeout(TrialError):
 
 class TrialCrash(TrialError):
     """The trial child died: the driver or its compiler crashed, or memory ran out."""
+
+
+def counted(number: int, noun: str) -> str:
+    """Return "1 file", "2 files"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

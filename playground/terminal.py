@@ -40,11 +40,6 @@ def note(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def count(number: int, noun: str) -> str:
-    """Return "1 file", "2 files"."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
-
-
 def console_for(stream: TextIO) -> Console:
     """Return rich's console for a stream."""
     from rich.console import Console

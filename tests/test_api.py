@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -86,3 +87,93 @@ def test_one_call_renders_a_shipped_sketch():
     frame = playground.render("jacksboro", size=(96, 54), values={"size": 65})
     assert frame.array[..., :3].std() > 5
     assert (frame.array[..., 3] == 255).all()
+
+
+# ── what a program may get wrong ─────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"size": (64.5, 36)}, r"size \(64.5, 36\): expected two whole numbers"),
+        ({"size": 64}, "size 64: expected two whole numbers"),
+        ({"size": "ab"}, "size 'ab': expected two whole numbers"),
+        ({"size": (64, 36, 3)}, "expected two whole numbers"),
+        ({"size": (True, 36)}, "expected two whole numbers"),
+        ({"size": (0, 36)}, "a picture of 0 x 36 pixels; 1 to 16384"),
+        ({"time": float("nan")}, "time nan: expected a number of seconds"),
+        ({"time": float("inf")}, "time inf: expected a number of seconds"),
+        ({"time": "noon"}, "time 'noon': expected a number of seconds"),
+        (
+            {"steps": {"height.raw": 1.5}},
+            "'height.raw' stops after 1.5 turns; expected a whole number from 0",
+        ),
+        ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 turns; expected a whole number from 0"),
+    ],
+)
+def test_what_is_asked_wrongly_is_refused_in_a_sentence(engine, sketch, asked, said):
+    with pytest.raises(playground.PlaygroundError, match=said):
+        engine.render(sketch, **{"size": (64, 36), **asked})
+
+
+def test_numbers_of_numpy_will_do(any_engine, sketch):
+    frame = any_engine.render(sketch, size=np.array([64, 36]), time=np.float32(0.5))
+    assert frame.array.shape == (36, 64, 4)
+
+
+def test_a_sketch_may_be_named_to_an_engine(any_engine):
+    by_name = any_engine.read("diamond_square", "height")
+    np.testing.assert_array_equal(any_engine.read(playground.load("diamond_square"), "height"), by_name)
+    assert any_engine.render("diamond_square", size=(32, 18)).sketch == "diamond_square"
+    with pytest.raises(playground.SketchError, match="by its name or its path, not by 5"):
+        playground.load(5)  # type: ignore[arg-type]
+    with pytest.raises(playground.SketchError, match="by its name or its path, not by 5"):
+        any_engine.render(5)
+
+
+def test_a_released_engine_says_so(sketch):
+    engine = playground.headless()
+    engine.render(sketch, size=(32, 18))
+    engine.release()
+    engine.release()
+    for use in (
+        lambda: engine.render(sketch),
+        lambda: engine.read(sketch, "height"),
+        lambda: list(engine.steps(sketch, "height")),
+        lambda: engine.__enter__(),
+    ):
+        with pytest.raises(playground.ContextError, match="this engine was released"):
+            use()
+
+
+# ── turn by turn ─────────────────────────────────────────────────────────────
+
+
+def test_a_technique_in_which_one_pass_repeats_is_walked_by_its_own_name(engine, sketch):
+    small = sketch.with_values({"size": 5})
+    by_name = list(engine.steps(small, "height"))
+    by_path = list(engine.steps(small, "height.raw"))
+    assert [turn for turn, _ in by_name] == [0, 1, 2, 3, 4, 5]
+    for (_, one), (_, other) in zip(by_name, by_path, strict=True):
+        np.testing.assert_array_equal(one, other)
+    stopped = engine.read(small, "height.raw", steps={"height": 2})
+    np.testing.assert_array_equal(stopped, by_path[2][1])
+
+
+def test_a_pass_that_does_not_repeat_is_refused_with_those_that_do(engine, sketch):
+    for path in ("height.normalised", "view", "nothing"):
+        with pytest.raises(playground.SketchError, match=rf"no repeated pass '{path}' .*height\.raw"):
+            list(engine.steps(sketch, path))
+    with pytest.raises(playground.SketchError, match=r"did you mean 'height\.raw'"):
+        engine.render(sketch, steps={"height.rwa": 1})
+
+
+def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert playground.__doc__ is not None
+    rest = playground.__doc__.partition("\n\n")[2]
+    example = textwrap.dedent(rest.partition("\n\nA sketch is")[0]).replace("(1280, 720)", "(64, 36)")
+    names: dict[str, object] = {}
+    exec(compile(example, "playground", "exec"), names)
+    assert (tmp_path / "land.png").is_file()
+    assert names["turn"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"

@@ -28,7 +28,7 @@ from playground.errors import DataError
 from playground.gpu.doctor import where_to_show
 from playground.images.files import read_png, read_samples
 from playground.paths import DEFAULT_SKETCH, GLSL
-from playground.sketch.load import shipped_sketches
+from playground.sketch.find import shipped_sketches
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "check", "list", "doctor", "new"]
@@ -459,6 +459,7 @@ def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Pa
         "slope/reads.glsl": '#pragma kernel(output = "colour:rgba8")\nuniform sampler2D height; //! input\n'
         "vec4 kernel(ivec2 texel) { return texelFetch(height, texel, 0); }\n",
         "slope/toy.frag": PLAIN_FRAGMENT,
+        "slope/toy.fs": PLAIN_FRAGMENT,
         "slope/toy.comp": PLAIN_COMPUTE,
         "slope/bad.frag": PLAIN_FRAGMENT.replace("iTime / 4.0", "iTime / 4.0.0"),
         "slope/pyproject.toml": "[project]\nname = 'not ours'\n",
@@ -584,7 +585,7 @@ def test_doctor_without_a_context_says_the_mend_and_leaves_with_1(run: Run):
     health = json.loads(done.stdout)
     assert not health["ok"] and health["context"] is None
     if sys.platform.startswith("linux"):
-        assert "asked for by a number that is not there" in health["trouble"]
+        assert "--device 99: there is no such EGL device" in health["trouble"]
     told = run("--device", "99", "doctor")
     assert told.returncode == 1
     assert told.stderr.startswith("error: ")

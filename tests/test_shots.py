@@ -9,7 +9,8 @@ import pytest
 
 from playground.shots.plugin import Shots
 from playground.shots.suite import ShotCase, shots_of
-from playground.sketch.load import load, shipped_sketches
+from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
 
 SKETCHES = [load(name) for name in shipped_sketches()]
 

@@ -1,10 +1,10 @@
-// colour/encode.glsl -- sRGB's encoding, there and back.
+// colour/encode.glsl -- sRGB's encoding of linear light.
 //
-//   gives    srgb_from_linear, linear_from_srgb
+//   gives    srgb_from_linear
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    linear light and encoded values, both 0..1
 //   source   IEC 61966-2-1:1999, the exact two-piece curve
-//   tested   tests/glsl/test_colour.py, against Python's own curve and as inverses
+//   tested   tests/glsl/test_colour.py, against Python's own curve
 #ifndef COLOUR_ENCODE
 #define COLOUR_ENCODE
 
@@ -13,12 +13,5 @@ vec3 srgb_from_linear(vec3 linear) {
     vec3 low = kept * 12.92;
     vec3 high = 1.055 * pow(kept, vec3(1.0 / 2.4)) - 0.055;
     return mix(high, low, vec3(lessThanEqual(kept, vec3(0.0031308))));
-}
-
-vec3 linear_from_srgb(vec3 encoded) {
-    vec3 kept = clamp(encoded, 0.0, 1.0);
-    vec3 low = kept / 12.92;
-    vec3 high = pow((kept + 0.055) / 1.055, vec3(2.4));
-    return mix(high, low, vec3(lessThanEqual(kept, vec3(0.04045))));
 }
 #endif

@@ -11,14 +11,10 @@ from typing import Annotated
 import typer
 
 from playground.errors import ParameterError, PlaygroundError
-from playground.sketch.model import Sketch
+from playground.sketch.model import DRIVERS, LARGEST_SIDE, Sketch
 
 FAILED = 1
 """Exit status of ``check`` and ``doctor`` that found something."""
-
-DEFAULT_SIZE = (1280, 720)
-MAX_SIDE = 16384
-DRIVERS = ("auto", "fragment", "compute")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,16 +34,21 @@ def help_text(text: str, *examples: str) -> str:
     return f"{text}\n\n\b\nExamples:\n" + "\n".join(f"  {example}" for example in examples)
 
 
+def either(words: Sequence[str]) -> str:
+    """Return "a, b or c"."""
+    return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
 def complete_sketch(incomplete: str) -> list[str]:
     """Return the shipped sketches that complete a word."""
-    from playground.sketch.load import shipped_sketches
+    from playground.sketch.find import shipped_sketches
 
     return [name for name in shipped_sketches() if name.startswith(incomplete)]
 
 
 def complete_listed(incomplete: str) -> list[str]:
     """Return what ``list`` knows that completes a word."""
-    from playground.sketch.load import shipped_names, shipped_sketches
+    from playground.sketch.find import shipped_names, shipped_sketches
 
     names = ["sketches", "techniques", *shipped_sketches(), *shipped_names()]
     return [name for name in names if name.startswith(incomplete)]
@@ -97,7 +98,7 @@ DriverOption = Annotated[
     str,
     typer.Option(
         "--driver",
-        help="What runs the kernels: auto, fragment or compute.",
+        help=f"What runs the kernels: {either(DRIVERS)}.",
         metavar="NAME",
         show_default=False,
         autocompletion=complete_driver,
@@ -118,8 +119,10 @@ def read_pixels(text: str | None) -> tuple[int, int] | None:
         return None
     width, _, height = text.lower().replace("×", "x").partition("x")
     sides = [int(side) if side.strip().isdecimal() else 0 for side in (width, height)]
-    if not all(1 <= side <= MAX_SIDE for side in sides):
-        raise ParameterError(f"--size {text}: expected width and height, 1 to {MAX_SIDE} pixels, as 1280x720")
+    if not all(1 <= side <= LARGEST_SIDE for side in sides):
+        raise ParameterError(
+            f"--size {text}: expected width and height, 1 to {LARGEST_SIDE} pixels, as 1280x720"
+        )
     return sides[0], sides[1]
 
 
@@ -139,7 +142,7 @@ def read_seconds(text: str) -> float | None:
 def read_driver(text: str) -> str:
     """Return the driver of ``--driver``; raise ``ParameterError``."""
     if text not in DRIVERS:
-        raise ParameterError(f"--driver {text}: expected {', '.join(DRIVERS[:-1])} or {DRIVERS[-1]}")
+        raise ParameterError(f"--driver {text}: expected {either(DRIVERS)}")
     return text
 
 

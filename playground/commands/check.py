@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
-from playground.terminal import count, painted, progress
+from playground.errors import counted
+from playground.terminal import painted, progress
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -57,7 +58,7 @@ def check(
                 _print_report(report)
             advance()
     if not as_json:
-        print(f"{count(len(files), 'file')} checked, {failed or 'none'} failed{_why_skipped(skipped)}")
+        print(f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{_why_skipped(skipped)}")
     if failed:
         raise typer.Exit(FAILED)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands.arguments import (
-    DEFAULT_SIZE,
     DeviceOption,
     DriverOption,
     Renderer,
@@ -18,6 +18,7 @@ from playground.commands.arguments import (
     SizeOption,
     SketchArgument,
     SoftwareOption,
+    either,
     help_text,
     read_driver,
     read_pixels,
@@ -26,6 +27,8 @@ from playground.commands.arguments import (
     with_whole_paths,
 )
 from playground.errors import DataError, ParameterError
+from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS
+from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import busy, console_for, note
 
 if TYPE_CHECKING:
@@ -35,8 +38,9 @@ if TYPE_CHECKING:
 
 HELP = help_text(
     "Render a sketch to a PNG and print its path.\n\n"
-    "With --texture, write the values of one pass instead: .npy (float32, south row first), .png (16"
-    " bits, 0 to 1) or .tif (float32).",
+    "With --texture, write the values of one pass instead: "
+    + either([f"{ending} ({what})" for ending, what in VALUE_ENDINGS.items()])
+    + ".",
     "playground render",
     "playground render jacksboro -o land.png --size 1920x1080",
     "playground render jacksboro --set light.sun=250,12",
@@ -124,7 +128,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     from playground.sketch.load import load
 
     sketch = load(picture.sketch)
-    size, time, steps = DEFAULT_SIZE, 0.0, {}
+    size, time, steps = DEFAULT_PICTURE, 0.0, {}
     if picture.shot:
         shot = sketch.shot(picture.shot)
         sketch = sketch.for_shot(shot)
@@ -135,11 +139,11 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         sketch = sketch.with_values(with_whole_paths(sketch, picture.values))
     size = picture.size or size
     time = time if picture.time is None else picture.time
-    target = _target(picture, sketch)
 
     from playground.api import headless
 
     with (
+        _target(picture, sketch) as target,
         busy(f"rendering {sketch.name}"),
         headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
     ):
@@ -166,36 +170,29 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         print(target)
 
 
-def _target(picture: Picture, sketch: Sketch) -> Path:
-    """Return the file to write; refuse what could not be written before anything is drawn."""
-    endings = (".npy", ".png", ".tif", ".tiff") if picture.texture else (".png",)
+def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
+    """Open the file to write; refuse what could not be written before anything is drawn."""
+    endings = tuple(VALUE_ENDINGS) if picture.texture else PICTURE_ENDINGS
     if picture.output == "-":
         if picture.texture:
-            raise ParameterError("--texture needs a file: -o NAME.npy, NAME.png or NAME.tif")
+            raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
-        return Path("-")
+        return nullcontext(Path("-"))
     if not picture.output:
         parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]
-        return _unused(Path("-".join(filter(None, parts)) + endings[0]))
+        from playground.images.files import new_name
+
+        return new_name("-".join(filter(None, parts)) + endings[0])
     path = Path(picture.output).expanduser()
     if path.is_dir():
         raise DataError("is a folder; expected the name of a file to write", file=picture.output)
     if path.suffix.lower() not in endings:
         what = "values are" if picture.texture else "a picture is"
-        raise DataError(f"{what} written to a name ending in {' or '.join(endings)}", file=picture.output)
+        raise DataError(f"{what} written to a name ending in {either(endings)}", file=picture.output)
     if not path.parent.is_dir():
         raise DataError(f"there is no folder '{path.parent}' to write into", file=picture.output)
-    return path
-
-
-def _unused(path: Path) -> Path:
-    """Return a name that no file has yet: land.png, else land-2.png, else land-3.png and so on."""
-    candidate, number = path, 1
-    while candidate.exists():
-        number += 1
-        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
-    return candidate
+    return nullcontext(path)
 
 
 def _prepare_profile(

@@ -8,6 +8,7 @@ where it can crash or hang.
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -23,17 +24,16 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.images.files import write_values
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.assign import values_of
-from playground.sketch.flatten import input_names
-from playground.sketch.load import is_technique, load, read_kernel, read_technique
+from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, Input, Kernel, Output, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.places import TEXTS, root_of
 from playground.sketch.source import Line, SourceText, read_text
-
-ENDINGS = (".glsl", ".comp", ".frag", ".toml")
-"""What a folder is searched for."""
+from playground.sketch.techniques import nothing_to_run, read_kernel, read_technique
+from playground.sketch.wiring import input_names
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
-_SUBJECT = "subject"
+_NAME = re.compile(r"[a-z]\w*", re.ASCII | re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +70,10 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
             for file in _inside(path):
                 found.setdefault(file.resolve(), path.resolve())
         elif path.is_file():
-            if path.suffix not in (*ENDINGS, ".fs", ".fragment"):
-                wanted = ", ".join(ENDINGS)
+            if path.suffix not in TEXTS:
+                wanted = ", ".join(TEXTS)
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
-            found.setdefault(path.resolve(), _root_of(path.resolve()))
+            found.setdefault(path.resolve(), root_of(path.resolve()))
         else:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             hint = nearest(path.name, near)
@@ -81,7 +81,7 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 f"there is no such file or folder{hint if 'mean' in hint else ''}", file=shown(path)
             )
     if not found:
-        wanted = ", ".join(ENDINGS)
+        wanted = ", ".join(TEXTS)
         raise DataError(f"nothing to check in {', '.join(named)}; expected files ending in {wanted}")
     return list(found.items())
 
@@ -90,7 +90,7 @@ def check_file(path: Path, trial: Trial, root: Path | None = None) -> FileReport
     """Check one file and return what is wrong with it; ``root`` is the folder it may include from."""
     path = path.resolve()
     with TemporaryDirectory(prefix="playground-check-") as folder:
-        report = _Check(trial, path, _root_of(path) if root is None else root, Path(folder)).run()
+        report = _Check(trial, path, root_of(path) if root is None else root, Path(folder)).run()
     return report
 
 
@@ -124,9 +124,7 @@ class _Check:
     def shader(self) -> None:
         kernel = read_kernel(self.path, self.root)
         if kernel is None and self.path.suffix != ".glsl":
-            raise SketchError(
-                "has neither a #version and main of its own nor a #pragma kernel", file=shown(self.path)
-            )
+            raise nothing_to_run(self.path)
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root)))
         elif kernel.kind.startswith("plain"):
@@ -194,11 +192,15 @@ class _Check:
     def stage(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to stand-ins."""
         wanted = technique.needs_inputs if isinstance(technique, Kernel) else input_names(technique)
-        names = [name for name in wanted if name != _SUBJECT]
+        names = list(wanted)
+        subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
+        while subject in (*names, "view"):
+            subject += "_"
+        line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
         passes = [PassSpec(name, "a stand-in", _STAND_IN) for name in names]
-        passes.append(PassSpec(_SUBJECT, self.path.stem, technique, file=shown(self.path)))
-        passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", _SUBJECT),)))
-        graph = Graph(_SUBJECT, str(self.path), tuple(passes))
+        passes.append(PassSpec(subject, self.path.stem, technique, file=shown(self.path), line=line))
+        passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
+        graph = Graph(subject, str(self.path), tuple(passes))
         sketch = Sketch(self.path.stem, str(self.path), str(self.root), graph)
         return sketch.with_values({path: str(self.picture()) for path in _unnamed_files(sketch)})
 
@@ -218,7 +220,7 @@ def _inside(folder: Path) -> Iterator[Path]:
         if path.is_dir():
             if not (path / "pyvenv.cfg").exists() and not path.is_symlink():
                 yield from _inside(path)
-        elif path.suffix in ENDINGS and (path.suffix != ".toml" or _is_ours(path)):
+        elif path.suffix in TEXTS and (path.suffix != ".toml" or _is_ours(path)):
             yield path
 
 
@@ -234,14 +236,6 @@ def _owner(companion: Path) -> Path | None:
     """Return the kernel or technique that a .comp stands for, if it lies beside it."""
     beside = (companion.with_suffix(".glsl"), companion.with_suffix(".toml"))
     return next((path for path in beside if path.is_file()), None)
-
-
-def _root_of(path: Path) -> Path:
-    """Return the folder of the sketch that a file belongs to, else its own."""
-    for folder in path.parents:
-        if (folder / "sketch.toml").is_file():
-            return folder
-    return path.parent
 
 
 def _drivers(sketch: Sketch) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,23 +21,24 @@ from playground.engine.cache import Cache
 from playground.engine.execution import Execution
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker
-from playground.engine.plan import Plan, Step, make_plan, needed
+from playground.engine.plan import Plan, Step, make_plan, needed, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
-from playground.errors import ContextError, SketchError
+from playground.errors import ContextError
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture, read_texture
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
-from playground.sketch.flatten import Ref, initial_names
-from playground.sketch.model import Kernel, Sketch
+from playground.sketch.flatten import Ref
+from playground.sketch.load import load
+from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, Kernel, Sketch
+from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
 
 CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
-DRIVERS = ("auto", FRAGMENT, COMPUTE)
 
 
 class Engine:
@@ -75,6 +77,7 @@ class Engine:
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
         self._plan: Plan | None = None
+        self._released = False
 
     @property
     def clock(self) -> str:
@@ -87,14 +90,21 @@ class Engine:
         return self._plan
 
     def __enter__(self) -> Engine:
+        self._refuse_released()
         return self
 
     def __exit__(self, *_: object) -> None:
         self.release()
 
     def release(self) -> None:
-        """Give back every texture and program, and the context if it is the engine's own."""
+        """Give back every texture and program, and the context if it is the engine's own.
+
+        Once is enough. With the context that is its own gone, nothing more can be drawn.
+        """
+        if self._released:
+            return
         self._make_current()
+        self._released = self._owns_context
         self.cache.clear()
         self.pool.clear()
         self.runner.release()
@@ -104,35 +114,39 @@ class Engine:
 
     def plan_for(
         self,
-        sketch: Sketch,
+        sketch: Sketch | str | Path,
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
         wanted: str = "",
     ) -> Plan:
-        """Make a sketch concrete for this engine's context and driver; see ``make_plan``."""
+        """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
+        self._refuse_released()
         compute = self.info.compute and self.driver != FRAGMENT
-        return make_plan(sketch, frame_size=size, time=time, compute=compute, steps=steps, wanted=wanted)
+        return make_plan(
+            opened(sketch), frame_size=size, time=time, compute=compute, steps=steps, wanted=wanted
+        )
 
     def render(
         self,
-        sketch: Sketch,
+        sketch: Sketch | str | Path,
         *,
-        size: tuple[int, int] = (1280, 720),
+        size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
     ) -> Frame:
-        """Return the sketch's picture.
+        """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
         many turns, by path. Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        texture = self.draw(sketch, size=size, time=time, steps=steps)
-        return Frame(read_picture(texture), sketch.name, time)
+        found = opened(sketch)
+        texture = self.draw(found, size=size, time=time, steps=steps)
+        return Frame(read_picture(texture), found.name, time)
 
     def draw(
         self,
-        sketch: Sketch,
+        sketch: Sketch | str | Path,
         *,
         size: tuple[int, int],
         time: float = 0.0,
@@ -145,10 +159,10 @@ class Engine:
 
     def texture(
         self,
-        sketch: Sketch,
+        sketch: Sketch | str | Path,
         ref: str,
         *,
-        size: tuple[int, int] = (1280, 720),
+        size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
     ) -> moderngl.Texture:
@@ -157,14 +171,14 @@ class Engine:
         Runs only what it needs.
         """
         plan = self.plan_for(sketch, size, time, steps, ref)
-        return self._texture(plan, plan.flat.ref(ref, sketch.name))
+        return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
 
     def read(
         self,
-        sketch: Sketch,
+        sketch: Sketch | str | Path,
         ref: str,
         *,
-        size: tuple[int, int] = (1280, 720),
+        size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
     ) -> NDArray[np.float32]:
@@ -176,14 +190,23 @@ class Engine:
         return read_texture(self.texture(sketch, ref, size=size, time=time, steps=steps))
 
     def steps(
-        self, sketch: Sketch, path: str, *, size: tuple[int, int] = (1280, 720), time: float = 0.0
+        self,
+        sketch: Sketch | str | Path,
+        path: str,
+        *,
+        size: tuple[int, int] = DEFAULT_PICTURE,
+        time: float = 0.0,
     ) -> Iterator[tuple[int, NDArray[np.float32]]]:
-        """Yield (turns done, values) of a repeated pass, from before its first turn to after its last."""
-        node = self.plan_for(sketch, size, time, {path: 0}).node(path)
-        if node is None:
-            raise SketchError(f"no pass '{path}' in sketch {sketch.name} that repeats")
+        """Yield (turns done, values) of a repeated pass, from before its first turn to after its last.
+
+        ``path`` may be a technique's in which one pass repeats: it is that one.
+        """
+        found = opened(sketch)
+        repeated = repeated_in(found, path)
+        node = self.plan_for(found, size, time, {repeated: 0}).node(repeated)
+        assert node is not None  # steps keep companions from standing for it
         for turn in range(node.whole + 1):
-            yield turn, self.read(sketch, path, size=size, time=time, steps={path: turn})
+            yield turn, self.read(found, repeated, size=size, time=time, steps={repeated: turn})
 
     # ── running ──────────────────────────────────────────────────────────────
 
@@ -281,13 +304,24 @@ class Engine:
 
         It stays so, since glcontext's way back leaves no context at all.
         """
+        self._refuse_released()
         context: Any = self.ctx
         context.__enter__()
 
+    def _refuse_released(self) -> None:
+        if self._released:
+            raise ContextError("this engine was released; open another")
+
     def _timer_of(self) -> Timer:
+        self._refuse_released()
         if self._timer is None:
             self._timer = Timer(self.ctx, software=self.info.software)
         return self._timer
+
+
+def opened(sketch: Sketch | str | Path) -> Sketch:
+    """Return the sketch itself, or the one of that name or path."""
+    return sketch if isinstance(sketch, Sketch) else load(sketch)
 
 
 def _continued(plan: Plan) -> frozenset[str]:

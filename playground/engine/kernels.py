@@ -18,9 +18,9 @@ from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import initial_names
 from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Kernel, Sampling
+from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
@@ -130,7 +130,7 @@ class Kernels:
                 if count > _MAX_BUFFER:
                     megabytes = count / 2**20
                     message = f"buffer '{declared.name}' would be {megabytes:.0f} MiB; 2048 at most"
-                    raise step.spec.error(f"pass '{step.path}': {message}")
+                    raise kernel.error(f"pass '{step.path}': {message}")
                 buffer = self.ctx.buffer(reserve=count)
                 buffers.append(buffer)
                 buffer.clear()
@@ -143,7 +143,7 @@ class Kernels:
                 program.run(max(groups[0], 1), max(groups[1], 1))
         except ExpressionError as error:
             self.pool.give(result)
-            raise step.spec.error(f"pass '{step.path}': {error}") from None
+            raise kernel.error(f"pass '{step.path}': {error}") from None
         except Exception:
             self.pool.give(result)
             raise
@@ -231,7 +231,7 @@ class Kernels:
                 cells = expressions.evaluate_pair(kernel.visits, names)
             except ExpressionError as error:
                 self.pool.give(result)
-                raise step.spec.error(f"pass '{step.path}': visits {error}") from None
+                raise kernel.error(f"pass '{step.path}': visits {error}") from None
             if min(cells) >= 1:
                 program.set("k_cells", cells)
                 program.run(-(-cells[0] // LOCAL), -(-cells[1] // LOCAL))

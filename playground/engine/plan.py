@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 
 from playground.engine.files import find_file
-from playground.errors import PlaygroundError, SketchError
+from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Fed, Flat, Leaf, Loop, Node, Ref, Source, flatten, leaves_of
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.flatten import (
+    Fed,
+    Flat,
+    Leaf,
+    Loop,
+    Node,
+    Ref,
+    Source,
+    flatten,
+    leaves_of,
+    repeated_path,
+    repeated_paths,
+)
+from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
 
-DEFAULT_SIZE = (513, 513)
+DEFAULT_LAND = (513, 513)
 DEFAULT_EXTENT = 10_240.0
 DEFAULT_RELIEF = 1_800.0
 MAX_REPEAT = 1_000_000
@@ -127,15 +141,66 @@ def make_plan(
     """Make a sketch concrete for one frame.
 
     ``compute`` lets companions stand for whole techniques, but not for those around the
-    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path. Raises
-    ``SketchError`` or ``DataError`` at the pass that is wrong.
+    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of
+    a technique will do where one pass inside it repeats). Raises ``SketchError`` or
+    ``DataError`` at the pass that is wrong, ``ShaderError`` at a kernel's header.
     """
-    if not (1 <= frame_size[0] <= 16384 and 1 <= frame_size[1] <= 16384):
-        raise SketchError(
-            f"a picture of {frame_size[0]} x {frame_size[1]} pixels; 1 to 16384 a side were expected"
+    size, seconds = _pixels(frame_size), _seconds(time)
+    stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
+    flat = flatten(sketch, compute=compute, opened=(*stopped, *filter(None, [wanted])))
+    return _Planner(sketch, flat, size, seconds, stopped).plan()
+
+
+def repeated_in(sketch: Sketch, path: str) -> str:
+    """Return the path of the repeated pass that a path stands for, or raise ``SketchError``.
+
+    It is the path itself, or that of the only pass that repeats inside a technique.
+    """
+    nodes = flatten(sketch, compute=False).nodes
+    found = repeated_path(str(path), nodes)
+    if found is None:
+        hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
+        raise SketchError(f"steps: no repeated pass '{path}' in sketch {sketch.name}{hint}")
+    return found
+
+
+def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
+    """Return an error of a data file at the pass that names it, the file in the sentence.
+
+    Where a file was set for the pass from outside, the sketch's text is not at fault, and
+    the error stays as it is.
+    """
+    by_hand = any(
+        path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
+    )
+    if by_hand or not spec.file:
+        return error
+    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
+    return DataError(found, file=spec.file, line=spec.line)
+
+
+def _pixels(size: object) -> tuple[int, int]:
+    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
+    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
+        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
+    width, height = int(found[0]), int(found[1])
+    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
+        raise ParameterError(
+            f"a picture of {width} x {height} pixels; 1 to {LARGEST_SIDE} a side were expected"
         )
-    flat = flatten(sketch, compute=compute, opened=(*(steps or ()), *filter(None, [wanted])))
-    return _Planner(sketch, flat, frame_size, time, dict(steps or {})).plan()
+    return width, height
+
+
+def _seconds(time: object) -> float:
+    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
+        raise ParameterError(f"time {time!r}: expected a number of seconds")
+    return float(time)
+
+
+def _turns(path: str, count: object) -> int:
+    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
+        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
+    return int(count)
 
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
@@ -168,10 +233,6 @@ class _Planner:
 
     def plan(self) -> Plan:
         nodes = tuple(self._node(node) for node in self.flat.nodes)
-        known = {node.path for node in every_node(nodes)}
-        for path in self.steps:
-            if path not in known:
-                raise SketchError(f"steps: no repeated pass '{path}' in sketch {self.sketch.name}")
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
@@ -180,7 +241,7 @@ class _Planner:
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
-            whole = self._count(node.repeat, node.spec, self._names(prefix, node.spec))
+            whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
             count = min(whole, self.steps.get(node.path, whole))
             return Turns(
                 node.path, count, whole, tuple(self._node(n) for n in node.body), node.feedback, node.spec
@@ -192,21 +253,24 @@ class _Planner:
             raise self._refused(node, size)
         names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
-        whole = self._count(kernel.repeat, node.spec, names)
+        whole = self._count(kernel.repeat, node.path, kernel, names)
         # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
         return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec)
 
-    def _count(self, text: str, spec: PassSpec, names: Mapping[str, Number] | Names) -> int:
+    def _count(
+        self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
+    ) -> int:
+        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
         if text == "1":
             return 1
         try:
             count = expressions.evaluate(text, names)
         except ExpressionError as error:
-            raise spec.error(f"pass '{spec.name}': repeat {error}") from None
+            raise owner.error(f"pass '{name}': repeat {error}") from None
         if not 0 <= count <= MAX_REPEAT:
-            raise spec.error(
-                f"pass '{spec.name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
+            raise owner.error(
+                f"pass '{name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
             )
         return count
 
@@ -223,9 +287,12 @@ class _Planner:
         for leaf in leaves_of(self.flat.nodes):
             if leaf.kernel.kind == "source":
                 self._check_source(leaf)
-                known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
+                try:
+                    known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
                 break
-        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_SIZE)
+        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
         extent = self.sketch.extent or known.extent
         if extent is None:
             shape = known.size or size
@@ -251,7 +318,10 @@ class _Planner:
         for parameter in leaf.kernel.parameters:
             if parameter.widget.kind == "file":
                 text = str(values[parameter.name])
-                path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+                try:
+                    path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
                 values[parameter.name] = str(path)
         return values
 
@@ -284,9 +354,10 @@ class _Planner:
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
-            if not all(1 <= side <= 16384 for side in size):
+            if not all(1 <= side <= LARGEST_SIDE for side in size):
                 raise spec.error(
-                    f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to 16384 a side were expected"
+                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
+                    f"1 to {LARGEST_SIDE} a side were expected"
                 )
         self._open.pop()
         self._sizes[path] = size

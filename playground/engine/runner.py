@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from playground.engine.binder import Binder
 from playground.engine.draws import Draws
 from playground.engine.kernels import Job, Kernels, usual_of
-from playground.engine.plan import Plan, Step
+from playground.engine.plan import Plan, Step, placed
 from playground.engine.programs import Program, Programs
 from playground.engine.results import Pool, Result, Wired
+from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import write_texture
 from playground.sketch.model import Kernel
@@ -124,13 +125,21 @@ class Runner:
         samples = self.samples_for(self._plan)
         job = Job(step, self.given_for(kernel, step), inputs, turn, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
-        if kernel.kind == "source":
+        try:
+            return self._run(job, driver)
+        except DataError as error:
+            raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
+
+    def _run(self, job: Job, driver: str) -> Result:
+        step = job.step
+        kind = step.kernel.kind
+        if kind == "source":
             return self._source(step)
-        if kernel.kind == "draw":
+        if kind == "draw":
             return self.draws.run(job)
-        if kernel.kind == "compute":
+        if kind == "compute":
             return self.kernels.companion(job)
-        if kernel.kind.startswith("plain"):
+        if kind.startswith("plain"):
             return self.kernels.plain(job, self._usual(step))
         return self.kernels.run(job, driver)
 

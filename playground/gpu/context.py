@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 VERSIONS = (430, 410, 330)
 _MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
+_OTHER_DEVICES = re.compile(r"requested device index -?\d+, but found ([1-9]\d*)")  # glcontext's words
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 
@@ -35,7 +36,6 @@ class ContextInfo:
     renderer: str
     vendor: str
     version: str
-    max_texture: int  # texels a side
     max_samples: int
 
     @property
@@ -70,7 +70,6 @@ def context_info(ctx: moderngl.Context) -> ContextInfo:
         str(info["GL_RENDERER"]),
         str(info["GL_VENDOR"]),
         str(info["GL_VERSION"]),
-        int(info["GL_MAX_TEXTURE_SIZE"]),
         int(ctx.max_samples),
     )
 
@@ -108,6 +107,11 @@ def _open(device: int | None = None) -> moderngl.Context:
             continue
         ctx.gc_mode = "auto"
         return ctx
+    there = _OTHER_DEVICES.search(cause)
+    if device is not None and there:
+        count = int(there.group(1))
+        rest = "the only one is 0" if count == 1 else f"there are {count}, from 0"
+        raise ContextError(f"--device {device}: there is no such EGL device; {rest}")
     raise ContextError(f"{mend(cause, sys.platform, os.environ)} ({cause})")
 
 

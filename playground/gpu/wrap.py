@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
-from playground.sketch.model import Kernel, Output
+from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.source import Line, SourceText
 from playground.sketch.words import GIVEN
 
-FRAGMENT, COMPUTE = "fragment", "compute"
+_, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
 """Side of a compute driver's work group, in texels."""
 

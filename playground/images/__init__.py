@@ -1,6 +1,6 @@
-"""Image files in and out, and the colour encodings they use.
+"""Image files in and out.
 
-`files` moves pictures and values between disk and NumPy arrays; `colour` moves
-numbers between encoded and linear sRGB. Neither knows of OpenGL, nor of land:
-elevation files are `playground.terrain.elevation`.
+`files` moves pictures and values between disk and NumPy arrays, `endings` says by what
+names. Neither knows of OpenGL, of colour encodings (`playground.sketch.colour`), nor of
+land: elevation files are `playground.terrain.elevation`.
 """

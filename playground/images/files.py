@@ -25,6 +25,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, BinaryIO
@@ -33,6 +34,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
+from playground.images.endings import VALUE_ENDINGS
+from playground.paths import shown
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -42,7 +45,6 @@ if TYPE_CHECKING:
 MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
 
 _PNG_START = b"\x89PNG\r\n\x1a\n"
-_VALUE_ENDINGS = (".npy", ".png", ".tif", ".tiff")
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
 
 
@@ -140,7 +142,7 @@ def checked_file(path: str | Path) -> Path:
             raise DataError("the file is empty", file=path)
     except (FileNotFoundError, NotADirectoryError) as error:
         if not path.parent.is_dir():
-            raise DataError(f"there is no folder {str(path.parent)!r}", file=path) from error
+            raise DataError(f"there is no folder '{shown(path.parent)}'", file=path) from error
         near = nearest(path.name, (p.name for p in path.parent.iterdir() if p.suffix == path.suffix))
         raise DataError(f"there is no such file{near}", file=path) from error
     except (OSError, ValueError) as error:
@@ -305,8 +307,8 @@ def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
     """
     path = Path(path)
     ending = path.suffix.lower()
-    if ending not in _VALUE_ENDINGS:
-        raise DataError(f"values cannot be written as {ending!r}{nearest(ending, _VALUE_ENDINGS)}", file=path)
+    if ending not in VALUE_ENDINGS:
+        raise DataError(f"values cannot be written as {ending!r}{nearest(ending, VALUE_ENDINGS)}", file=path)
     values = np.asarray(array)
     if values.dtype.kind not in "fiu" or values.ndim not in (2, 3) or 0 in values.shape:
         raise DataError(
@@ -374,6 +376,37 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 @contextmanager
+def new_name(path: str | Path) -> Iterator[Path]:
+    """Take the first of `land.png`, `land-2.png` and so on that no file has, to write to in the block.
+
+    An empty file holds the name from here on, so that no other program takes it; it is
+    removed when the block fails.
+
+    Raises:
+        DataError: a missing folder, no permission, a full disk.
+    """
+    wanted = Path(path)
+    numbered = (wanted.with_name(f"{wanted.stem}-{n}{wanted.suffix}") for n in count(2))
+    found = next(name for name in chain([wanted], numbered) if _takes(name))
+    try:
+        yield found
+    except BaseException:
+        found.unlink(missing_ok=True)
+        raise
+
+
+def _takes(path: Path) -> bool:
+    """Make an empty file; say no where something has the name."""
+    try:
+        path.touch(exist_ok=False)
+    except FileExistsError:
+        return False
+    except OSError as error:
+        raise DataError(f"nothing can be written here: {reason(error)}", file=path.parent) from error
+    return True
+
+
+@contextmanager
 def replacing(path: str | Path) -> Iterator[BinaryIO]:
     """Open a new file that takes the name `path` when the block ends well.
 
@@ -388,7 +421,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
         raise DataError("a file's name cannot hold a zero character", file=repr(str(path)))
     try:
         if not path.parent.is_dir():
-            raise DataError(f"there is no folder {str(path.parent)!r} to write into", file=path)
+            raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
         if path.is_dir():
             raise DataError("is a folder; expected the name of a file to write", file=path)
         temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(6)}.part")

@@ -1,6 +1,30 @@
 """The live window: the only place with a window, keys and a wall clock.
 
-Reading order: ``edits`` (what a person changed by hand), ``session`` (the sketch, its
-last good picture, its errors; no window), ``watch`` (files), then ``window``,
-``gesture``, ``panel``, ``overlay`` and ``app``, which ties them together.
+    clock.py      the sketch's own time: runs, rests, never jumps
+    files.py      which files a sketch stands on
+    watch.py      which of them have changed
+    edits.py      what a person changed by hand, and how it survives a change of the files
+    picture.py    the last good picture, and a texture put on a screen
+    maps.py       any texture of a sketch, shown from above
+    session.py    what is shown, what was changed, what is wrong; knows of no window
+    pictures.py   a picture saved under a new name
+    actions.py    what a button or a key asks for that is more than one call of the session
+    status.py     what the window shows, as JSON lines for another program
+
+    theme.py      fonts, colours, margins
+    window.py     GLFW, an OpenGL context, Dear ImGui: the one place that knows of screens
+    gesture.py    the mouse over the picture → a camera
+    keys.py       the table of keys, which the key map shows as well
+
+    numbers.py    how a number is written, and what a drag makes of it
+    dome.py       the sky as a disc, for a direction
+    widgets.py    one control for each row of ``sketch/widgets.py``
+    rows.py       a line of the panel: a label, a control
+    costs.py      the table of what the picture cost
+    panel.py      all of that, made from the sketch's annotations
+    excerpt.py    an offending line, cut so that it fits
+    overlay.py    errors and notices over the picture
+    app.py        opens a sketch in a window and ties everything above together
+
+Each knows only those above it. Importing this opens nothing.
 """

@@ -21,7 +21,6 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
-from playground.live.files import SUFFIXES
 from playground.live.gesture import Gesture, steered
 from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
@@ -31,8 +30,10 @@ from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
-from playground.sketch.load import find, load
-from playground.sketch.model import Value
+from playground.sketch.find import find
+from playground.sketch.load import load
+from playground.sketch.model import DEFAULT_PICTURE, Value
+from playground.sketch.places import TEXTS
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between turns while nothing happens
@@ -44,7 +45,7 @@ _LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
 def run(
     sketch: str | Path = "",
     *,
-    size: tuple[int, int] = (1280, 720),
+    size: tuple[int, int] = DEFAULT_PICTURE,
     software: bool = False,
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
@@ -68,7 +69,7 @@ def run(
         engine = stack.enter_context(Engine(window.ctx, driver=driver))
         session = Session(engine, path, values=checked, trial=trial)
         stack.callback(session.release)
-        watcher = stack.enter_context(Watcher(wake, SUFFIXES))
+        watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher)
         stack.callback(live.painter.release)
         try:

@@ -10,9 +10,6 @@ from playground.paths import GLSL
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch, kernels_of
 
-SUFFIXES = (".toml", ".glsl", ".frag", ".comp", ".fs", ".fragment")
-"""Endings of the text files a sketch may be made of: a new one may mend what was missing."""
-
 
 def files_of(sketch: Sketch) -> frozenset[Path]:
     """Return every file of a sketch: its texts, and the images and elevation files its parameters name.

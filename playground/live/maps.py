@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.paths import GLSL
-from playground.sketch.load import read_technique
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.sketch.techniques import read_technique
 
 if TYPE_CHECKING:
     from playground.engine.plan import Plan

@@ -6,6 +6,7 @@ import math
 
 from playground.sketch.model import Parameter
 from playground.sketch.values import is_whole
+from playground.sketch.widgets import WIDGETS
 
 
 def decimals(parameter: Parameter) -> int:
@@ -34,7 +35,7 @@ def format_of(parameter: Parameter) -> str:
 
 def unit_of(parameter: Parameter) -> str:
     """Return the unit as it follows a number: degrees close up, others after a space."""
-    unit = parameter.unit or ("°" if parameter.widget.kind in ("angle", "direction") else "")
+    unit = parameter.unit or WIDGETS[parameter.widget.kind].unit
     return unit if unit in ("", "°", "%") else f" {unit}"
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import counted
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.costs import draw_costs
@@ -216,7 +217,7 @@ def _pass_header(spec: PassSpec, actions: Actions, look: Theme) -> bool:
             f"{spec.name.replace('_', ' ').capitalize()}###pass", imgui.TreeNodeFlags_.default_open
         )
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    text = f"{runs} run{'' if runs == 1 else 's'}"
+    text = counted(runs, "run")
     spent = [actions.session.times[path] for path in mine if path in actions.session.times]
     if engine.profiling and spent:
         text = f"{sum(spent):.1f} ms    {text}"

@@ -30,7 +30,8 @@ from playground.live.edits import Draft, Edits, reload_draft
 from playground.live.files import files_named_by, files_of
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
-from playground.sketch.load import find, load
+from playground.sketch.find import find
+from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:

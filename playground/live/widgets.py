@@ -1,7 +1,7 @@
 """Draw a parameter as its annotation says, and give back what a hand made of it.
 
-One function a widget, found by its name in ``WIDGETS``: a new widget is a new entry.
-Each returns the new value, or None while nothing changed.
+One function a widget, found by its name in ``CONTROLS``: a new widget is a new entry here
+and a row of ``sketch/widgets.py``. Each returns the new value, or None while nothing changed.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from playground.live.numbers import format_of, snapped, unit_of
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, is_whole, length_of, write
+from playground.sketch.widgets import WIDGETS
 
 _CLAMP = imgui.SliderFlags_.always_clamp
 _PAD = 84.0
@@ -56,13 +57,14 @@ Draw = Callable[[Parameter, Value, Place], "Value | None"]
 
 def draw_value(parameter: Parameter, value: Value, place: Place) -> Value | None:
     """Draw the widget of a parameter over the width that is left; return a new value, or None."""
-    return WIDGETS.get(parameter.widget.kind, _number)(parameter, value, place)
+    return CONTROLS[parameter.widget.kind](parameter, value, place)
 
 
 def explanation(parameter: Parameter, path: str) -> str:
     """Return what a tooltip says of a parameter: what it is, what it takes, its default, its path."""
     lines = [parameter.tooltip] if parameter.tooltip else []
-    unit = unit_of(parameter) if parameter.widget.kind not in ("colour", "menu", "checkbox", "file") else ""
+    in_words = parameter.widget.choices or WIDGETS[parameter.widget.kind].expects
+    unit = "" if in_words else unit_of(parameter)
     default = write(parameter, parameter.default) or "none"
     lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
     return "\n".join([*lines, path])
@@ -275,7 +277,7 @@ def _unit_format(parameter: Parameter) -> str:
     return unit_of(parameter).replace("%", "%%")
 
 
-WIDGETS: dict[str, Draw] = {
+CONTROLS: dict[str, Draw] = {
     "number": _number,
     "slider": _slider,
     "log_slider": _slider,
@@ -287,4 +289,4 @@ WIDGETS: dict[str, Draw] = {
     "point": _point,
     "file": _file,
 }
-"""How each widget of an annotation is drawn, by its name there."""
+"""How each widget is drawn, by its name in an annotation."""

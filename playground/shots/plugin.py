@@ -25,7 +25,7 @@ from typing import NoReturn
 
 import pytest
 
-from playground.errors import ContextError, DataError, PlaygroundError
+from playground.errors import ContextError, DataError, PlaygroundError, counted
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots.compare import compare
@@ -103,7 +103,7 @@ class Shots:
         stale = stale_references(sketches)
         if stale:
             files = "".join(f"\n    {shown(path)}" for path in stale)
-            pytest.fail(f"no shot uses {_counted(len(stale), 'reference')}; remove:{files}", pytrace=False)
+            pytest.fail(f"no shot uses {counted(len(stale), 'reference')}; remove:{files}", pytrace=False)
 
     def _reference_renderer(self) -> ContextInfo:
         try:
@@ -164,7 +164,3 @@ class _Summary:
             terminalreporter.section("shots")
             for line in self.lines:
                 terminalreporter.line(line)
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Any
 
 from playground.errors import ParameterError, nearest
-from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, Value
+from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, Parameter, Sketch, Technique, Value
 from playground.sketch.same import Same
 from playground.sketch.values import coerce, spell
 
@@ -205,9 +205,9 @@ def _land_value(key: str, given: object) -> Value:
     except ValueError:
         values = []
     if key == "size":
-        if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= 16384 for v in values):
+        if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= LARGEST_SIDE for v in values):
             raise ParameterError(
-                f"size = {spell(given)}: expected 1 to 16384 texels a side, as 513 or 513x257"
+                f"size = {spell(given)}: expected 1 to {LARGEST_SIDE} texels a side, as 513 or 513x257"
             )
         return int(values[0]), int(values[-1])
     if key == "extent":

@@ -12,11 +12,13 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.assign import LAND, Shown, shown_parameters, value_of, values_of
-from playground.sketch.find import is_part
-from playground.sketch.flatten import input_names, output_names
-from playground.sketch.load import load, read_technique, shipped_names, shipped_sketches
+from playground.sketch.find import is_part, shipped_names, shipped_sketches
+from playground.sketch.load import load
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
+from playground.sketch.techniques import read_technique
 from playground.sketch.values import write
+from playground.sketch.widgets import WIDGETS
+from playground.sketch.wiring import input_names, output_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +39,8 @@ class Choice:
     def range(self) -> str:
         """What values there may be, in a few words; "" where anything of its type will do."""
         widget = self.parameter.widget
-        if widget.kind == "menu":
-            return ", ".join(widget.choices)
-        if widget.kind == "direction":
-            return "azimuth, elevation"
+        if words := ", ".join(widget.choices) or WIDGETS[widget.kind].listed:
+            return words
         if widget.low is None or widget.high is None:
             return ""
         return f"{widget.low:g} to {widget.high:g}"

@@ -13,13 +13,13 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.assign import resolve
-from playground.sketch.find import is_part
-from playground.sketch.flatten import flatten, output_names, outputs_with_formats, takes_input
-from playground.sketch.load import read_technique, shipped_names
+from playground.sketch.find import is_part, shipped_names
+from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.places import TECHNIQUES
+from playground.sketch.techniques import read_technique
 from playground.sketch.values import coerce
-
-_OWN_SUFFIXES = (".glsl", ".toml", ".frag")
+from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
 
 
 def choices(sketch: Sketch, pass_name: str) -> list[str]:
@@ -66,9 +66,7 @@ def _read(sketch: Sketch, use: str) -> Technique:
 
 def _own_names(sketch: Sketch) -> list[str]:
     """Name the files beside the sketch that could be techniques; library files and other sketches as well."""
-    beside = [
-        p for p in Path(sketch.folder).glob("*.*") if p.suffix in _OWN_SUFFIXES and str(p) != sketch.file
-    ]
+    beside = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
     return sorted({f"./{p.stem}" for p in beside if p.is_file()})
 
 

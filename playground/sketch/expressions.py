@@ -18,12 +18,12 @@ from fractions import Fraction
 from functools import lru_cache
 
 from playground.errors import nearest
+from playground.sketch.model import LARGEST_SIDE
 
 Number = int | float | Fraction
 _LIMIT = 2**62
 _LONGEST = 500
 _DEEPEST = 100
-_LARGEST_SIDE = 16_384
 
 
 class ExpressionError(ValueError):
@@ -83,7 +83,7 @@ def names_in(text: str) -> frozenset[str]:
     return frozenset(found)
 
 
-def accepted_sizes(accepts: str, limit: int = _LARGEST_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """List the sizes up to ``limit`` that ``accepts`` allows along x and along y, smallest first.
 
     ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own. The

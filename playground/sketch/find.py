@@ -6,10 +6,7 @@ from pathlib import Path
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.places import is_file, is_inside
-
-SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
-"""Endings of what is a shader, and so may be opened alone."""
+from playground.sketch.places import SHADERS, TECHNIQUES, TEXTS, is_file, is_inside
 
 
 def find(name: str | Path) -> Path:
@@ -23,14 +20,14 @@ def find(name: str | Path) -> Path:
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
     if is_file(path):
-        if path.suffix not in (".toml", *SHADERS):
+        if path.suffix not in TEXTS:
             raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=shown(path))
         return path
     text = str(name)
     places = [SKETCHES / f"{text}.toml"] if "/" not in text and "\\" not in text else []
-    places += [GLSL / f"{text}{suffix}" for suffix in ("", ".toml", ".glsl")]
+    places += [GLSL / f"{text}{suffix}" for suffix in ("", *TECHNIQUES)]
     for candidate in places:
-        if candidate.suffix in (".toml", *SHADERS) and is_file(candidate) and is_inside(candidate, (GLSL,)):
+        if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
     if is_folder:
         raise SketchError("this folder holds no sketch.toml", file=shown(path))
@@ -44,7 +41,7 @@ def shipped_sketches() -> list[str]:
 
 def shipped_names() -> list[str]:
     """List every name that ``use`` may take in ``glsl/``, library files too, without reading the files."""
-    found = [p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".toml") and not p.is_relative_to(SKETCHES)]
+    found = [p for p in GLSL.rglob("*") if p.suffix in TECHNIQUES and not p.is_relative_to(SKETCHES)]
     return sorted({p.relative_to(GLSL).with_suffix("").as_posix() for p in found})
 
 

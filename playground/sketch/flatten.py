@@ -22,34 +22,13 @@ from playground.sketch.assign import effective_values, resolve
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.same import Same
 from playground.sketch.wiring import (
-    check_graph,
     initial_names,
     inner,
     input_names,
     is_optional,
     output_names,
-    outputs_with_formats,
-    takes_input,
     target_of,
 )
-
-__all__ = [
-    "Fed",
-    "Flat",
-    "Leaf",
-    "Loop",
-    "Node",
-    "Ref",
-    "Source",
-    "check_graph",
-    "flatten",
-    "initial_names",
-    "input_names",
-    "leaves_of",
-    "output_names",
-    "outputs_with_formats",
-    "takes_input",
-]
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +90,10 @@ class Flat:
     outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
     wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
 
+    def user(self, path: str) -> PassSpec:
+        """Return the sketch's own pass that a pass at any level belongs to."""
+        return self.specs[path.partition(".")[0]]
+
     def ref(self, text: str, sketch: str) -> Ref:
         """Return the texture that ``pass[.inner…][:output]`` stands for; raise ``SketchError``."""
         path, _, output = text.partition(":")
@@ -163,6 +146,28 @@ def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
             yield from leaves_of(node.body)
         else:
             yield node
+
+
+def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:
+    """Return the paths of the passes that repeat, those inside loops included."""
+    kernels = (leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1")
+    return sorted({*_loops_of(nodes), *kernels})
+
+
+def repeated_path(path: str, nodes: tuple[Node, ...]) -> str | None:
+    """Return the pass that repeats and that a path stands for: itself, or the only one inside it."""
+    valid = repeated_paths(nodes)
+    if path in valid:
+        return path
+    inside = [name for name in valid if name.startswith(f"{path}.")]
+    return inside[0] if len(inside) == 1 else None
+
+
+def _loops_of(nodes: tuple[Node, ...]) -> Iterator[str]:
+    for node in nodes:
+        if isinstance(node, Loop):
+            yield node.path
+            yield from _loops_of(node.body)
 
 
 @lru_cache(maxsize=32)

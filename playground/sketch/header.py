@@ -11,17 +11,20 @@ from playground.sketch import expressions
 from playground.sketch.annotation import arguments
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Buffer, Kernel, Output
+from playground.sketch.places import SHADERS
 from playground.sketch.source import Line, SourceText
-from playground.sketch.uniforms import check_name, read_uniforms
+from playground.sketch.uniforms import check_name, is_given, read_uniforms
 from playground.sketch.words import DRIVER_BOUND
 
 FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
 
 _PRAGMA = re.compile(r"#\s*pragma\s+(\w+)\s*(.*)", re.DOTALL)
 _OTHER_PRAGMA = re.compile(r"\s*#\s*pragma\s+(\w+)\s*\(")
+_DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _MAIN = re.compile(r"\bvoid\s+main\s*\(")
-_TITLE = re.compile(r"^\S+\.(?:glsl|comp|frag|fs|fragment)\s*(?:--|—|–|:)\s*")
+_OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
+_LONGEST_TITLE = 72
 _IMAGE = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
@@ -76,6 +79,7 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     assert match is not None  # or source.py would not have taken it for a pragma
     kind = match.group(1)
     options = _options(kind, match.group(2), line)
+    _refuse_redefined(source)
     parameters, inputs = read_uniforms(source)
     kernel = Kernel(name, kind, source, (), parameters, inputs, title=title_of(source), companion=companion)
     if kind == "compute":
@@ -112,16 +116,25 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
 
 
 def title_of(source: SourceText) -> str:
-    """Return the sentence that a file begins with, without its own name."""
+    """Return the sentence that a file begins with, without its own name, as a heading."""
     for line in source.lines:
         if line.chain or line.pragma or _VERSION.match(line.code):
             continue
         if line.code.strip() or line.comment.startswith("!"):
             break
-        text = _TITLE.sub("", line.comment.strip())
+        text = _OWN_NAME.sub("", line.comment.strip())
         if any(letter.isalnum() for letter in text):
-            return text
+            return _titled(text)
     return ""
+
+
+def _titled(text: str) -> str:
+    """Return a sentence as a heading: no full stop, a capital, of a long one what stands before its colon."""
+    if len(text) > _LONGEST_TITLE:
+        text = text.partition(": ")[0]
+    text = text.removesuffix(".")
+    # Not sRGB or iTime, which are spelt so.
+    return text[:1].upper() + text[1:] if text.partition(" ")[0].islower() else text
 
 
 def _plain(name: str, source: SourceText, version: Line) -> Kernel:
@@ -245,6 +258,13 @@ def _refuse_misspelt(lines: list[Line]) -> None:
         hint = nearest(match.group(1), _KEYS) if match else ""
         if match and "did you mean" in hint:
             raise line.error(f"no #pragma '{match.group(1)}'{hint}")
+
+
+def _refuse_redefined(source: SourceText) -> None:
+    for line in source.lines:
+        match = _DEFINE.match(line.code)
+        if match and is_given(match.group(1)):
+            check_name(match.group(1), line, "macro")
 
 
 def _refuse_driver_bound(source: SourceText) -> None:

@@ -12,32 +12,21 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
 from playground.sketch.assign import effective_values
-from playground.sketch.find import SHADERS, find, shipped_names, shipped_sketches
+from playground.sketch.find import find
 from playground.sketch.flatten import flatten
-from playground.sketch.model import Graph, PassSpec, Sketch, Technique, Value, kernels_of
-from playground.sketch.places import is_absolute, is_file
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
+from playground.sketch.places import SHADERS, is_absolute, is_file, root_of
 from playground.sketch.techniques import (
     Techniques,
+    nothing_to_run,
     read_kernel,
     read_technique,
     refuse_monster,
-    shipped_techniques,
 )
 from playground.sketch.toml_graph import TECHNIQUE_KEYS
 from playground.sketch.toml_sketch import SKETCH_KEYS, read_sketch
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.wiring import output_names
-
-__all__ = [
-    "find",
-    "is_technique",
-    "load",
-    "read_kernel",
-    "read_technique",
-    "shipped_names",
-    "shipped_sketches",
-    "shipped_techniques",
-]
 
 
 def load(name: str | Path = "") -> Sketch:
@@ -49,6 +38,8 @@ def load(name: str | Path = "") -> Sketch:
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
     """
+    if not isinstance(name, str | Path):
+        raise SketchError(f"a sketch is loaded by its name or its path, not by {name!r}")
     path = find(name or DEFAULT_SKETCH).resolve()
     try:
         if path.suffix in SHADERS:
@@ -56,7 +47,7 @@ def load(name: str | Path = "") -> Sketch:
         file = TomlFile(path, path.parent)
         techniques = Techniques()
         if _holds_technique(file):
-            return _staged(path, techniques.graph(path, f"./{path.stem}", _root_of(path)))
+            return _staged(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
         sketch = read_sketch(file, techniques.read)
         refuse_monster(sketch.graph)
         return sketch
@@ -81,17 +72,13 @@ def _holds_technique(file: TomlFile) -> bool:
     return bool(keys & set(TECHNIQUE_KEYS))
 
 
-def _root_of(path: Path) -> Path:
-    return GLSL if path.is_relative_to(GLSL) else path.parent
-
-
 def _shader_alone(path: Path) -> Sketch:
     """Return a sketch that shows one shader file."""
     if path.suffix == ".comp" and is_file(path.with_suffix(".glsl")):
         path = path.with_suffix(".glsl")
-    kernel = read_kernel(path, _root_of(path))
+    kernel = read_kernel(path, root_of(path))
     if kernel is None:
-        raise SketchError("a library file: it has no #pragma kernel, source or draw to run", file=shown(path))
+        raise nothing_to_run(path)
     if kernel.kind == "compute":
         raise SketchError(
             f"a companion runs in place of {path.stem}.glsl, which is missing", file=shown(path)
@@ -99,8 +86,14 @@ def _shader_alone(path: Path) -> Sketch:
     if kernel.kind.startswith("plain"):
         view = PassSpec("view", f"./{path.stem}", kernel, file=shown(path))
         graph = Graph(path.stem, str(path), (view,), title=kernel.title)
-        return Sketch(path.stem, str(path), str(path.parent), graph, kernel.title, samples=1)
+        return Sketch(path.stem, str(path), str(_folder_of(path)), graph, kernel.title, samples=1)
     return _staged(path, kernel)
+
+
+def _folder_of(path: Path) -> Path:
+    """Return the folder of the sketch that shows a technique: what the technique may read is in it."""
+    root = root_of(path)
+    return path.parent if root == GLSL else root
 
 
 def _staged(path: Path, technique: Technique) -> Sketch:
@@ -109,7 +102,10 @@ def _staged(path: Path, technique: Technique) -> Sketch:
     outputs = set(output_names(technique))
     passes = list(stage.graph.passes)
     place = next((i for i, p in enumerate(passes) if outputs & set(output_names(p.technique))), None)
-    spec = PassSpec("", f"./{path.stem}", technique, file=shown(path))
+    folder = _folder_of(path)
+    use = f"./{path.relative_to(folder).with_suffix('').as_posix()}"
+    line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
+    spec = PassSpec("", use, technique, file=shown(path), line=line)
     if place is not None:
         passes[place] = replace(spec, name=passes[place].name)
     else:
@@ -123,7 +119,7 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         stage,
         name=path.stem,
         file=str(path),
-        folder=str(path.parent),
+        folder=str(folder),
         graph=graph,
         title=technique.title or path.stem,
         presets=(),

@@ -5,18 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from playground.errors import ParameterError, SketchError, nearest
-from playground.sketch.source import SourceText
+from playground.errors import ParameterError, ShaderError, SketchError, nearest
+from playground.sketch.source import Line, SourceText
 
 Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
 """A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
+
+LARGEST_SIDE = 16_384
+"""Texels or pixels that a side may have: what common graphics cards take."""
+
+DEFAULT_PICTURE = (1280, 720)
+"""Size in pixels of a picture for which nobody asks another."""
+
+DRIVERS = ("auto", "fragment", "compute")
+"""What may run kernels; "auto" takes for each the one that it gains by."""
 
 
 @dataclass(frozen=True, slots=True)
 class Widget:
     """How a parameter is shown and what it may be."""
 
-    kind: str = "number"  # number slider log_slider angle direction colour menu checkbox point file
+    kind: str = "number"  # a row of sketch/widgets.py
     low: float | None = None  # None: unbounded
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu
@@ -122,6 +131,16 @@ class Kernel:
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the kernel is made of."""
         return self.source.files + (self.companion.files if self.companion else ())
+
+    @property
+    def pragma(self) -> Line | None:
+        """The line of its header; a plain shader has none."""
+        return next((line for line in self.source.lines if line.pragma and not line.chain), None)
+
+    def error(self, message: str) -> ShaderError:
+        """Return an error that points at its header."""
+        line = self.pragma
+        return line.error(message) if line else ShaderError(message, file=self.path)
 
     def parameter(self, name: str) -> Parameter | None:
         """Return the parameter of that name, if there is one."""

@@ -12,6 +12,15 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from playground.paths import GLSL
 
+SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
+"""Endings of what is a shader, and so may be opened alone."""
+
+TECHNIQUES = (".toml", ".glsl", ".frag")
+"""Endings of what ``use`` may name; it leaves them out."""
+
+TEXTS = (*SHADERS, ".toml")
+"""Endings of the text files that a sketch may be made of."""
+
 _MOST_FOLDERS = 500
 
 
@@ -29,6 +38,17 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):
         return False
+
+
+def root_of(path: Path) -> Path:
+    """Return the folder that a technique opened alone may read from, besides ``glsl/``.
+
+    ``glsl/`` for what lies in it; else the nearest folder around it that holds a
+    ``sketch.toml``; else its own.
+    """
+    if path.is_relative_to(GLSL):
+        return GLSL
+    return next((folder for folder in path.parents if is_file(folder / "sketch.toml")), path.parent)
 
 
 def is_inside(path: Path, roots: Iterable[Path]) -> bool:

@@ -10,7 +10,8 @@ from playground.paths import GLSL, shown
 from playground.sketch.find import shipped_names
 from playground.sketch.model import Graph, Kernel, Output, Technique
 from playground.sketch.parsed import parsed_kernel
-from playground.sketch.places import is_file, is_inside, leads_outside, names_below
+from playground.sketch.places import TECHNIQUES, is_file, is_inside, leads_outside, names_below
+from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.wiring import outputs_with_formats
@@ -42,6 +43,17 @@ def read_technique(use: str, folder: Path, root: Path) -> Technique:
     Raises ``SketchError`` with the nearest name when there is none.
     """
     return Techniques().read(use, folder, root)
+
+
+def nothing_to_run(path: Path) -> SketchError:
+    """Return the error of a shader file that is opened alone and has nothing to run."""
+    if path.suffix == ".glsl":
+        message = "a library file: it has no #pragma kernel, source or draw to run"
+        return SketchError(message, file=shown(path))
+    message = "has neither a #version and main of its own nor a #pragma kernel"
+    if "mainImage" in read_text(path):
+        message += "; ShaderToy's mainImage needs a #version before it and a main that calls it"
+    return SketchError(message, file=shown(path))
 
 
 def shipped_techniques() -> list[str]:
@@ -128,7 +140,7 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     own = use.startswith("./")
     limit = root if own else GLSL
     base = (folder if own else GLSL) / (use[2:] if own else use)
-    candidates = [base.parent / f"{base.name}{suffix}" for suffix in (".toml", ".glsl", ".frag")]
+    candidates = [base.parent / f"{base.name}{suffix}" for suffix in TECHNIQUES]
     if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
         raise SketchError(f"use = '{use}' lies outside {'the sketch’s own folder' if own else 'glsl/'}")
     present = [path for path in candidates if is_file(path)]
@@ -136,14 +148,14 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
         raise SketchError(f"use = '{use}' is both {shown(present[0])} and {shown(present[1])}; remove one")
     if present:
         return present[0].resolve(), limit
-    ending = f" (without '{base.suffix}')" if base.suffix in (".glsl", ".toml", ".frag") else ""
+    ending = f" (without '{base.suffix}')" if base.suffix in TECHNIQUES else ""
     raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, _known_names(own, folder))}")
 
 
 def _known_names(own: bool, folder: Path) -> list[str]:
     if not own:
         return shipped_names()
-    files = names_below((folder,), (".glsl", ".toml", ".frag"))
+    files = names_below((folder,), TECHNIQUES)
     return [f"./{name.rpartition('.')[0]}" for name in files]
 
 

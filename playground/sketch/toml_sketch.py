@@ -9,8 +9,18 @@ from typing import Any
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import LAND, check_value, resolve
-from playground.sketch.flatten import Loop, flatten, leaves_of
-from playground.sketch.model import Camera, Graph, Parameter, PassSpec, Preset, Shot, Sketch, Value
+from playground.sketch.flatten import flatten, repeated_path, repeated_paths
+from playground.sketch.model import (
+    LARGEST_SIDE,
+    Camera,
+    Graph,
+    Parameter,
+    PassSpec,
+    Preset,
+    Shot,
+    Sketch,
+    Value,
+)
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_values
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
@@ -150,10 +160,9 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
         if name in [s.name for s in found]:
             raise file.error(f"a second shot named '{name}'", *place, "name")
         size = file.take(table, "size", list, [640, 360], *place)
-        if len(size) != 2 or not all(type(v) is int and 1 <= v <= 8192 for v in size):
-            raise file.error(
-                f"size = {spell(size)}: expected [width, height] in pixels, 1 to 8192", *place, "size"
-            )
+        if len(size) != 2 or not all(type(v) is int and 1 <= v <= LARGEST_SIDE for v in size):
+            message = f"size = {spell(size)}: expected [width, height] in pixels, 1 to {LARGEST_SIDE}"
+            raise file.error(message, *place, "size")
         preset = file.take(table, "preset", str, "", *place)
         if "preset" in table and preset not in presets:
             raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *place, "preset")
@@ -179,11 +188,9 @@ def _steps(
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
         nodes = flatten(sketch, compute=False).nodes
-        loops = [node.path for node in nodes if isinstance(node, Loop)]
-        valid = [*loops, *(leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1")]
         for path, _ in steps:
-            if path not in valid:
-                message = f"steps: no repeated pass '{path}'{nearest(path, valid)}"
+            if repeated_path(path, nodes) is None:
+                message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"
                 raise file.error(message, *place, "steps", *path.split("."))
     return steps
 

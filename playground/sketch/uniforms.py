@@ -16,6 +16,7 @@ from playground.sketch import values
 from playground.sketch.annotation import calls as read_calls
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
 from playground.sketch.source import Line, SourceText
+from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
 from playground.sketch.words import GIVEN, GLSL_WORDS, PREFIX, RESERVED
 
 _UNIFORM = re.compile(
@@ -28,23 +29,10 @@ _WHOLE = re.compile(r"([-+]?)(?:0[xX]([0-9a-fA-F]+)|(\d+))[uU]?")
 _VECTOR = re.compile(r"([iu]?vec[234])\s*\((.*)\)", re.DOTALL)
 _LONGEST_LITERAL = 64
 
-_SCALARS = frozenset({"float", "int", "uint", "bool"})
-_VECTORS = frozenset({"vec2", "vec3", "vec4", "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4"})
-_BARE = frozenset({"angle", "direction", "colour", "checkbox", "point", "file", "input"})
-_RANGED = frozenset({"slider", "log_slider"})
-_WIDGETS = _BARE | _RANGED | {"menu"}
+_TYPES = frozenset(SCALARS + VECTORS)
+_ROLES = WIDGETS.keys() - {"number"} | {"input"}
+_BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
 _MODIFIERS = frozenset({"step", "unit", "group", "label"})
-_FITS = {
-    "direction": ("vec2",),
-    "point": ("vec2",),
-    "colour": ("vec3", "vec4"),
-    "menu": ("int",),
-    "checkbox": ("bool",),
-    "angle": ("float",),
-    "log_slider": ("float", "int", "uint"),
-    "slider": tuple(sorted((_SCALARS | _VECTORS) - {"bool"})),
-}
-_FIXED_RANGE = {"angle": (-360.0, 360.0), "point": (0.0, 1.0)}
 
 Calls = dict[str, list[str]]
 
@@ -67,7 +55,7 @@ def read_uniforms(
         if not match:
             continue
         glsl_type, name, array, initial = match.groups()
-        if name in skip or (plain and (array or glsl_type not in _SCALARS | _VECTORS)):
+        if name in skip or (plain and (array or glsl_type not in _TYPES)):
             continue
         if array:
             raise line.error(f"'{name}' is an array; parameters are scalars and vectors")
@@ -80,25 +68,30 @@ def read_uniforms(
             raise line.error(f"'{name}' is declared twice")
         seen[name] = line
         note = line.comment[1:] if line.comment.startswith("!") else ""
-        calls, tooltip = read_calls(note, line, _WIDGETS | _MODIFIERS, _BARE)
+        calls, tooltip = read_calls(note, line, _ROLES | _MODIFIERS, _BARE)
         if glsl_type == "sampler2D":
             item = _sampler(name, calls, tooltip, line)
             if isinstance(item, Input):
                 inputs.append(item)
             else:
                 parameters.append(item)
-        elif glsl_type in _SCALARS | _VECTORS:
+        elif glsl_type in _TYPES:
             parameters.append(_parameter(name, glsl_type, initial, calls, tooltip, line))
         else:
             raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
     return tuple(parameters), tuple(inputs)
 
 
+def is_given(name: str) -> bool:
+    """Say whether a name is one that the engine gives, or calls."""
+    return name in GIVEN or name in RESERVED or name.startswith("previous_")
+
+
 def check_name(name: str, line: Line, what: str) -> None:
     """Raise ``ShaderError`` for a name that GLSL or the engine has taken."""
     found = re.search(rf"\b{re.escape(name)}\b", line.code)
     column = found.start() + 1 if found else 0
-    if name in GIVEN or name in RESERVED or name.startswith("previous_"):
+    if is_given(name):
         raise line.error(f"'{name}' is given to every kernel; name the {what} something else", column)
     if name.startswith((PREFIX, "gl_")) or "__" in name:
         raise line.error(f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved", column)
@@ -120,7 +113,7 @@ def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
 
 
 def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
-    wrong = sorted(set(calls) & _WIDGETS - {"file", "input"})
+    wrong = sorted(set(calls) & _ROLES - {"file", "input"})
     if wrong:
         raise line.error(f"{wrong[0]} is not for a sampler2D; '{name}' may be an input or a file")
     if "file" in calls and "input" in calls:
@@ -162,14 +155,14 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
 def _parameter(
     name: str, glsl_type: str, initial: str | None, calls: Calls, tooltip: str, line: Line
 ) -> Parameter:
-    widgets = [word for word in calls if word in _WIDGETS]
+    widgets = [word for word in calls if word in _ROLES]
     if len(widgets) > 1:
         raise line.error(f"'{name}' has two widgets: {' and '.join(widgets)}")
     kind = widgets[0] if widgets else ("checkbox" if glsl_type == "bool" else "number")
     if kind in ("file", "input"):
         raise line.error(f"{kind} is for a sampler2D; '{name}' is a {glsl_type}")
-    fits = _FITS.get(kind)
-    if fits and glsl_type not in fits:
+    fits = WIDGETS[kind].types
+    if glsl_type not in fits:
         wanted = " or ".join(fits) if len(fits) <= 3 else "numbers"
         raise line.error(f"{kind} is for {wanted}; '{name}' is a {glsl_type}")
     step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
@@ -196,20 +189,21 @@ def _parameter(
 
 
 def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
-    if kind in _RANGED or (kind == "angle" and arguments):
+    facts = WIDGETS[kind]
+    if facts.takes == "range" or (facts.takes == "range or nothing" and arguments):
         low, high = _numbers(name, kind, arguments, 2, line)
         if kind == "log_slider" and low <= 0:
             raise line.error(f"log_slider of '{name}': its range must lie above 0")
         return Widget(kind, low, high)
-    if kind == "menu":
+    if facts.takes == "choices":
         if len(arguments) < 2:
-            raise line.error(f'the menu of \'{name}\' needs its choices, as menu("linear", "smooth")')
+            raise line.error(f'the {kind} of \'{name}\' needs its choices, as {kind}("linear", "smooth")')
         if len(set(arguments)) < len(arguments):
-            raise line.error(f"the menu of '{name}' has a choice twice")
+            raise line.error(f"the {kind} of '{name}' has a choice twice")
         return Widget(kind, choices=tuple(arguments))
     if arguments:
         raise line.error(f"{kind} of '{name}' takes nothing in brackets")
-    return Widget(kind, *_FIXED_RANGE.get(kind, (None, None)))
+    return Widget(kind, *(facts.range or (None, None)))
 
 
 def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line) -> tuple[float, ...]:

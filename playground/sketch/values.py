@@ -14,18 +14,9 @@ from collections.abc import Mapping, Sequence
 from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Value
+from playground.sketch.widgets import VECTORS, WIDGETS
 
-_LENGTH = {
-    "vec2": 2,
-    "vec3": 3,
-    "vec4": 4,
-    "ivec2": 2,
-    "ivec3": 3,
-    "ivec4": 4,
-    "uvec2": 2,
-    "uvec3": 3,
-    "uvec4": 4,
-}
+_LENGTH = {vector: int(vector[-1]) for vector in VECTORS}
 _TRUE = {
     "true": True,
     "on": True,
@@ -64,7 +55,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
             given = os.fspath(given)
         if isinstance(given, str) and "\0" not in given:
             return given
-        raise _wrong(name, given, "the path of a file")
+        raise _wrong(name, given, WIDGETS["file"].expects)
     if kind == "menu":
         return _menu(parameter, given, name)
     if parameter.type == "bool":
@@ -72,7 +63,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
             return given
         if isinstance(given, str) and given.strip().lower() in _TRUE:
             return _TRUE[given.strip().lower()]
-        raise _wrong(name, given, "true or false")
+        raise _wrong(name, given, WIDGETS["checkbox"].expects)
     if kind == "direction" and isinstance(given, Mapping):
         given = _direction(given, name)
     if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
@@ -98,20 +89,14 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
 def expected(parameter: Parameter) -> str:
     """Say in a few words what a parameter takes."""
     widget = parameter.widget
-    count = length_of(parameter.type)
-    what = {
-        "direction": "azimuth and elevation in degrees, as 135,25",
-        "colour": "a colour, as #8a9a5b",
-        "point": "two numbers from 0 to 1, as 0.5,0.5",
-        "file": "the path of a file",
-        "checkbox": "true or false",
-    }.get(widget.kind)
-    if widget.kind == "menu":
+    if widget.choices:
         return "one of " + ", ".join(widget.choices)
-    if what is None:
-        noun = "whole number" if is_whole(parameter.type) else "number"
-        what = f"a {noun}" if count == 1 else f"{count} {noun}s, as " + ",".join(["1"] * count)
-    if widget.low is not None and widget.high is not None and widget.kind not in ("direction", "point"):
+    if words := WIDGETS[widget.kind].expects:
+        return words
+    count = length_of(parameter.type)
+    noun = "whole number" if is_whole(parameter.type) else "number"
+    what = f"a {noun}" if count == 1 else f"{count} {noun}s, as " + ",".join(["1"] * count)
+    if widget.low is not None and widget.high is not None:
         what += f" from {widget.low:g} to {widget.high:g}"
     return what
 
@@ -158,13 +143,13 @@ def _menu(parameter: Parameter, given: object, name: str) -> int:
         if given in choices:
             return choices.index(given)
         raise ParameterError(
-            f"{name} = {spell(given)}: expected one of {', '.join(choices)}{_meant(given, choices)}"
+            f"{name} = {spell(given)}: expected {expected(parameter)}{_meant(given, choices)}"
         )
     if isinstance(given, float) and given.is_integer():
         given = int(given)
     if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(choices):
         return given
-    raise _wrong(name, given, "one of " + ", ".join(choices))
+    raise _wrong(name, given, expected(parameter))
 
 
 def _meant(given: str, choices: Sequence[str]) -> str:

@@ -46,6 +46,7 @@ class Elevation:
     code_range: tuple[float, float] | None = None  # what raw numbers can be: (0, 255), (0, 65535),
     # (0, 16777215) when packed; None for metres and floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
+    path: Path | None = None  # where it was read from
 
     @property
     def size(self) -> tuple[int, int]:
@@ -186,4 +187,4 @@ def _finish(found: Found, path: Path, first_row: Edge) -> Elevation:
         if high > low and grain > (high - low) / 65536.0:
             notes += (f"{values.dtype} heights up to {high:.6g} are kept as float32, to {grain:.2g} only",)
     heights.setflags(write=False)
-    return Elevation(heights, path.name, found.spacing, found.in_metres, found.code_range, notes)
+    return Elevation(heights, path.name, found.spacing, found.in_metres, found.code_range, notes, path)

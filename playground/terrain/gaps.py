@@ -33,8 +33,8 @@ def fill_no_data(elevation: Elevation, mode: Voids = "refuse") -> Elevation:
         y, x = np.unravel_index(int(np.argmax(np.isnan(elevation.heights))), elevation.heights.shape)
         raise DataError(
             f"{elevation.missing} of {elevation.heights.size} texels have no data, the first at ({x}, {y}) "
-            "from the south-west corner; expected none, or the mode 'fill'",
-            file=elevation.name,
+            'from the south-west corner; expected none, or no_data = "fill"',
+            file=elevation.path or elevation.name,
         )
     heights = _filled(elevation.heights)
     heights.setflags(write=False)

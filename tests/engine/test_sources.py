@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from playground.errors import PlaygroundError
+from playground.errors import DataError, PlaygroundError
 
 SOURCE = """#pragma source("elevation_file", output = "height:r32f")
 uniform sampler2D elevation; //! file("land.npy")
@@ -79,3 +81,49 @@ def test_a_missing_file_has_a_sentence(any_engine, land):
     (folder.path / "land.npy").unlink()
     with pytest.raises(PlaygroundError, match="no such file"):
         any_engine.read(folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n', size=""), "height")
+
+
+PASS = '[[pass]]\nname = "height"\nuse = "./land"\n'
+
+
+def refused(any_engine, sketch) -> str:
+    """Draw what is wrong; see that the error stands at the sketch's pass, and return its sentence."""
+    with pytest.raises(DataError) as caught:
+        any_engine.read(sketch, "height")
+    (found,) = caught.value.diagnostics
+    assert (Path(found.file).name, found.line) == ("sketch.toml", 3), found
+    return found.message
+
+
+@pytest.mark.parametrize(
+    "body", [PASS, '[[pass]]\nname = "height"\nuse = "./inner"\n'], ids=["source", "nested"]
+)
+def test_a_data_file_that_is_wrong_is_told_at_the_pass_that_names_it(any_engine, land, monkeypatch, body):
+    folder, _ = land
+    monkeypatch.chdir(folder.path)
+    folder.write("inner.toml", '[[pass]]\nname = "height"\nuse = "./land"\n')
+    (folder.path / "land.npy").write_bytes(b"nothing")
+    said = refused(any_engine, folder.sketch(body, size=""))
+    assert said.startswith("land.npy: the file is damaged")
+    holes = np.ones((4, 4), dtype=np.float32)
+    holes[1, 1] = np.nan
+    np.save(folder.path / "land.npy", holes)
+    said = refused(any_engine, folder.sketch(body, size=""))
+    assert said.startswith("land.npy: 1 of 16 texels have no data")
+    assert said.endswith('expected none, or no_data = "fill"')
+    (folder.path / "land.npy").unlink()
+    said = refused(any_engine, folder.sketch(body, size=""))
+    assert "land.npy: height" in said
+    assert "there is no such file" in said
+
+
+def test_a_picture_that_is_wrong_is_told_at_the_pass_that_names_it(any_engine, folder, monkeypatch):
+    monkeypatch.chdir(folder.path)
+    folder.write("grass.png", "no picture")
+    folder.write(
+        "land.glsl",
+        '#pragma kernel(output = "height:r32f")\n'
+        'uniform sampler2D grass;  //! file("grass.png")\n'
+        "float kernel(ivec2 texel) { return texelFetch(grass, texel, 0).r; }\n",
+    )
+    assert refused(any_engine, folder.sketch(PASS)).startswith("grass.png: not a picture")

@@ -25,15 +25,6 @@ def test_encoding_is_the_srgb_curve(on_gpu):
     np.testing.assert_allclose(found[:, 1], encoded(linear), atol=2e-6)
 
 
-def test_decoding_undoes_encoding(on_gpu):
-    values = grey(np.linspace(0, 1, 1001))
-    there = on_gpu("colour/encode.glsl", "linear_from_srgb(srgb_from_linear(c))", c=values)
-    back = on_gpu("colour/encode.glsl", "srgb_from_linear(linear_from_srgb(c))", c=values)
-    np.testing.assert_allclose(there, values, atol=3e-6)
-    # The standard's two pieces meet only to 3e-8, which the steep end of the curve multiplies by 13.
-    np.testing.assert_allclose(back, values, atol=3e-6)
-
-
 def test_encoding_keeps_within_the_screen_s_range(on_gpu):
     found = on_gpu("colour/encode.glsl", "srgb_from_linear(c)", c=grey(np.array([-1.0, 0.0, 1.0, 9.0])))
     np.testing.assert_allclose(found[:, 0], [0, 0, 1, 1], atol=1e-6)

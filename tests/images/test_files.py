@@ -16,6 +16,7 @@ from PIL import Image as PillowImage
 from playground.errors import DataError
 from playground.images.files import (
     encode_png,
+    new_name,
     read_image,
     read_png,
     read_samples,
@@ -391,6 +392,29 @@ def test_values_that_cannot_be_written_are_sentences(tmp_path, name, values, wor
     with pytest.raises(DataError, match=words):
         write_values(tmp_path / name, values)
     assert left_in(tmp_path) == []
+
+
+def test_a_new_name_is_one_that_nothing_has(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with new_name("land.png") as first, new_name("land.png") as second:
+        assert (first.name, second.name) == ("land.png", "land-2.png")
+        assert first.exists() and second.exists(), "held from here on"
+    assert left_in(tmp_path) == ["land-2.png", "land.png"]
+
+
+def test_a_new_name_is_given_back_when_nothing_is_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(KeyboardInterrupt), new_name("land.png"):
+        raise KeyboardInterrupt
+    assert left_in(tmp_path) == []
+
+
+def test_a_new_name_where_nothing_can_be_written_is_a_sentence(tmp_path):
+    with (
+        pytest.raises(DataError, match="nothing can be written here: No such file"),
+        new_name(tmp_path / "a/b"),
+    ):
+        raise AssertionError
 
 
 def test_importing_loads_no_heavy_library():

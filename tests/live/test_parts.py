@@ -14,8 +14,14 @@ from playground.live.excerpt import cut, short_place
 from playground.live.gesture import Gesture, steered
 from playground.live.numbers import decimals, format_of, snapped
 from playground.live.pictures import save_new
+from playground.live.widgets import CONTROLS
 from playground.sketch.model import Camera, Parameter, Widget
+from playground.sketch.widgets import WIDGETS
 from playground.terrain.camera import look
+
+
+def test_every_widget_of_an_annotation_has_a_control():
+    assert CONTROLS.keys() == WIDGETS.keys()
 
 
 @pytest.mark.parametrize(
@@ -125,5 +131,5 @@ def test_pictures_never_replace_one_another(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_not_there_is_said(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match="no picture can be saved here"):
+    with pytest.raises(DataError, match="nothing can be written here"):
         save_new(Frame(np.zeros((4, 6, 4), np.uint8)), tmp_path / "none", "a")

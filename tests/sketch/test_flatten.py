@@ -11,20 +11,16 @@ import pytest
 from playground.errors import PlaygroundError
 from playground.sketch import flatten as module
 from playground.sketch.assign import values_of
-from playground.sketch.flatten import (
-    Fed,
-    Leaf,
-    Loop,
-    Ref,
-    flatten,
+from playground.sketch.find import shipped_sketches
+from playground.sketch.flatten import Fed, Leaf, Loop, Ref, flatten, leaves_of
+from playground.sketch.load import load
+from playground.sketch.wiring import (
     initial_names,
     input_names,
-    leaves_of,
     output_names,
     outputs_with_formats,
     takes_input,
 )
-from playground.sketch.load import load, shipped_sketches
 
 
 def kernel(outputs: str, *inputs: str, repeat: str = "", parameters: str = "") -> str:

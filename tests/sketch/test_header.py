@@ -66,7 +66,7 @@ uniform int turns = 3;     //! slider(1, 9) unit("turns") label("How often") gro
                            //  too often
 """
     )
-    assert found.kind == "kernel" and found.title == "land by halving."
+    assert found.kind == "kernel" and found.title == "Land by halving"
     assert [(o.name, o.format, o.components, o.glsl) for o in found.outputs] == [
         ("height", "r32f", 1, "float"),
         ("water", "rgba16f", 4, "vec4"),
@@ -187,13 +187,16 @@ def test_a_guarded_file_may_come_twice_by_two_ways(parse, tmp_path):
 @pytest.mark.parametrize(
     ("text", "title"),
     [
-        ("// land.glsl -- a slope.\n", "a slope."),
-        ("// land.frag: a slope.\n", "a slope."),
+        ("// land.glsl -- a slope.\n", "A slope"),
+        ("// land.frag: a slope.\n", "A slope"),
         ("// A slope\n", "A slope"),
         ("//////////////\n// -----\n// A slope\n", "A slope"),
         ("#version 330\n\n// A slope\n", "A slope"),
         ("float x;\n// no title\n", ""),
-        ('#include "lib.glsl"\n// mine\n', "mine"),
+        ('#include "lib.glsl"\n// mine\n', "Mine"),
+        ("// land.glsl -- sRGB's curve: NaN stays NaN.\n", "sRGB's curve: NaN stays NaN"),
+        ("// land.glsl -- a slope: " + "long " * 20 + "\n", "A slope"),
+        ("// NaN. Or not …\n", "NaN. Or not …"),
         ("", ""),
     ],
 )
@@ -461,3 +464,15 @@ def test_mutated_headers_raise_nothing_but_sentences(parse):
             parse("".join(letters))
         except PlaygroundError as error:
             assert error.diagnostics[0].file and error.diagnostics[0].message
+
+
+# Macros
+
+
+@pytest.mark.parametrize("name", ["size", "time", "previous", "previous_height", "kernel", "visit", "extent"])
+def test_a_macro_may_not_take_the_name_of_what_a_kernel_is_given(refused, name):
+    refused(KERNEL + f"  #  define {name} 3\n", f"'{name}' is given to every kernel; name the macro", 2)
+
+
+def test_a_macro_of_any_other_name_may_stand(parse):
+    assert parse(KERNEL + "#define sizes 3\n#define FAR (size.x * 2)\n") is not None

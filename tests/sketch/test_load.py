@@ -13,16 +13,10 @@ import pytest
 
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.load import (
-    find,
-    is_technique,
-    load,
-    read_technique,
-    shipped_names,
-    shipped_sketches,
-    shipped_techniques,
-)
+from playground.sketch.find import find, shipped_names, shipped_sketches
+from playground.sketch.load import is_technique, load
 from playground.sketch.model import Camera, Kernel
+from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.values import coerce
 
 LAND = """\
@@ -228,10 +222,8 @@ def test_a_kernel_alone_takes_its_place_in_the_default_sketch(folder):
     stage = load()
     assert [p.name for p in found.graph.passes] == [p.name for p in stage.graph.passes]
     height = found.graph.find("height")
-    assert (
-        height is not None and isinstance(height.technique, Kernel) and height.technique.title == "a slope."
-    )
-    assert (found.name, found.title, found.camera) == ("land", "a slope.", stage.camera)
+    assert height is not None and isinstance(height.technique, Kernel) and height.technique.title == "A slope"
+    assert (found.name, found.title, found.camera) == ("land", "A slope", stage.camera)
 
 
 def test_what_stays_of_the_default_sketch_keeps_its_files(folder):
@@ -532,7 +524,7 @@ def test_a_technique_in_a_folder_below_uses_what_is_beside_it(folder):
     folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './land'\n")
     folder.write("below/land.glsl", LAND.replace("a slope", "below"))
     found = folder.sketch(PASS.replace("land", "below/t"))
-    assert found.graph.passes[0].technique.passes[0].technique.title == "below."
+    assert found.graph.passes[0].technique.passes[0].technique.title == "Below"
     folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './../land'\n")
     assert folder.sketch(PASS.replace("land", "below/t"))
 

@@ -7,7 +7,7 @@ import pytest
 
 from playground.errors import DataError, SketchError
 from playground.paths import GLSL
-from playground.sketch.load import read_technique
+from playground.sketch.techniques import read_technique
 from playground.terrain.sources import SOURCES, source_kind
 
 KIND = source_kind("elevation_file")

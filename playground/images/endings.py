@@ -1,0 +1,14 @@
+"""Which file endings pictures and values have."""
+
+from __future__ import annotations
+
+PICTURE_ENDINGS = (".png",)
+"""What a picture is written as."""
+
+VALUE_ENDINGS: dict[str, str] = {
+    ".npy": "float32, south row first",
+    ".png": "16 bits, 0 to 1",
+    ".tif": "float32",
+    ".tiff": "float32",
+}
+"""What a grid of values is written as, and what the file then holds."""

@@ -1,0 +1,105 @@
+"""What ``check`` says of a file, and where; what opening the same file says is the same."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground.engine.check import check_file
+from playground.engine.trial import Trial
+from playground.errors import Diagnostic, PlaygroundError
+from playground.sketch.load import load
+
+
+@pytest.fixture(scope="module")
+def trial() -> Iterator[Trial]:
+    with Trial() as made:
+        yield made
+
+
+def wrong(path: Path, trial: Trial) -> Diagnostic:
+    report = check_file(path, trial)
+    assert not report.ok
+    assert "subject" not in json.dumps(report.as_json())
+    return report.errors[0]
+
+
+HEADERS = {
+    "repeat": ("", ', repeat = "2 - size.x"', "float kernel(ivec2 texel) { return 1.0; }"),
+    "visits": (
+        "",
+        ', repeat = "2", visits = "size.x / iteration, 1"',
+        "ivec2 visit(ivec2 cell) { return cell; }\nfloat kernel(ivec2 texel) { return 1.0; }",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", HEADERS)
+def test_a_header_that_is_wrong_is_told_at_its_line(folder, trial, what):
+    before, option, body = HEADERS[what]
+    path = folder.write(
+        "hills.glsl", f'// hills\n{before}\n#pragma kernel(output = "a:r32f"{option})\n{body}\n'
+    )
+    found = wrong(path, trial)
+    assert (Path(found.file).name, found.line) == ("hills.glsl", 3), found
+    assert found.message.startswith(f"pass 'hills': {what}")
+    assert found.excerpt.startswith("#pragma kernel")
+
+
+def test_a_companion_s_groups_are_told_at_its_own_line(folder, trial):
+    if trial_has_no_compute(folder, trial):
+        pytest.skip("this context has no compute shaders")
+    folder.write(
+        "hills.glsl", '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 texel) { return 1.0; }\n'
+    )
+    text = '\n#pragma compute(groups = "size.x / (size.x - size.y), 1")\nvoid main() {}\n'
+    found = wrong(folder.write("hills.comp", text), trial)
+    assert (Path(found.file).name, found.line) == ("hills.comp", 2), found
+
+
+def trial_has_no_compute(folder, trial: Trial) -> bool:
+    path = folder.write(
+        "any.glsl", '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 t) { return 1.0; }\n'
+    )
+    return bool(check_file(path, trial).skipped)
+
+
+def test_a_sketch_s_own_kernel_is_told_at_its_header_too(any_engine, folder):
+    sketch = folder.one(
+        '// one\n#pragma kernel(output = "a:r32f", repeat = "2 - size.x")\n'
+        "float kernel(ivec2 texel) { return 1.0; }\n"
+    )
+    with pytest.raises(PlaygroundError, match="gives -15") as caught:
+        any_engine.read(sketch, "a")
+    found = caught.value.diagnostics[0]
+    assert (Path(found.file).name, found.line) == ("one.glsl", 2)
+
+
+def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, trial):
+    folder.write("lib.glsl", "float half_of(float x) { return 0.5 * x; }\n")
+    part = folder.write(
+        "parts/k.glsl",
+        '#include "../lib.glsl"\n#pragma kernel(output = "height:r32f")\n'
+        "float kernel(ivec2 texel) { return half_of(float(texel.x)); }\n",
+    )
+    assert "outside" in wrong(part, trial).message
+    with pytest.raises(PlaygroundError, match="outside"):
+        load(part)
+    folder.write("sketch.toml", "")
+    assert check_file(part, trial).ok
+    load(part)
+
+
+def test_a_shader_with_nothing_to_run_is_told_alike_by_check_and_by_opening_it(folder, trial):
+    toy = folder.write("toy.frag", "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n")
+    said = wrong(toy, trial).message
+    assert "neither a #version and main of its own nor a #pragma kernel" in said
+    assert "ShaderToy's mainImage needs" in said
+    with pytest.raises(PlaygroundError) as caught:
+        load(toy)
+    assert caught.value.diagnostics[0].message == said
+    bare = folder.write("bare.frag", "float x;\n")
+    assert "ShaderToy" not in wrong(bare, trial).message

@@ -1,0 +1,55 @@
+"""Which folder a technique opened alone may read from: one rule, whoever opens it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.errors import ShaderError
+from playground.paths import GLSL
+from playground.sketch.load import load
+from playground.sketch.places import root_of
+
+KERNEL = """#include "../lib.glsl"
+#pragma kernel(output = "height:r32f")
+uniform sampler2D grass;  //! file("../grass.png")
+float kernel(ivec2 texel) { return half_of(float(texel.x)); }
+"""
+
+
+@pytest.fixture
+def hills(tmp_path: Path) -> Path:
+    folder = tmp_path / "hills"
+    (folder / "parts").mkdir(parents=True)
+    (folder / "lib.glsl").write_text("float half_of(float x) { return 0.5 * x; }\n")
+    (folder / "parts" / "k.glsl").write_text(KERNEL)
+    return folder
+
+
+def test_the_root_is_the_library_or_the_sketch_s_folder_or_the_file_s_own(hills: Path):
+    part = hills / "parts" / "k.glsl"
+    assert root_of(GLSL / "noise" / "hash.glsl") == GLSL
+    assert root_of(part) == hills / "parts"
+    (hills / "sketch.toml").touch()
+    assert root_of(part) == hills
+    (hills / "parts" / "sketch.toml").touch()
+    assert root_of(part) == hills / "parts"
+
+
+def test_a_part_of_a_sketch_reads_from_the_sketch_s_folder(hills: Path):
+    part = hills / "parts" / "k.glsl"
+    with pytest.raises(ShaderError, match="outside"):
+        load(part)
+    (hills / "sketch.toml").touch()
+    opened = load(part)
+    assert opened.folder == str(hills)
+    assert opened.graph.find("height").use == "./parts/k"  # type: ignore[union-attr]
+    assert str(hills / "lib.glsl") in opened.files
+
+
+def test_a_technique_of_several_passes_does_too(hills: Path):
+    (hills / "sketch.toml").touch()
+    whole = hills / "parts" / "whole.toml"
+    whole.write_text('[[pass]]\nname = "height"\nuse = "./k"\n[outputs]\nheight = "height"\n')
+    assert str(hills / "lib.glsl") in load(whole).files
