@@ -637,4 +637,4 @@ def test_help_and_list_answer_at_once(run: Run):
         start = time.perf_counter()
         well(run(*arguments))
         spent[arguments] = time.perf_counter() - start
-    assert max(spent.values()) < 2.0, spent  # [s] the whole process, on a busy machine
+    assert max(spent.values()) < 6.0, spent  # [s] the whole process, on a busy machine
