@@ -10,7 +10,7 @@ import ctypes.util
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,7 +85,8 @@ def open_context(*, software: bool = False, device: int | None = None) -> modern
     return _open(device)
 
 
-def _open(device: int | None = None) -> moderngl.Context:
+def _open(device: int | None = None, environment: Mapping[str, str] | None = None) -> moderngl.Context:
+    """Open a context; ``environment`` is the user's own, where ours has been added to it."""
     import moderngl
 
     options: dict[str, Any] = {"standalone": True}
@@ -112,7 +113,8 @@ def _open(device: int | None = None) -> moderngl.Context:
         count = int(there.group(1))
         rest = "the only one is 0" if count == 1 else f"there are {count}, from 0"
         raise ContextError(f"--device {device}: there is no such EGL device; {rest}")
-    raise ContextError(f"{mend(cause, sys.platform, os.environ)} ({cause})")
+    theirs = os.environ if environment is None else environment
+    raise ContextError(f"{mend(cause, sys.platform, theirs)} ({cause})")
 
 
 def _open_software(device: int | None) -> moderngl.Context:
@@ -121,8 +123,9 @@ def _open_software(device: int | None) -> moderngl.Context:
     Mesa does not let its software switch override a device that was chosen by number, and
     where there is a GPU the default device is that; its own software device comes last.
     """
+    environment = dict(os.environ)  # what the user set: advice must not speak of what is set below
     prefer_software()
-    first = _open(device)
+    first = _open(device, environment)
     if device is not None or context_info(first).software:
         return _software_or_refuse(first)
     wanted = context_info(first).renderer

@@ -187,3 +187,20 @@ def test_a_device_that_is_not_there_is_told_by_its_number_and_theirs(monkeypatch
     with pytest.raises(ContextError) as caught:
         open_context(device=99)
     assert str(caught.value) == f"--device 99: there is no such EGL device; {said}"
+
+
+def test_advice_for_software_does_not_speak_of_what_we_set_ourselves():
+    code = """
+import moderngl
+def fail(*arguments, **options): raise Exception("found 0 devices")
+moderngl.create_context = fail
+from playground.gpu.context import open_context
+try:
+    open_context(software=True)
+except Exception as error:
+    print(error)
+"""
+    clean = {k: v for k, v in os.environ.items() if k != "__EGL_VENDOR_LIBRARY_FILENAMES"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=clean)
+    assert "found 0 devices" in done.stdout
+    assert "__EGL_VENDOR_LIBRARY_FILENAMES" not in done.stdout
