@@ -32,8 +32,6 @@ class Cache:
 
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
-        self.hits = 0
-        self.misses = 0
         self._pool = pool
         self._kept: OrderedDict[str, Kept] = OrderedDict()
         self._in_use: set[str] = set()
@@ -58,9 +56,7 @@ class Cache:
         """Return what is kept and mark it as used; None if there is nothing."""
         kept = self._kept.get(key)
         if kept is None:
-            self.misses += 1
             return None
-        self.hits += 1
         self._kept.move_to_end(key)
         self._in_use.add(key)
         return kept

@@ -12,7 +12,7 @@ from playground.engine.binder import Binder
 from playground.engine.draws import Draws
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.plan import Plan, Step, placed
-from playground.engine.programs import Program, Programs
+from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
@@ -92,10 +92,6 @@ class Runner:
     def samples_for(self, plan: Plan) -> int:
         """Return how many samples a pixel of a draw has here."""
         return max(min(plan.sketch.samples, self.info.max_samples), 1)
-
-    def program(self, kernel: Kernel, driver: str) -> Program:
-        """Return the compiled program of a kernel, kept while it is used; raise ``ShaderError``."""
-        return self.programs.get(kernel, driver)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""

@@ -20,7 +20,7 @@ MESSAGES = [
     ("no GL library", "libGL.so not found in /lib, /usr/lib or LD_LIBRARY_PATH"),  # moderngl#397
     ("no GL library", "ImportError: libGL.so.1: cannot open shared object file: No such file or directory"),
     ("no GL library", "libOpenGL.so.0: cannot open shared object file: No such file or directory"),
-    ("no GL library", "/opt/nothing/libfoo.so.1 not loaded"),  # GLCONTEXT_LINUX_LIBGL names no file
+    ("no GL library", "/nowhere/libfoo.so.1 not loaded"),  # GLCONTEXT_LINUX_LIBGL names no file
     ("no GL library", "GLX: Failed to load GLX"),  # GLFW
     ("no X library", "ImportError: libX11.so.6: cannot open shared object file: No such file or directory"),
     ("no X library", "X11: Failed to load Xlib"),  # GLFW
@@ -83,7 +83,7 @@ MESSAGES = [
     ),  # WSL#12584
     (
         "old libstdc++",
-        "libGL error: MESA-LOADER: failed to open iris: /opt/conda/lib/libstdc++.so.6: version"
+        "libGL error: MESA-LOADER: failed to open iris: conda/lib/libstdc++.so.6: version"
         " `GLIBCXX_3.4.29' not found (required by /usr/lib64/dri/iris_dri.so)",  # anaconda-issues#12522
     ),
     ("Windows without OpenGL", "(65542) b'WGL: The driver does not appear to support OpenGL'"),  # glfw#862
