@@ -1,7 +1,8 @@
-"""Run what computes texels: a kernel by either driver, a companion, a plain shader.
+"""Run what computes texels: a kernel by either driver, or a plain shader.
 
 A kernel that repeats writes two sets of textures in turn, reading one and writing the
-other; one with visits, in compute, changes its only set in place.
+other; one with visits, in compute, changes its only set in place. One whose turns fill a
+lattice ever more closely fills, in fragment, as small a part of its textures as that takes.
 """
 
 from __future__ import annotations
@@ -35,9 +36,16 @@ void main() {
     k_out = texelFetch(k_picture, min(texel, whole - 1), 0);
 }
 """
-_BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec3": 16, "ivec3": 16, "uvec3": 16}
-_BYTES |= {"vec4": 16, "ivec4": 16, "uvec4": 16, "mat4": 64}
-_MAX_BUFFER = 2**31 - 1
+_SPREAD = """#version 330
+uniform sampler2D k_picture;
+uniform int k_shift;
+out vec4 k_out;
+void main() {
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    bool known = ((texel.x | texel.y) & ((1 << k_shift) - 1)) == 0;
+    k_out = known ? texelFetch(k_picture, texel >> k_shift, 0) : vec4(0.0);
+}
+"""
 _SAMPLER_2D = 0x8B5E
 
 
@@ -53,11 +61,12 @@ class Job:
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
-    def count(self, program: Program, iteration: int, repeat: str, whole: int) -> None:
+    def count(self, program: Program, iteration: int, repeat: str, whole: int, turns: int = 1) -> None:
         """Tell a kernel its turn: its own where it repeats, else that of the loop around it."""
         now, total = (iteration, whole) if repeat != "1" or self.turn is None else self.turn
         program.set("iteration", now)
         program.set("iterations", total)
+        program.set("until", now + turns)
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
@@ -66,7 +75,7 @@ class Job:
 
 
 class Kernels:
-    """Runs kernels, companions and plain shaders on one context."""
+    """Runs kernels and plain shaders on one context."""
 
     def __init__(
         self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
@@ -116,42 +125,6 @@ class Kernels:
         framebuffer.clear()
         return result
 
-    def companion(self, job: Job) -> Result:
-        """Run a companion: its textures and buffers are zeros when it begins."""
-        step, kernel = job.step, job.step.kernel
-        program = self.program(step, COMPUTE)
-        names = job.numbers()
-        buffers: list[moderngl.Buffer] = []
-        result = self.empty(step)
-        try:
-            repeat = expressions.evaluate(kernel.repeat, names)
-            for unit, declared in enumerate(kernel.buffers):
-                count = max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
-                if count > _MAX_BUFFER:
-                    megabytes = count / 2**20
-                    message = f"buffer '{declared.name}' would be {megabytes:.0f} MiB; 2048 at most"
-                    raise kernel.error(f"pass '{step.path}': {message}")
-                buffer = self.ctx.buffer(reserve=count)
-                buffers.append(buffer)
-                buffer.clear()
-                buffer.bind_to_storage_buffer(unit)
-            self.binder.bind(program, step, job.given, job.inputs)
-            self._images(result, read=True)
-            for iteration in range(repeat):
-                groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
-                job.count(program, iteration, kernel.repeat, repeat)
-                program.run(max(groups[0], 1), max(groups[1], 1))
-        except ExpressionError as error:
-            self.pool.give(result)
-            raise kernel.error(f"pass '{step.path}': {error}") from None
-        except Exception:
-            self.pool.give(result)
-            raise
-        finally:
-            for buffer in buffers:
-                buffer.release()
-        return result
-
     def plain(self, job: Job, usual: Mapping[str, tuple[float, ...]]) -> Result:
         """Run a plain shader; ``usual`` are the uniforms that such shaders know under several names."""
         step, kernel = job.step, job.step.kernel
@@ -169,7 +142,7 @@ class Kernels:
                 unit = self.binder.texture(program, name, unit, self.binder.constant("black"), Sampling())
         result = self.empty(step)
         if driver == COMPUTE:
-            self._images(result, read=True)
+            self.images(result, read=True)
             program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
             return result
         result.framebuffer(self.ctx).use()
@@ -184,23 +157,69 @@ class Kernels:
         step, kernel = job.step, job.step.kernel
         groups = (-(-step.size[0] // LOCAL), -(-step.size[1] // LOCAL))
         before, result = job.start, None  # two sets of textures that change places
-        first = before.turn if before else 0
-        for iteration in range(first, step.repeat):
+        iteration = before.turn if before else 0
+        at_once = max(self._evaluated("at_once", kernel.at_once, job), 1)
+        # Where there is something to begin with, texels off the lattice count as well.
+        lattice = bool(kernel.stride) and driver == FRAGMENT and not state
+        shift = 0
+        while iteration < step.repeat:
+            turns = min(at_once, step.repeat - iteration)
             result = self.pool.take(step.size, kernel.outputs)
             self.binder.previous(program, kernel, state, unit)
-            job.count(program, iteration, kernel.repeat, step.whole)
+            job.count(program, iteration, kernel.repeat, step.whole, turns)
             if driver == COMPUTE:
-                self._images(result, read=False)
+                self.images(result, read=False)
                 program.run(*groups)
             else:
-                result.framebuffer(self.ctx).use()
+                program.set("k_previous_shift", shift)
+                shift = self._shift(job, iteration) if lattice else 0
+                program.set("k_shift", shift)
+                framebuffer = result.framebuffer(self.ctx)
+                framebuffer.use()
+                width, height = (((side - 1) >> shift) + 1 for side in step.size)
+                self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
+                self.ctx.viewport = (0, 0, *step.size)
             if before is not None:
                 self.pool.give(before)
             before, state = result, result.textures
+            iteration += turns
         assert before is not None
+        if shift:
+            before = self._spread(before, shift)
         before.turn = step.repeat
         return before
+
+    def _shift(self, job: Job, iteration: int) -> int:
+        """Return the power of two that texels known after a turn lie apart."""
+        kernel = job.step.kernel
+        stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
+        if stride < 1 or stride & (stride - 1):
+            message = f"stride '{kernel.stride}' gives {stride} for turn {iteration}"
+            raise kernel.error(f"pass '{job.step.path}': {message}; a power of two was expected")
+        return stride.bit_length() - 1
+
+    def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
+        if text == "1":
+            return 1
+        try:
+            return expressions.evaluate(text, job.numbers(**more))
+        except ExpressionError as error:
+            raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
+
+    def _spread(self, close: Result, shift: int) -> Result:
+        """Return textures with each texel of a lattice where it belongs, and zeros between."""
+        result = self.pool.take(close.size, close.outputs)
+        for output in close.outputs:
+            single = make_framebuffer(self.ctx, [result.textures[output.name]])
+            single.use()
+            program = self.programs.own(_SPREAD)
+            self.binder.texture(program, "k_picture", 0, close.textures[output.name], Sampling())
+            program.set("k_shift", shift)
+            program.fill()
+            single.release()
+        self.pool.give(close)
+        return result
 
     def _fill(self, program: Program) -> None:
         """Draw over the whole of the bound framebuffer.
@@ -223,7 +242,7 @@ class Kernels:
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel
         result = job.start or self._untouched(step, state)
-        self._images(result, read=True)
+        self.images(result, read=True)
         for iteration in range(result.turn, step.repeat):
             job.count(program, iteration, kernel.repeat, step.whole)
             names = job.numbers(iteration=iteration, iterations=step.whole)
@@ -270,7 +289,8 @@ class Kernels:
         self.copy(single, target.size, source)
         single.release()
 
-    def _images(self, result: Result, *, read: bool) -> None:
+    def images(self, result: Result, *, read: bool) -> None:
+        """Bind textures as the images that a compute shader writes."""
         for unit, output in enumerate(result.outputs):
             result.textures[output.name].bind_to_image(unit, read=read, write=True)
 

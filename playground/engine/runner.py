@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
+from playground.engine.companions import Companions
 from playground.engine.draws import Draws
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.plan import Plan, Step, placed
@@ -40,6 +41,7 @@ class Runner:
         self.programs = Programs(ctx)
         self.binder = Binder(ctx)
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
+        self.companions = Companions(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
@@ -71,6 +73,7 @@ class Runner:
     def release(self) -> None:
         """Give back every program, mesh and texture kept."""
         self.draws.release()
+        self.companions.release()
         self.binder.release()
         self.programs.release()
 
@@ -80,7 +83,7 @@ class Runner:
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
         for name in GIVEN:
-            if name in ("iteration", "iterations", "size") or not kernel.reads(name):
+            if name in ("iteration", "iterations", "until", "size") or not kernel.reads(name):
                 continue
             if name == "spacing":
                 extent = self._given["extent"]
@@ -134,7 +137,7 @@ class Runner:
         if kind == "draw":
             return self.draws.run(job)
         if kind == "compute":
-            return self.kernels.companion(job)
+            return self.companions.run(job)
         if kind.startswith("plain"):
             return self.kernels.plain(job, self._usual(step))
         return self.kernels.run(job, driver)

@@ -146,24 +146,41 @@ def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
 
 
 def _wrap_fragment(kernel: Kernel) -> Wrapped:
-    before = ["#version 330", *_given(kernel)]
+    strides = bool(kernel.stride)
+    before = ["#version 330", *_given(kernel, ("size",) if strides else ())]
+    if strides:
+        before.append("uniform int k_shift, k_previous_shift;")
     for output in kernel.outputs:
         name = previous_name(kernel, output)
         if kernel.reads(name):
-            sampler = f"k_previous_{output.name}"
-            swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
-            before.append(f"uniform sampler2D {sampler};")
-            edge = f"clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1)"
-            before.append(
-                f"{output.glsl} {name}(ivec2 k_texel) {{ return texelFetch({sampler}, {edge}, 0){swizzle}; }}"
-            )
+            before.append(f"uniform sampler2D k_previous_{output.name};")
+            before.append(_previous(output, name, strides=strides))
     after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
-    texel = "ivec2(gl_FragCoord.xy)"
+    texel = "(ivec2(gl_FragCoord.xy) << k_shift)" if strides else "ivec2(gl_FragCoord.xy)"
     names = [f"k_out_{o.name}" for o in kernel.outputs]
     call = f"{names[0]} = kernel({texel});" if len(names) == 1 else f"kernel({texel}, {', '.join(names)});"
     after.append(f"void main() {{ {call} }}")
     stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
     return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+
+
+def _previous(output: Output, name: str, *, strides: bool) -> str:
+    """Return the function that reads a texel of the turn before from its sampler.
+
+    With strides that turn's texels lie close together, those at multiples of its stride
+    alone, and every other is 0.
+    """
+    sampler, swizzle = f"k_previous_{output.name}", {1: ".r", 2: ".rg", 4: ""}[output.components]
+    last = f"textureSize({sampler}, 0) - 1"
+    if not strides:
+        fetched = f"texelFetch({sampler}, clamp(k_texel, ivec2(0), {last}), 0){swizzle}"
+        return f"{output.glsl} {name}(ivec2 k_texel) {{ return {fetched}; }}"
+    fetched = f"texelFetch({sampler}, min(k_texel >> k_previous_shift, {last}), 0){swizzle}"
+    return (
+        f"{output.glsl} {name}(ivec2 k_texel) {{ k_texel = clamp(k_texel, ivec2(0), size - 1); "
+        f"bool k_known = ((k_texel.x | k_texel.y) & ((1 << k_previous_shift) - 1)) == 0; "
+        f"return k_known ? {fetched} : {output.glsl}(0.0); }}"
+    )
 
 
 def _wrap_compute(kernel: Kernel) -> Wrapped:

@@ -87,12 +87,12 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
     """List the sizes up to ``limit`` that ``accepts`` allows along x and along y, smallest first.
 
     ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own. The
-    values must grow with n, which goes from 0 up.
+    values must grow with n, which goes from 0 up. ``"2**n or 2**n + 1"`` allows either.
     """
     parts = _parts(accepts)
     if len(parts) > 2:
         raise ExpressionError(f"'{accepts}' should be one expression of n, or two of n and m")
-    axes = [_values(part, "n" if index == 0 else "m", limit) for index, part in enumerate(parts)]
+    axes = [_either(part, "n" if index == 0 else "m", limit) for index, part in enumerate(parts)]
     return axes[0], axes[-1]
 
 
@@ -124,6 +124,10 @@ def _parts(text: str) -> list[str]:
             parts.append(text[start:index].strip())
             start = index + 1
     return [*parts, text[start:].strip()]
+
+
+def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
+    return tuple(sorted({value for part in text.split(" or ") for value in _values(part, variable, limit)}))
 
 
 @lru_cache(maxsize=256)

@@ -30,10 +30,10 @@ _IMAGE = re.compile(
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 _KEYS = {
-    "kernel": ("output", "repeat", "accepts", "visits"),
+    "kernel": ("output", "repeat", "accepts", "visits", "stride", "at_once"),
     "source": ("name", "output"),
     "draw": ("mesh", "output", "blend", "depth", "repeat"),
-    "compute": ("groups", "local", "buffers", "repeat"),
+    "compute": ("groups", "local", "buffers", "repeat", "overwrites"),
 }
 _EXAMPLES = {
     "kernel": '(output = "height:r32f")',
@@ -102,17 +102,37 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
-    kernel = replace(
-        kernel, repeat=repeat, accepts=options.get("accepts", ""), visits=options.get("visits", "")
-    )
-    if kernel.visits:
-        _check("visits", kernel.visits, (*_SIZE, "iteration", "iterations", *numbers), line, count=2)
+    texts = {key: options[key] for key in ("accepts", "visits", "stride", "at_once") if key in options}
+    kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
+    _check_turns(kernel, numbers, line)
     if kernel.accepts:
         try:
             expressions.accepted_sizes(kernel.accepts)
         except ExpressionError as error:
             raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
     return kernel
+
+
+def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
+    """Check how a kernel's turns run: which texels they visit, how far apart those lie, how many at once."""
+    turn = (*_SIZE, "iteration", "iterations", *numbers)
+    if kernel.visits:
+        _check("visits", kernel.visits, turn, line, count=2)
+    if kernel.stride:
+        _check("stride", kernel.stride, turn, line)
+        if not kernel.visits:
+            raise line.error("stride says how far apart the texels of visits lie; give the kernel visits")
+    if kernel.at_once == "1":
+        return
+    _check("at_once", kernel.at_once, (*_SIZE, *numbers), line)
+    if kernel.visits:
+        raise line.error("at_once and visits: a kernel has one or the other")
+    if kernel.repeat == "1":
+        raise line.error("at_once is of turns, but the kernel has one turn only; give it a repeat")
+    if not kernel.reads("until"):
+        raise line.error(
+            "at_once: the kernel must do the turns from iteration up to until, but never names until"
+        )
 
 
 def title_of(source: SourceText) -> str:
@@ -203,6 +223,7 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         local=(int(local[0]), int(local[1])),
         buffers=tuple(buffers),
         repeat=options.get("repeat", "1"),
+        overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
     )
 
 

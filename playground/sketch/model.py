@@ -113,12 +113,15 @@ class Kernel:
     repeat: str = "1"
     accepts: str = ""
     visits: str = ""
+    stride: str = ""  # after a turn, only texels at multiples of it are known
+    at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
     depth: str = "less"
     groups: str = ""  # of a compute companion
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
+    overwrites: tuple[str, ...] = ()  # outputs and buffers of a companion that need not begin as zeros
     title: str = ""  # the sentence that the file begins with
     companion: Kernel | None = None  # the .comp beside it
 

@@ -174,6 +174,10 @@ def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple
         if name not in valid:
             message = f"'{name}' is not among the parameters and inputs of {of.name}"
             raise SketchError(message + nearest(name, valid), file=shown(companion.path), line=line)
+    written = [*(o.name for o in outputs), *(b.name for b in companion.buffers)]
+    for name in companion.overwrites:
+        if name not in written:
+            raise companion.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
     return replace(companion, outputs=outputs)
 
 

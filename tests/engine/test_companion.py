@@ -192,3 +192,39 @@ def test_a_wrong_expression_names_the_pass(any_engine, folder, sums, option, mes
     folder.write("sums.comp", SWEEP.replace('groups = "1, size.y", local = "1, 1"', option))
     with pytest.raises(PlaygroundError, match=message):
         any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
+
+
+FILL = """#pragma compute(groups = "size.x, size.y", local = "1, 1", buffers = "work:float:500"OPTION)
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    int at = texel.y * size.x + texel.x;
+    work[at] += 1.0;
+    imageStore(out_sums, texel, vec4(work[at]));
+}
+"""
+PLAIN_FILL = """#pragma kernel(output = "sums:r32f")
+uniform float again = 0.0; //! slider(0, 9)
+float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
+"""
+
+
+def test_a_kept_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
+    """The buffer of the run before is used again, so a companion that adds to it shows what it began with."""
+    for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
+        folder.write("fill.glsl", PLAIN_FILL)
+        again = "uniform float again = 0.0; //! slider(0, 9)\n"
+        text = FILL.replace("OPTION", option).replace(
+            "void main() {", f"{again}void main() {{ if (again > 99.0) return;"
+        )
+        folder.write("fill.comp", text)
+        sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
+        assert (any_engine.read(sketch, "a") == 1.0).all()
+        assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
+        any_engine.runner.companions.release()
+
+
+def test_overwrites_names_an_output_or_a_buffer(folder):
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", FILL.replace("OPTION", ', overwrites = "wrok"'))
+    with pytest.raises(PlaygroundError, match="no output or buffer 'wrok'; did you mean 'work'"):
+        folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine.engine import Engine
+from playground.engine.programs import Program
 from playground.errors import PlaygroundError
 
 COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")
@@ -194,3 +196,113 @@ def test_a_wrong_count_has_a_place(engine, folder, repeat):
         engine.read(folder.one(COUNT.replace('"turns"', f'"{repeat}"')), "a")
     assert caught.value.diagnostics[0].file
     assert caught.value.diagnostics[0].line
+
+
+TURNS_AT_ONCE = """#pragma kernel(output = "a:r32f", repeat = "turns", at_once = "most")
+uniform int turns = 11; //! slider(0, 50)
+uniform int most = 4; //! slider(0, 50)
+float kernel(ivec2 texel) {
+    float found = previous(texel);
+    for (int i = iteration; i < until; i++) found = found * 1.5 + float(i) + 0.25 * float(iterations);
+    return found;
+}
+"""
+
+
+@pytest.mark.parametrize("most", [0, 1, 2, 4, 11, 50])
+@pytest.mark.parametrize("stopped", [0, 1, 5, 11])
+def test_turns_taken_at_once_give_what_they_give_one_by_one(engine, folder, most, stopped):
+    sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": most})
+    value = np.float32(0)
+    for turn in range(stopped):
+        value = value * np.float32(1.5) + np.float32(turn) + np.float32(0.25 * 11)
+    found = engine.read(sketch, "a", steps={"a": stopped})
+    np.testing.assert_array_equal(found, np.full((17, 17), value, np.float32))
+
+
+@pytest.mark.parametrize(("most", "runs"), [(1, 11), (4, 3), (50, 1)])
+def test_turns_at_once_take_so_many_runs(engine, folder, monkeypatch, most, runs):
+    started = []
+    for name in ("fill", "run"):
+        usual = getattr(Program, name)
+
+        def counted(self, *groups, usual=usual):
+            started.append("turns" in self.uniforms or "iteration" in self.uniforms)
+            usual(self, *groups)
+
+        monkeypatch.setattr(Program, name, counted)
+    engine.read(folder.one(TURNS_AT_ONCE).with_values({"a.most": most}), "a")
+    assert sum(started) == runs
+
+
+def test_each_step_of_turns_at_once_goes_on_from_the_one_before(engine, folder):
+    sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": 50})
+    steps = [(turn, values.copy()) for turn, values in engine.steps(sketch, "a")]
+    assert [turn for turn, _ in steps] == list(range(12))
+    np.testing.assert_array_equal(steps[-1][1], engine.read(sketch, "a"))
+
+
+@pytest.mark.parametrize(
+    ("header", "complaint"),
+    [
+        ('at_once = "4"', "one turn only"),
+        ('repeat = "3", at_once = "4"', "never names until"),
+        ('repeat = "3", visits = "1, 1", at_once = "4"', "one or the other"),
+        ('repeat = "3", at_once = "four"', "at_once"),
+        ('repeat = "3", stride = "2"', "give the kernel visits"),
+        ('repeat = "3", visits = "1, 1", stride = "wide"', "stride"),
+    ],
+)
+def test_a_header_that_says_how_turns_run_is_checked(folder, header, complaint):
+    body = "float kernel(ivec2 texel) { return previous(texel); }"
+    text = f'#pragma kernel(output = "a:r32f", {header})\n{body}\n'
+    with pytest.raises(PlaygroundError, match=complaint) as raised:
+        folder.one(text)
+    assert raised.value.diagnostics[0].line == 1
+
+
+# Every texel of an ever finer lattice is its south-western neighbour a stride away, plus the turn.
+LATTICE = """#pragma kernel(output = "a:r32f", repeat = "log2(size.x - 1) + 1", STRIDE
+    visits = "2**iteration + 1, (size.y - 1) // (size.x - 1) * 2**iteration + 1")
+int stride() { return (size.x - 1) >> iteration; }
+ivec2 visit(ivec2 cell) {
+    bool known = iteration > 0 && ((cell.x | cell.y) & 1) == 0;
+    return known ? ivec2(-1) : cell * stride();
+}
+float kernel(ivec2 texel) {
+    int s = stride();
+    bool here = ((texel.x | texel.y) & (s - 1)) == 0;
+    bool known = iteration > 0 && ((texel.x | texel.y) & (2 * s - 1)) == 0;
+    if (!here || known) return previous(texel);
+    ivec2 coarse = ivec2(~(2 * s - 1)) & texel;
+    float before = iteration == 0 ? 0.0 : previous(coarse) * 0.5;
+    return before + float(iteration + 1) + 0.001 * float(texel.x - coarse.x);
+}
+""".replace("STRIDE\n    ", "STRIDE")
+
+
+@pytest.mark.parametrize("size", ["2", "17", "[17, 33]"])
+def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(ctx, folder, size):
+    found = []
+    for stride, driver in (("", "fragment"), (' stride = "(size.x - 1) // 2**iteration",', "fragment")):
+        text = LATTICE.replace("STRIDE", stride)
+        with Engine(ctx, driver=driver) as engine:
+            sketch = folder.one(text, size=f"size = {size}")
+            turns = [values.copy() for _, values in engine.steps(sketch, "a")]
+        with Engine(ctx, driver=driver) as engine:
+            turns += [engine.read(sketch, "a", steps={"a": turn}).copy() for turn in (2, 1)]
+        with Engine(ctx, driver=driver) as engine:
+            turns.append(engine.read(sketch, "a").copy())
+            found.append(turns)
+    assert len(found[0]) == len(found[1]) > 2
+    for plain, strided in zip(*found, strict=True):
+        np.testing.assert_array_equal(plain, strided)
+    if ctx.version_code >= 430:
+        with Engine(ctx, driver="compute") as engine:
+            np.testing.assert_array_equal(engine.read(sketch, "a"), found[0][-1])
+
+
+def test_a_stride_that_is_no_power_of_two_is_refused(ctx, folder):
+    sketch = folder.one(LATTICE.replace("STRIDE", ' stride = "3",'))
+    with Engine(ctx, driver="fragment") as engine, pytest.raises(PlaygroundError, match="power of two"):
+        engine.read(sketch, "a")

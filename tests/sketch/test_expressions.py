@@ -298,3 +298,11 @@ def test_the_nearest_accepted_sizes_are_below_and_above():
 def test_accepts_that_allow_nothing_are_refused(accepts):
     with pytest.raises(ExpressionError):
         accepted_sizes(accepts)
+
+
+def test_accepted_sizes_may_be_of_either_form():
+    assert accepted_sizes("2**n or 2**n + 1", 20)[0] == (1, 2, 3, 4, 5, 8, 9, 16, 17)
+    assert is_accepted("2**n or 2**n + 1", (513, 513))
+    assert not is_accepted("2**n or 2**n + 1", (512, 513))
+    assert nearest_accepted("2**n or 2**n + 1", (1000, 1000)) == ((513, 513), (1024, 1024))
+    assert is_accepted("2**n or 2**n + 1, 2**m or 2**m + 1", (512, 65))

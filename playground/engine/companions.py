@@ -1,0 +1,90 @@
+"""Run companions: compute shaders that write their images and buffers themselves.
+
+What a companion writes begins as zeros, but for what its header says it overwrites. Buffers
+are kept for the next run: fresh memory of such a size costs more than filling it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from playground.engine.kernels import Job, Kernels
+from playground.engine.results import Result
+from playground.gpu.wrap import COMPUTE
+from playground.sketch import expressions
+from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.model import Buffer, Kernel
+
+if TYPE_CHECKING:
+    import moderngl
+
+_BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
+_MAX_BUFFER = 2**31 - 1
+
+
+class Companions:
+    """Runs companions on one context."""
+
+    def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
+        self.ctx = ctx
+        self.kernels = kernels
+        self._spare: list[moderngl.Buffer] = []  # newest last
+
+    def release(self) -> None:
+        """Give every spare buffer back to the driver."""
+        for buffer in self._spare:
+            buffer.release()
+        self._spare.clear()
+
+    def run(self, job: Job) -> Result:
+        """Run a companion; the result is the caller's."""
+        step, kernel = job.step, job.step.kernel
+        program = self.kernels.program(step, COMPUTE)
+        names = job.numbers()
+        buffers: list[moderngl.Buffer] = []
+        whole = all(output.name in kernel.overwrites for output in kernel.outputs)
+        pool = self.kernels.pool
+        result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
+        try:
+            repeat = expressions.evaluate(kernel.repeat, names)
+            for unit, declared in enumerate(kernel.buffers):
+                buffers.append(self._buffer(job, declared, names))
+                buffers[-1].bind_to_storage_buffer(unit)
+            self.kernels.binder.bind(program, step, job.given, job.inputs)
+            self.kernels.images(result, read=True)
+            for iteration in range(repeat):
+                groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
+                job.count(program, iteration, kernel.repeat, repeat)
+                program.run(max(groups[0], 1), max(groups[1], 1))
+        except ExpressionError as error:
+            pool.give(result)
+            raise kernel.error(f"pass '{step.path}': {error}") from None
+        except Exception:
+            pool.give(result)
+            raise
+        finally:
+            self._keep(buffers)
+        return result
+
+    def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
+        kernel: Kernel = job.step.kernel
+        size = max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
+        if size > _MAX_BUFFER:
+            message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
+            raise kernel.error(f"pass '{job.step.path}': {message}")
+        found = next((spare for spare in reversed(self._spare) if spare.size == size), None)
+        if found is None:
+            found = self.ctx.buffer(reserve=size)
+        else:
+            self._spare.remove(found)
+        if declared.name not in kernel.overwrites:
+            found.clear()
+        return found
+
+    def _keep(self, buffers: list[moderngl.Buffer]) -> None:
+        self._spare += buffers
+        held = sum(buffer.size for buffer in self._spare)
+        while self._spare and held > self.kernels.pool.limit:
+            oldest = self._spare.pop(0)
+            held -= oldest.size
+            oldest.release()
