@@ -211,6 +211,8 @@ def test_completion_offers_the_shipped_sketches(run: Run):
         (["render", "--driver", "metal"], "--driver metal: expected auto, fragment or compute"),
         (["render", "--device", "first"], "--device first: expected the number of an EGL device"),
         (["--device", "-1", "render"], "--device -1: expected the number of an EGL device"),
+        (["render", "--steps", "height"], "--steps height: expected a pass and a whole number, as height=9"),
+        (["render", "--steps", "height=3"], "steps: no repeated pass 'height' in sketch jacksboro"),
         (["render", "--shot", "nigth"], "no shot 'nigth' in sketch jacksboro"),
         (["render", "--preset", "nigth"], "no preset 'nigth'"),
         (["render", "-o", "land.jpg"], "land.jpg: a picture is written to a name ending in .png"),

@@ -113,6 +113,17 @@ DeviceOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", metavar="", help="Print JSON, for programs.")]
 
 
+def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
+    """Return the turns of ``--steps`` by pass; raise ``ParameterError``."""
+    found: dict[str, int] = {}
+    for text in texts or ():
+        path, _, turns = text.partition("=")
+        if not path.strip() or not turns.strip().isdecimal():
+            raise ParameterError(f"--steps {text}: expected a pass and a whole number, as height=9")
+        found[path.strip()] = int(turns)
+    return found
+
+
 def read_pixels(text: str | None) -> tuple[int, int] | None:
     """Return the width and height of ``--size``; raise ``ParameterError``."""
     if text is None:

@@ -23,6 +23,7 @@ from playground.commands.arguments import (
     read_driver,
     read_pixels,
     read_seconds,
+    read_steps,
     read_values,
     with_whole_paths,
 )
@@ -46,6 +47,7 @@ HELP = help_text(
     "playground render jacksboro --set light.sun=250,12",
     "playground render jacksboro --shot morning -o morning.png",
     "playground render jacksboro --texture height -o height.npy",
+    "playground render diamond_square --steps height=9",
     "playground render my-land/my_land.glsl --profile",
     "playground render shader.frag --time 2.5 -o - > frame.png",
 )
@@ -65,6 +67,7 @@ class Picture:
     preset: str = ""
     texture: str = ""
     profile: bool = False
+    steps: dict[str, int] | None = None
 
 
 def render(
@@ -101,6 +104,15 @@ def render(
             show_default=False,
         ),
     ] = "",
+    steps: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--steps",
+            help="Stop a repeated pass after so many turns. May be repeated.",
+            metavar="PASS=TURNS",
+            show_default=False,
+        ),
+    ] = None,
     profile: Annotated[
         bool, typer.Option("--profile", metavar="", help="Print the milliseconds of each pass.")
     ] = False,
@@ -119,6 +131,7 @@ def render(
         preset,
         texture,
         profile,
+        read_steps(steps),
     )
     make_picture(picture, ctx.obj.or_else(software, device))
 
@@ -137,6 +150,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         sketch = sketch.with_preset(picture.preset)
     if picture.values:
         sketch = sketch.with_values(with_whole_paths(sketch, picture.values))
+    steps |= picture.steps or {}
     size = picture.size or size
     time = time if picture.time is None else picture.time
 

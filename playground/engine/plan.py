@@ -164,6 +164,15 @@ def repeated_in(sketch: Sketch, path: str) -> str:
     return found
 
 
+def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
+    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
+    found: dict[str, int] = {}
+    for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
+        if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
+            found.setdefault(node.path, node.whole)
+    return found
+
+
 def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     """Return an error of a data file at the pass that names it, the file in the sentence.
 

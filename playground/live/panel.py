@@ -125,6 +125,7 @@ class Panel:
             opened = _pass_header(spec, actions, look)
             if opened:
                 self._technique(sketch, spec, actions)
+                _steps(spec, actions)
                 mine = by_pass.get(spec.name, [])
                 _groups([s for s in mine if s.exported], leaves, sketch, actions, look)
                 _inner([s for s in mine if not s.exported], leaves, sketch, actions, look)
@@ -164,7 +165,8 @@ def _buttons(actions: Actions, look: Theme) -> None:
     imgui.set_item_tooltip("See the land as the file says (R)")
     imgui.same_line()
     edits = session.shown.edits if session.shown else None
-    imgui.begin_disabled(edits is None or not (edits.values or edits.techniques))
+    untouched = edits is None or not (edits.values or edits.techniques or session.steps)
+    imgui.begin_disabled(untouched)
     if imgui.button("Reset values"):
         session.reset_values()
     imgui.end_disabled()
@@ -227,6 +229,27 @@ def _pass_header(spec: PassSpec, actions: Actions, look: Theme) -> bool:
     if imgui.is_item_hovered():
         imgui.set_tooltip("How often its kernels ran; green: for this very picture")
     return opened
+
+
+def _steps(spec: PassSpec, actions: Actions) -> None:
+    """Draw a slider over the turns of each repeat in a pass."""
+    session = actions.session
+    mine = {
+        path: whole
+        for path, whole in session.repeats.items()
+        if whole > 0 and (path == spec.name or path.startswith(f"{spec.name}."))
+    }
+    for path, whole in mine.items():
+        turn = session.steps.get(path, whole)
+        label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
+        note = f"How many of its {counted(whole, 'turn')} {path} has taken; Ctrl+click to type a number"
+        with row(label, note, edited=path in session.steps):
+            shape = "all %d" if turn == whole else "%d"
+            changed, chosen = imgui.slider_int(
+                f"##steps of {path}", turn, 0, whole, shape, imgui.SliderFlags_.always_clamp
+            )
+            if changed:
+                session.stop_at(path, chosen)
 
 
 def _groups(

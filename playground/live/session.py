@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.engine.plan import Plan
+from playground.engine.plan import Plan, repeats_of
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.clock import Clock, is_animated, reads_mouse
@@ -89,6 +89,7 @@ class Session:
         self.coming: Draft | None = None
         self.stage = Stage.NONE
         self.map: Map | None = None  # what is shown instead of the sketch's own view
+        self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them takes them out
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
@@ -106,6 +107,7 @@ class Session:
         self._draw_error: PlaygroundError | None = None  # of what is shown
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
+        self._repeats: tuple[Sketch | None, dict[str, int]] = (None, {})
         self._revision = 0
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
@@ -157,6 +159,15 @@ class Session:
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
         return refs_of(self.plan) if self.plan is not None else []
+
+    @property
+    def repeats(self) -> dict[str, int]:
+        """How many turns every repeated kernel and loop of what is shown takes, by path."""
+        if self.sketch is None:
+            return {}
+        if self._repeats[0] is not self.sketch:
+            self._repeats = self.sketch, self._repeats_of(self.sketch)
+        return self._repeats[1]
 
     # ── files ────────────────────────────────────────────────────────────────
 
@@ -248,7 +259,8 @@ class Session:
         self._edit(lambda edits: replace(edits, camera=None))
 
     def reset_values(self) -> None:
-        """Give every parameter and every pass back what the file says."""
+        """Give every parameter and every pass back what the file says, and stop no repeat early."""
+        self.steps.clear()
         chosen = self.shown is not None and bool(self.shown.edits.techniques)
         self._edit(lambda edits: replace(edits, values=()))
         if chosen and self.shown is not None:
@@ -284,13 +296,22 @@ class Session:
             self._revision += 1
             self.map = self.map.with_value(name, value)
 
+    def stop_at(self, path: str, turn: int) -> None:
+        """Show a repeated pass after so many turns; after its last, it runs to its end again."""
+        self._revision += 1
+        self.steps.pop(path, None)
+        if 0 <= turn < self.repeats.get(path, 0):
+            self.steps[path] = turn
+
     def fit_map(self) -> None:
         """Fit the map's channel and range to the texture's values."""
         if self.map is None or self.sketch is None:
             return
         self._revision += 1
         try:
-            self.map = fitted(self.map, self.engine.read(self.sketch, self.map.ref, time=self.clock.time))
+            steps = self._steps_for(self.sketch)
+            values = self.engine.read(self.sketch, self.map.ref, time=self.clock.time, steps=steps)
+            self.map = fitted(self.map, values)
         except PlaygroundError as error:
             self.map = None
             self.notes.append(str(error))
@@ -373,12 +394,25 @@ class Session:
         self.hasty = self.engine.info.software and not in_full and sketch.samples > 1 and _has_draws(sketch)
         self.engine.runner.frame = self.draws
         chosen = replace(sketch, samples=1) if self.hasty else sketch
-        texture = self.engine.draw(chosen, size=size, time=self.clock.time)
+        texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1
         self.times |= self.engine.times
         self.plan = self.engine.plan
+
+    def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
+        try:
+            return repeats_of(sketch, time=self.clock.time)
+        except PlaygroundError:  # it says so when it is drawn
+            return {}
+
+    def _steps_for(self, sketch: Sketch) -> dict[str, int]:
+        """Return where to stop: a repeat that is gone, or has fewer turns by now, is not stopped."""
+        if not self.steps:
+            return {}
+        repeats = self._repeats_of(sketch)
+        return {path: turn for path, turn in self.steps.items() if turn < repeats.get(path, 0)}
 
 
 def _has_draws(sketch: Sketch) -> bool:

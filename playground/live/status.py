@@ -43,6 +43,7 @@ class Status:
             "notices": [n.text for n in actions.notices],
             "playing": session.clock.playing,
             "map": session.map.ref if session.map else "",
+            "steps": dict(session.steps),
             "saved": str(actions.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "runs": dict(session.engine.runs),

@@ -380,3 +380,42 @@ def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
     assert "grass.png" in names, "it is missing, and its coming would mend that"
     assert bench.session.sketch is not None
     assert {p.name for p in files_of(bench.session.sketch)} <= names
+
+
+def stepped(bench: Bench) -> Session:
+    bench.write("sketch.toml", SKETCH.replace("./land", "generation/diamond_square").split("[[preset]]")[0])
+    bench.session.reload()
+    bench.session.frame(SIZE)
+    assert bench.session.error is None
+    return bench.session
+
+
+def test_a_repeat_is_shown_at_the_step_that_is_asked_for(bench: Bench) -> None:
+    session = stepped(bench)
+    assert session.repeats == {"height.raw": 11}
+    whole = bench.picture()
+    session.stop_at("height.raw", 4)
+    expected = session.engine.render(session.sketch, size=SIZE, steps={"height": 4})
+    np.testing.assert_array_equal(bench.picture()[..., :3], expected.array[..., :3])
+    assert not np.array_equal(bench.picture(), whole)
+    session.stop_at("height.raw", 11)
+    assert session.steps == {}
+    np.testing.assert_array_equal(bench.picture(), whole)
+
+
+def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(bench: Bench) -> None:
+    session = stepped(bench)
+    whole = bench.picture()
+    session.stop_at("height.raw", 8)
+    at_eight = bench.picture()
+    bench.change("sketch.toml", "format = 1", "# a comment\nformat = 1")
+    np.testing.assert_array_equal(bench.picture(), at_eight)
+    bench.change("sketch.toml", "size = 33", "size = 5")
+    small = bench.picture()
+    assert session.repeats == {"height.raw": 5}
+    expected = session.engine.render(session.sketch, size=SIZE)
+    np.testing.assert_array_equal(small[..., :3], expected.array[..., :3])
+    bench.change("sketch.toml", "size = 5", "size = 33")
+    np.testing.assert_array_equal(bench.picture(), at_eight)
+    session.reset_values()
+    np.testing.assert_array_equal(bench.picture(), whole)
