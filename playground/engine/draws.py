@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from playground.engine.kernels import Job, Kernels
-from playground.engine.plan import Step
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface
 from playground.errors import ContextError, SketchError
 from playground.gpu.textures import drain, make_framebuffer, split_format
-from playground.terrain.meshes import build_mesh, mesh_key
+from playground.sketch import expressions
+from playground.sketch.expressions import ExpressionError
+from playground.sketch.model import Value
+from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
 
 if TYPE_CHECKING:
     import moderngl
@@ -52,7 +54,7 @@ class Draws:
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
         output = kernel.outputs[0]
         program = self.kernels.program(step, "draw")
-        array = self._array(program, step)
+        array = self._array(program, job)
         surface = self._surface(step.size, output.format, job.samples)
         self._start_from(job, surface)
         surface.framebuffer.use()
@@ -116,10 +118,11 @@ class Draws:
             return
         self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
 
-    def _array(self, program: Program, step: Step) -> moderngl.VertexArray:
+    def _array(self, program: Program, job: Job) -> moderngl.VertexArray:
+        step = job.step
         try:
-            key = (step.kernel.registry, mesh_key(step.kernel.registry, step.values))
-        except SketchError as error:
+            key = (step.kernel.registry, mesh_key(step.kernel.registry, _mesh_values(job)))
+        except (SketchError, ExpressionError) as error:
             raise step.spec.error(str(error)) from None
         if self.finest is not None:
             key = key[0], tuple((name, min(value, self.finest)) for name, value in key[1])
@@ -134,6 +137,16 @@ class Draws:
         if array is None:
             array = program.arrays[key] = self._meshes[key].array(program)
         return array
+
+
+def _mesh_values(job: Job) -> dict[str, Value]:
+    """Return a draw's parameters, and the count that its header works out."""
+    step, kernel = job.step, job.step.kernel
+    if not kernel.count:
+        return dict(step.values)
+    if "count" not in mesh_parameters(kernel.registry):
+        raise SketchError(f"mesh '{kernel.registry}' takes no count")
+    return {**step.values, "count": expressions.evaluate(kernel.count, job.numbers())}
 
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:

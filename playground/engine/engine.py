@@ -296,7 +296,7 @@ class Engine:
     def _given_for(self, kernel: Kernel, step: Step) -> dict[str, object]:
         given = self.runner.given_for(kernel, step)
         if kernel.kind == "draw" and self._plan is not None:
-            given["samples"] = self.runner.samples_for(self._plan)
+            given["samples"] = self.runner.samples_for(self._plan, kernel)
         return given
 
     def _make_current(self) -> None:

@@ -300,7 +300,8 @@ class _Planner:
                     known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
                 except DataError as error:
                     raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                break
+                if known != Land():
+                    break
         size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
         extent = self.sketch.extent or known.extent
         if extent is None:

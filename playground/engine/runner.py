@@ -92,9 +92,9 @@ class Runner:
                 found[name] = self._given[name]
         return found
 
-    def samples_for(self, plan: Plan) -> int:
+    def samples_for(self, plan: Plan, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
-        return max(min(plan.sketch.samples, self.info.max_samples), 1)
+        return max(min(kernel.samples or plan.sketch.samples, self.info.max_samples), 1)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
@@ -121,7 +121,7 @@ class Runner:
         """
         assert self._plan is not None, "begin() comes first"
         kernel = step.kernel
-        samples = self.samples_for(self._plan)
+        samples = self.samples_for(self._plan, kernel)
         job = Job(step, self.given_for(kernel, step), inputs, turn, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         try:

@@ -32,7 +32,7 @@ _IMAGE = re.compile(
 _KEYS = {
     "kernel": ("output", "repeat", "accepts", "visits", "stride", "at_once"),
     "source": ("name", "output"),
-    "draw": ("mesh", "output", "blend", "depth", "repeat"),
+    "draw": ("mesh", "count", "output", "blend", "depth", "samples", "repeat"),
     "compute": ("groups", "local", "buffers", "repeat", "overwrites"),
 }
 _EXAMPLES = {
@@ -191,9 +191,13 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     for key, value, valid in (("blend", blend, ("none", "alpha", "add")), ("depth", depth, ("less", "none"))):
         if value not in valid:
             raise line.error(f'{key} = "{value}": expected one of {", ".join(valid)}')
-    return replace(
-        kernel, registry=options["mesh"], blend=blend, depth=depth, repeat=options.get("repeat", "1")
-    )
+    samples, count = options.get("samples", "0"), options.get("count", "")
+    if samples not in ("0", "1"):
+        raise line.error(f"samples = {samples}: expected 1, or 0 for as many as the view has")
+    if count:
+        _check("count", count, (*_SIZE, *_numbers(kernel)), line)
+    kernel = replace(kernel, registry=options["mesh"], blend=blend, depth=depth, count=count)
+    return replace(kernel, samples=int(samples), repeat=options.get("repeat", "1"))
 
 
 def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:

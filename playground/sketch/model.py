@@ -118,6 +118,8 @@ class Kernel:
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
     depth: str = "less"
+    count: str = ""  # of a draw: elements of a mesh that has no size of its own
+    samples: int = 0  # of a draw: samples a pixel; 0: the view's
     groups: str = ""  # of a compute companion
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()

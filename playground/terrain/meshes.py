@@ -51,11 +51,27 @@ def sheet(values: Mapping[str, int]) -> Mesh:
     return Mesh({"corner": corners}, np.array([0, 1, 2, 0, 2, 3], np.uint32))
 
 
+def triangles(values: Mapping[str, int]) -> Mesh:
+    """Return ``count`` triangles whose vertices share nothing: where they lie is the draw's to say.
+
+    Attribute ``corner``: which triangle, which of its vertices, 0 to 2, and 0.
+    """
+    n = values["count"]
+    corner = np.zeros((n, 3, 3), np.float32)
+    corner[..., 0] = np.arange(n)[:, None]
+    corner[..., 1] = np.arange(3)
+    return Mesh({"corner": corner.reshape(-1, 3)}, np.arange(3 * n, dtype=np.uint32))
+
+
 MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int, int]]]] = {
     "grid": (grid, {"grid": (2, 4097)}),
     "sheet": (sheet, {}),
+    "triangles": (triangles, {"count": (1, 2**20)}),
 }
-"""Name → (builder, the draw's parameters that it reads with their least and greatest)."""
+"""Name → (builder, the draw's parameters that it reads with their least and greatest).
+
+A draw's header may work out ``count``.
+"""
 
 
 def mesh_parameters(name: str) -> tuple[str, ...]:
@@ -74,7 +90,8 @@ def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], 
     for parameter, (low, high) in MESHES[name][1].items():
         value = values.get(parameter)
         if not isinstance(value, int):
-            raise SketchError(f"mesh '{name}' needs a parameter 'uniform int {parameter}'")
+            other = ', or count = "…" in its #pragma' if parameter == "count" else ""
+            raise SketchError(f"mesh '{name}' needs a parameter 'uniform int {parameter}'{other}")
         if not low <= value <= high:
             raise SketchError(f"{parameter} = {value}: mesh '{name}' takes {low} to {high}")
         found.append((parameter, value))

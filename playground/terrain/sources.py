@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.model import Value
+from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
@@ -118,12 +119,39 @@ def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[
     return {"height": heights}
 
 
+def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+    rules = Rules(
+        points=int(_number(values, "points")),
+        seed=int(_number(values, "seed")),
+        random_weights=values["weights"] == 1,
+        by_flips=values["method"] == 1,
+        flips=int(_number(values, "flips")),
+        displaced=values["heights"] == 1,
+        roughness=_number(values, "roughness"),
+        corners=tuple(map(float, values["corners"])),  # type: ignore[arg-type]
+        proportion=_number(values, "proportion"),
+    )
+    return tables(triangulate(rules), size)
+
+
+def _number(values: Mapping[str, Value], name: str) -> float:
+    value = values[name]
+    assert isinstance(value, int | float)  # the kernel's file says so
+    return value
+
+
 SOURCES: dict[str, SourceKind] = {
     "elevation_file": SourceKind(
         _describe_elevation,
         _make_elevation,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
+    ),
+    "delaunay": SourceKind(
+        lambda _: Land(),
+        _make_triangulation,
+        (),
+        ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
     ),
 }
 """Name → what it does."""

@@ -9,6 +9,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
+from playground.sketch.load import load
 
 HEAD = '#pragma draw(mesh = "sheet", output = "frame:rgba32f"{more})\n'
 PLATE = (
@@ -251,6 +252,81 @@ def test_mistakes_in_a_draw_have_sentences(any_engine, folder, text, message):
     with pytest.raises(PlaygroundError, match=message) as caught:
         any_engine.texture(folder.one(text), "a")
     assert caught.value.diagnostics[0].file
+
+
+STRIPES = (
+    '#pragma draw(mesh = "triangles", count = "{count}", output = "frame:rgba32f"{more})\n'
+    """uniform sampler2D rows;  //! input
+uniform int stripes = 3; //! slider(0, 40)
+vec4 vertex(vec3 corner, out int triangle) {
+    triangle = int(corner.x);
+    float row = texelFetch(rows, ivec2(0, triangle), 0).g;
+    vec2 place = corner.y < 0.5 ? vec2(0.0, row) : corner.y < 1.5 ? vec2(32.0, row) : vec2(0.0, row + 1.0);
+    return vec4(place / vec2(size) * 2.0 - 1.0, 0.0, 1.0);
+}
+vec4 fragment(int triangle) { return vec4(float(triangle + 1), 0.0, 0.0, 1.0); }
+"""
+)
+ROWS = """#pragma kernel(output = "rows:rgba32f")
+vec4 kernel(ivec2 texel) { return vec4(0.0, float(size.y - 1 - texel.y), 0.0, 1.0); }
+"""
+
+
+@pytest.fixture
+def stripes(folder):
+    """Give a function that makes a sketch of thin triangles, one a row, whose places a texture holds."""
+
+    def make(count: str, more: str = ""):
+        folder.write("rows.glsl", ROWS)
+        folder.write("stripes.glsl", STRIPES.replace("{count}", count).replace("{more}", more))
+        body = '[[pass]]\nname = "rows"\nuse = "./rows"\n[[pass]]\nname = "a"\nuse = "./stripes"\n'
+        return replace(folder.sketch(body, size="size = 16"), samples=1)
+
+    return make
+
+
+def test_triangles_take_their_places_from_a_texture(any_engine, stripes):
+    sketch = stripes("2 * stripes + size.x - 16", ', depth = "none"')
+    for number in (1, 3, 5):
+        found = any_engine.read(sketch.with_values({"a.stripes": number}), "a")[:, 1, 0]
+        expected = [16 - row if row >= 16 - 2 * number else 0 for row in range(16)]
+        np.testing.assert_array_equal(found, expected)
+        assert any_engine.ran[-1:] == ["a"]
+
+
+def test_a_count_that_is_wrong_has_a_sentence(any_engine, stripes, folder):
+    sketch = stripes("stripes").with_values({"a.stripes": 0})
+    with pytest.raises(PlaygroundError, match="count = 0: mesh 'triangles' takes 1 to") as caught:
+        any_engine.read(sketch, "a")
+    assert caught.value.diagnostics[0].line
+    folder.write("stripes.glsl", STRIPES.replace(', count = "{count}"', "").replace("{more}", ""))
+    with pytest.raises(PlaygroundError, match='or count = "…" in its #pragma'):
+        any_engine.read(load(sketch.file), "a")
+    with pytest.raises(PlaygroundError, match="mesh 'sheet' takes no count"):
+        any_engine.read(folder.one(PLATE.replace("{more}", ', count = "3"')), "a")
+
+
+def test_a_draw_may_keep_to_one_sample(any_engine, plates):
+    """Its texels are numbers, not colours: their mean over samples would be none of them."""
+    edge = 0.5 / 8  # half a pixel right of the middle
+    sketch = plates(("one", ", samples = 1", {"right": edge}, ""), samples=4)
+    found = any_engine.read(sketch, "one")
+    assert np.all(found % 1 == 0)
+    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=1), "one"), found)
+    assert any_engine.ran == [], "the view's samples are nothing to it"
+
+
+@pytest.mark.parametrize(("first", "second"), [(", samples = 1", ""), ("", ", samples = 1")])
+def test_a_draw_goes_on_from_one_with_other_samples(any_engine, plates, first, second):
+    sketch = plates(
+        ("one", first, {"right": 0.0}, "back"),
+        ("two", second, {"left": 0.5, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
+        samples=4,
+    )
+    found = any_engine.read(sketch, "two")
+    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(found[:, 12:, 2], 1.0)
+    np.testing.assert_array_equal(found[:, 8:12], any_engine.read(sketch, "back")[:, 8:12])
 
 
 def test_a_mesh_as_large_as_it_gets_is_not_kept_for_ever(any_engine, folder):

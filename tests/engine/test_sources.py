@@ -127,3 +127,11 @@ def test_a_picture_that_is_wrong_is_told_at_the_pass_that_names_it(any_engine, f
         "float kernel(ivec2 texel) { return texelFetch(grass, texel, 0).r; }\n",
     )
     assert refused(any_engine, folder.sketch(PASS)).startswith("grass.png: not a picture")
+
+
+def test_a_source_that_knows_nothing_of_its_land_leaves_it_to_the_next(any_engine, land):
+    folder, _ = land
+    made = '[[pass]]\nname = "tin"\nuse = "generation/delaunay"\n'
+    sketch = folder.sketch(f'{made}[[pass]]\nname = "height"\nuse = "./land"\n', size="")
+    any_engine.texture(sketch, "height")
+    assert any_engine.plan is not None and any_engine.plan.land.size == (7, 5)

@@ -215,6 +215,11 @@ def test_sources_draws_and_companions(parse):
     )
     assert (found.kind, found.registry, found.blend, found.depth) == ("draw", "grid", "alpha", "none")
     assert (found.outputs[0].name, found.outputs[0].format) == ("frame", "rgba16f")
+    assert (found.count, found.samples) == ("", 0)
+    found = parse(
+        '#pragma draw(mesh = "triangles", count = "2 * points + size.x", samples = 1)\nuniform int points;\n'
+    )
+    assert (found.count, found.samples) == ("2 * points + size.x", 1)
     found = parse(
         '#pragma compute(groups = "size.y, 1", local = "256, 1", '
         'buffers = "stack:vec4:size.x * 64; n:uint:1")\n'
@@ -293,6 +298,9 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
         ("#pragma draw()", "needs a mesh"),
         ('#pragma draw(mesh = "grid", blend = "alfa")', "expected one of none, alpha, add"),
         ('#pragma draw(mesh = "grid", output = "a:r8, b:r8")', "one output"),
+        ('#pragma draw(mesh = "grid", samples = 4)', "samples = 4: expected 1, or 0 for as many as"),
+        ('#pragma draw(mesh = "triangles", count = "pionts")', "count: 'pionts' names 'pionts'"),
+        ('#pragma draw(mesh = "triangles", count = "2,")', "count: "),
         ("#pragma compute()", "needs groups"),
         ('#pragma compute(groups = "1")', "2 expressions"),
         ('#pragma compute(groups = "1, 1", local = "8")', "two whole numbers"),

@@ -97,6 +97,16 @@ def test_a_sheet_is_one_square():
     assert areas(faces).tolist() == [0.5, 0.5]
 
 
+def test_triangles_are_numbers_that_a_draw_gives_a_place():
+    mesh = build_mesh("triangles", mesh_key("triangles", {"count": 70_000}))
+    corner = mesh.attributes["corner"].reshape(70_000, 3, 3)
+    assert corner.dtype == np.float32
+    np.testing.assert_array_equal(corner[..., 0], np.arange(70_000)[:, None] * np.ones(3))
+    np.testing.assert_array_equal(corner[..., 1], np.tile([0, 1, 2], (70_000, 1)))
+    assert not corner[..., 2].any()
+    np.testing.assert_array_equal(mesh.indices, np.arange(210_000))
+
+
 def test_a_key_holds_only_what_the_mesh_depends_on():
     assert mesh_key("grid", {"grid": 9, "colour": "red"}) == (("grid", 9),)
     assert mesh_key("sheet", {"grid": 9}) == ()
@@ -112,6 +122,8 @@ def test_a_key_holds_only_what_the_mesh_depends_on():
         ("grid", {"grid": 2.5}, "needs a parameter 'uniform int grid'"),
         ("grid", {"grid": 1}, "takes 2 to 4097"),
         ("grid", {"grid": 5000}, "takes 2 to 4097"),
+        ("triangles", {}, "needs a parameter 'uniform int count', or count = \"…\" in its #pragma"),
+        ("triangles", {"count": 0}, "takes 1 to 1048576"),
     ],
 )
 def test_mistakes_have_sentences(name, values, message):

@@ -8,7 +8,7 @@ import pytest
 from playground.errors import DataError, SketchError
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
-from playground.terrain.sources import SOURCES, source_kind
+from playground.terrain.sources import SOURCES, Land, source_kind
 
 KIND = source_kind("elevation_file")
 LAND = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
@@ -35,6 +35,23 @@ def test_the_kernel_declares_what_the_source_reads():
         "first_row": ("north", "south"),
     }
     assert all(name in KIND.parameters for name in KIND.files)
+
+
+def test_the_triangulation_s_kernel_declares_what_its_source_reads():
+    kind = source_kind("delaunay")
+    parameters = read_technique("generation/delaunay/triangulation", GLSL, GLSL).parameters
+    assert set(kind.parameters) == {p.name for p in parameters}
+    menus = {p.name: p.widget.choices for p in parameters if p.widget.kind == "menu"}
+    assert menus == {
+        "weights": ("equal", "random"),
+        "method": ("destruction and construction", "flips"),
+        "heights": ("random", "displaced"),
+    }
+    assert kind.describe({p.name: p.default for p in parameters}) == Land()
+    made = kind.make({p.name: p.default for p in parameters}, (16, 8))
+    assert {name: table.shape for name, table in made.items()} == dict.fromkeys(
+        ("places", "triangles", "neighbours", "last"), (8, 16, 4)
+    )
 
 
 @pytest.mark.parametrize(("first_row", "south_first"), [(0, LAND[::-1]), (1, LAND)])
@@ -86,4 +103,4 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         KIND.describe(values(elevation=str(tmp_path / "none.npy")))
     with pytest.raises(SketchError, match="did you mean 'elevation_file'"):
         source_kind("elevation_fil")
-    assert list(SOURCES) == ["elevation_file"]
+    assert list(SOURCES) == ["elevation_file", "delaunay"]
