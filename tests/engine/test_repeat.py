@@ -306,3 +306,12 @@ def test_a_stride_that_is_no_power_of_two_is_refused(ctx, folder):
     sketch = folder.one(LATTICE.replace("STRIDE", ' stride = "3",'))
     with Engine(ctx, driver="fragment") as engine, pytest.raises(PlaygroundError, match="power of two"):
         engine.read(sketch, "a")
+
+
+@pytest.mark.parametrize("left", [1e9, 0.7, -3e38])
+def test_a_turn_is_not_touched_by_what_an_earlier_one_left_in_its_texture(engine, folder, left):
+    text = """#pragma kernel(output = "a:r32f", repeat = "4")
+    float kernel(ivec2 texel) { return iteration < 2 ? LEFT : 0.123 + 0.0 * previous(texel); }
+    """.replace("LEFT", f"{left:.1e}").replace("\n    ", "\n")
+    found = engine.read(folder.one(text), "a")
+    np.testing.assert_array_equal(found, np.full((17, 17), 0.123, np.float32))

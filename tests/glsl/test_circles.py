@@ -1,0 +1,184 @@
+"""Circles against sums of domes in NumPy, disc by disc, in metres."""
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+
+DEFAULTS = {"iterations": 200, "seed": 7, "smallest": 0.02, "largest": 0.2, "rise": 0.1}
+DOME = "generation/circles/dome.glsl"
+SHAPES = [
+    ((33, 33), (1000.0, 1000.0)),
+    ((130, 100), (1300.0, 1000.0)),
+    ((40, 23), (300.0, 900.0)),
+    ((100, 9), (2000.0, 100.0)),
+    ((2, 2), (10.0, 10.0)),
+    ((1, 7), (10.0, 10.0)),
+]
+
+
+@pytest.fixture
+def sketch_of(make_sketch):
+    def make(size=(33, 33), extent=(1000.0, 1000.0), before="", inputs="", **values):
+        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        use = '[[pass]]\nname = "land"\nuse = "generation/circles"\n'
+        text = f"{before}{use}{inputs}[pass.set]\n{given}"
+        return make_sketch(text, size=list(size), extent=list(extent))
+
+    return make
+
+
+@pytest.fixture
+def discs(on_gpu):
+    """Give ``discs(extent, **values)``: x, y, radius in metres and height of each disc."""
+
+    def make(extent, **values):
+        v = DEFAULTS | values
+        index = np.arange(v["iterations"], dtype=np.uint32)
+        bits = on_gpu("noise/hash.glsl", "hash3(uvec3(i, 0u, s))", i=index, s=np.uint32(v["seed"]))
+        numbers = (bits >> 8) / 2.0**24
+        low, high = sorted((v["smallest"], v["largest"]))
+        share = np.interp(numbers[:, 2], [0, 1], [low, high])
+        heights = v["rise"] * (np.ones(len(share)) if v.get("rises") == "alike" else share / high)
+        return [*(numbers[:, :2] * extent).T, share * min(extent), heights]
+
+    return make
+
+
+def far_from(disc, size, extent):
+    """Return how far each texel stands from a disc's middle, in its radii."""
+    x, y = (np.linspace(0, e, n) if n > 1 else np.zeros(1) for n, e in zip(size, extent, strict=True))
+    return np.hypot(x[None, :] - disc[0], y[:, None] - disc[1]) / disc[2]
+
+
+def dome(far, sphere=False):
+    """Return a dome's height: the squared cosine of half the angle, or by the angle from the top."""
+    inside = np.minimum(far, 1)
+    return np.sin(np.arccos(inside)) if sphere else np.cos(inside * np.pi / 2) ** 2
+
+
+def summed(size, extent, drawn, sphere=False):
+    land = np.zeros(size[::-1])
+    for disc in zip(*drawn, strict=True):
+        land += disc[3] * dome(far_from(disc, size, extent), sphere)
+    return land
+
+
+@pytest.mark.parametrize(("size", "extent"), SHAPES, ids=str)
+@pytest.mark.parametrize(
+    "values", [{}, {"iterations": 97, "rises": "alike"}, {"smallest": 0.4, "largest": 0.1}]
+)
+def test_it_is_the_sum_of_its_domes(engine, sketch_of, discs, size, extent, values):
+    found = engine.read(sketch_of(size, extent, **values), "land.raw")
+    truth = summed(size, extent, discs(extent, **values))
+    # Places are counted in the shorter side: on a long land they are large numbers, and rounded.
+    long = max(extent) / min(extent)
+    np.testing.assert_allclose(found, truth, atol=2e-6 * long * max(1, truth.max()))
+
+
+def test_half_spheres(engine, sketch_of, discs):
+    size, extent = (130, 100), (1300.0, 1000.0)
+    found = engine.read(sketch_of(size, extent, dome="half a sphere"), "land.raw")
+    # At its rim a half sphere is upright: there a rounded place has a height of its own.
+    truth = summed(size, extent, discs(extent), sphere=True)
+    near = np.min([abs(far_from(d, size, extent) - 1) for d in zip(*discs(extent), strict=True)], axis=0)
+    np.testing.assert_allclose(found, truth, atol=2e-4)
+    assert (near > 1e-2).any()
+    np.testing.assert_allclose(found[near > 1e-2], truth[near > 1e-2], atol=1e-5)
+
+
+def test_it_is_the_sum_of_its_domes_at_513(engine, sketch_of, discs):
+    values = {"iterations": 1000, "smallest": 0.0, "largest": 0.05}
+    found = engine.read(sketch_of((513, 513), **values), "land.raw")
+    rows = [0, 77, 256, 512]
+    truth = np.zeros((4, 513))
+    x, y = np.linspace(0, 1000, 513), np.linspace(0, 1000, 513)[rows]
+    for cx, cy, radius, height in zip(*discs((1000, 1000), **values), strict=True):
+        truth += height * dome(np.hypot(x[None] - cx, y[:, None] - cy) / max(radius, 1e-9))
+    np.testing.assert_allclose(found[rows], truth, atol=2e-6)
+
+
+@pytest.mark.parametrize("dome", ["half a cosine", "half a sphere"])
+def test_outside_every_disc_the_land_keeps_its_height(engine, sketch_of, discs, dome):
+    """To the last bit; inside any, it is higher."""
+    before = '[[pass]]\nname = "start"\nuse = "generation/layered_noise"\n'
+    values = {"iterations": 30, "seed": 5, "smallest": 0.05, "largest": 0.1}
+    size, extent = (100, 70), (1000.0, 700.0)
+    sketch = sketch_of(size, extent, before, 'inputs = { initial = "start" }\n', dome=dome, **values)
+    start, land = engine.read(sketch, "start"), engine.read(sketch, "land.raw")
+    far = np.min([far_from(d, size, extent) for d in zip(*discs(extent, **values), strict=True)], axis=0)
+    outside, inside = far > 1 + 1e-5, far < 0.98
+    assert outside.sum() > 1000 and inside.sum() > 1000
+    np.testing.assert_array_equal(land[outside], start[outside])
+    assert (land[inside] > start[inside]).all()
+    alone = engine.read(sketch_of(size, extent, dome=dome, **values), "land.raw")
+    assert not alone[outside].any()
+
+
+@pytest.mark.parametrize("extent", [(1000.0, 1000.0), (4000.0, 1000.0), (1000.0, 2500.0)], ids=str)
+def test_discs_are_round_in_metres(engine, sketch_of, discs, extent):
+    size = (401, 301)
+    for seed in range(40):
+        (x,), (y,), (radius,), _ = discs(extent, iterations=1, seed=seed, smallest=0.2, largest=0.2)
+        if radius < x < extent[0] - radius and radius < y < extent[1] - radius:
+            break
+    sketch = sketch_of(size, extent, iterations=1, seed=seed, smallest=0.2, largest=0.2)
+    land = engine.read(sketch, "land.raw")
+    wide, high = (np.flatnonzero((land > 0).any(axis=a)) for a in (0, 1))
+    step = np.array(extent) / (np.array(size) - 1)
+    np.testing.assert_allclose(np.ptp(wide) * step[0], 2 * radius, atol=2.1 * step[0])
+    np.testing.assert_allclose(np.ptp(high) * step[1], 2 * radius, atol=2.1 * step[1])
+
+
+def test_domes(on_gpu):
+    far = np.linspace(0, 1.2, 400)
+    offset = np.stack([far * 0.3 * np.cos(far * 9), far * 0.3 * np.sin(far * 9)], axis=1)
+    share = on_gpu(DOME, "disc_share(offset, 0.3)", offset=offset)
+    np.testing.assert_allclose(share, np.minimum(far**2, 1), atol=1e-6)
+    for sphere in (False, True):
+        found = on_gpu(DOME, f"dome_of_share(share, {str(sphere).lower()})", share=share)
+        np.testing.assert_allclose(found, dome(np.sqrt(share.astype(np.float64)), sphere), atol=1e-6)
+        assert found[0] == pytest.approx(1, abs=1e-6) and abs(found[-1]) < 1e-6
+
+
+def test_turns_are_discs(engine, sketch_of):
+    """However they are grouped: one by one, or many in one run; a stop in a block is the sum so far."""
+    values = {"seed": 6, "rises": "alike"}
+    sketch = sketch_of((70, 50), iterations=120, **values)
+    turns = dict(engine.steps(sketch, "land"))
+    assert len(turns) == 121 and not turns[0].any()
+    for turn in (1, 24, 50, 96, 97, 119, 120):
+        with Engine(engine.ctx, driver=engine.driver) as fresh:
+            found = fresh.read(sketch, "land.raw", steps={"land.raw": turn})
+        np.testing.assert_array_equal(found, turns[turn])
+        fewer = engine.read(sketch_of((70, 50), iterations=turn, **values), "land.raw")
+        np.testing.assert_array_equal(found, fewer)
+
+
+def test_nothing_to_add_is_flat_land(engine, sketch_of):
+    for values in ({"iterations": 0}, {"smallest": 0.0, "largest": 0.0}):
+        for normalise in ("none", "max", "minmax"):
+            land = engine.read(sketch_of(normalise=normalise, **values), "land")
+            np.testing.assert_array_equal(land, 0)
+
+
+def test_discs_as_wide_as_the_land(engine, sketch_of):
+    land = engine.read(sketch_of(iterations=1000, smallest=1.0, largest=1.0), "land.raw")
+    assert np.isfinite(land).all() and land.min() > 0
+
+
+def test_normalise_and_seeds(engine, sketch_of):
+    raw = engine.read(sketch_of(), "land.raw").astype(np.float64)
+    lands = {n: engine.read(sketch_of(normalise=n), "land") for n in ("none", "max", "minmax")}
+    np.testing.assert_array_equal(lands["none"], raw)
+    np.testing.assert_allclose(lands["max"], raw / raw.max(), atol=1e-6)
+    np.testing.assert_allclose(lands["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
+    one, other, again = (engine.read(sketch_of(seed=s), "land") for s in (1, 2, 1))
+    np.testing.assert_array_equal(one, again)
+    assert np.abs(one - other).max() > 0.1
+
+
+def test_both_drivers_agree_to_the_last_bit(ctx, sketch_of):
+    sketch = sketch_of((130, 70), (1300.0, 700.0), dome="half a sphere")
+    with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="compute") as other:
+        np.testing.assert_array_equal(one.read(sketch, "land.raw"), other.read(sketch, "land.raw"))
