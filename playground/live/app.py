@@ -201,11 +201,15 @@ class Live:
         self.status.write(actions)
 
     def _steer(self, area: Area) -> None:
-        """Move the camera as the mouse says, unless the mouse is the panel's."""
+        """Move the camera, or with Ctrl the sun, as the mouse says, unless the mouse is the panel's."""
         io, session = imgui.get_io(), self.session
         if io.want_capture_mouse or session.plan is None or session.sketch is None:
             return
         left, right = _dragged(0), _dragged(1)
+        if io.key_ctrl:
+            if left and (io.mouse_delta.x or io.mouse_delta.y):
+                session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
+            return
         gesture = Gesture(
             height=area[3],
             across=io.mouse_delta.x,

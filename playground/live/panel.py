@@ -310,7 +310,7 @@ def _footer(look: Theme, orbits: bool) -> None:
     imgui.separator()
     with look.font(look.text, theme.SMALL):
         imgui.push_text_wrap_pos(0)
-        imgui.text_disabled("Drag to orbit, right-drag or Shift to pan, wheel to zoom" if orbits else "")
+        imgui.text_disabled("Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else "")
         imgui.text_disabled("   ".join(f"{k.name} {k.brief}" for k in KEYS if k.brief))
         imgui.pop_text_wrap_pos()
 

@@ -30,6 +30,7 @@ from playground.live.edits import Draft, Edits, reload_draft
 from playground.live.files import files_named_by, files_of
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
+from playground.live.sunlight import suns_of, turned
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
@@ -253,6 +254,12 @@ class Session:
         if self.engine.runner.mouse != mouse and self.sketch is not None and reads_mouse(self.sketch):
             self.engine.runner.mouse = mouse
             self._revision += 1
+
+    def turn_suns(self, across: float, up: float) -> None:
+        """Move every sun of the sketch by so much of the picture's height, to the right and upwards."""
+        if self.sketch is not None:
+            for path, sun in suns_of(self.sketch).items():
+                self.set(path, turned(sun, across, up))
 
     def reset_camera(self) -> None:
         """See the land as the file says."""

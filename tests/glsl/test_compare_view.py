@@ -1,0 +1,61 @@
+"""Two lights on one land: each side of the line is the picture of that light alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+
+SIZE = (96, 64)
+LAND = """
+[[pass]]
+name = "height"
+use = "generation/layered_noise"
+[[pass]]
+name = "one"
+use = "lighting/l_dot_n"
+[[pass]]
+name = "two"
+use = "lighting/l_dot_n"
+set = { gain = 0.5 }
+"""
+
+
+@pytest.fixture
+def pictures(make_sketch, any_engine: Engine):
+    both = make_sketch(
+        f'{LAND}[view]\nuse = "view/compare"\ninputs = {{ light_left = "one", light_right = "two" }}\n'
+    )
+    alone = [
+        make_sketch(f'{LAND}[view]\nuse = "view/terrain"\ninputs = {{ light = "{name}" }}\n')
+        for name in ("one", "two")
+    ]
+    return both, [any_engine.render(sketch, size=SIZE).array.astype(int) for sketch in alone]
+
+
+def test_each_side_is_the_picture_of_its_light(any_engine, pictures):
+    both, (one, two) = pictures
+    assert np.abs(one - two).max() > 50
+    for divider in (0.25, 0.5, 0.8):
+        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array.astype(int)
+        line = divider * SIZE[0]
+        middles = np.arange(SIZE[0]) + 0.5
+        np.testing.assert_array_equal(found[:, middles < line - 2], one[:, middles < line - 2])
+        np.testing.assert_array_equal(found[:, middles > line + 2], two[:, middles > line + 2])
+        assert (found[:, np.abs(middles - line) < 1, :3] == 255).all()
+
+
+def test_at_its_ends_the_line_is_gone(any_engine, pictures):
+    both, (one, two) = pictures
+    for divider, whole in ((1.0, one), (0.0, two)):
+        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
+        np.testing.assert_array_equal(found, whole)
+
+
+def test_the_difference_is_grey_where_there_is_none_and_signed(any_engine, pictures):
+    both, (one, two) = pictures
+    changed = both.with_values({"view.mode": "difference", "view.amplified": 1.0})
+    found = any_engine.render(changed, size=SIZE).array.astype(int)
+    expected = np.clip(127.5 + 0.5 * (two - one), 0, 255)[..., :3]
+    np.testing.assert_allclose(found[..., :3], expected, atol=1.01)
