@@ -1,13 +1,18 @@
 // view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour and a light if there are
+//   needs    lighting/sun.glsl, maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour
+//            and a light if there are
 //   units    metres; colours linear
-//   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture); the rest made here
-//   tested   tests/glsl/test_view.py, by where marked land stands in the picture
+//   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
+//            (facets); the rest made here
+//   tested   tests/glsl/test_view.py, by where marked land stands in the picture; facets in
+//            tests/glsl/test_facets.py, against the normals of the faces in float64
 //
 // The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
-// costs six times the frame, and light carries the detail that its facets lack.
+// costs six times the frame, and light carries the detail that its facets lack. Asked to, each
+// facet is lit by its own normal instead, so that the mesh itself is what one sees.
+#include "lighting/sun.glsl"
 #include "maths/drape.glsl"
 #include "view/wires.glsl"
 #pragma draw(mesh = "grid", output = "frame:rgba16f")
@@ -20,6 +25,9 @@ uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices
 uniform bool wireframe = false;       //! group("Mesh") Draw the mesh's edges; hidden ones stay hidden
 uniform vec3 wire = vec3(0.75, 0.82, 0.88);  //! colour group("Mesh") The edges' colour
 uniform float faces = 1.0;            //! slider(0, 1) step(0.01) group("Mesh") How bright the faces between the edges are
+uniform bool facets = false;          //! group("Mesh") Light each face by its own normal instead of by the light
+uniform vec2 facet_sun = vec2(135.0, 30.0);  //! direction group("Mesh") label("Sun on facets") Where that light comes from
+uniform float facet_ambient = 0.15;   //! slider(0, 1) step(0.01) group("Mesh") label("Sky on facets") Light on a level face that the sun does not reach
 uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
 uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
 uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
@@ -56,12 +64,23 @@ vec3 cut(vec2 share, float below) {
     return earth * (inside.x < inside.y ? 0.7 : 1.0) * mix(1.0, 0.55, below);
 }
 
+#ifdef FRAGMENT_STAGE
+// The light on the plane that a pixel's neighbours share with it: a face of the mesh.
+float light_of_face(vec3 position) {
+    vec3 normal = normalize(cross(dFdx(position), dFdy(position)));
+    // Which side is up depends on how the picture is turned, not on the land.
+    normal *= normal.z < 0.0 ? -1.0 : 1.0;
+    return sun_on(normal, to_sun(facet_sun)) + facet_ambient * (0.5 + 0.5 * normal.z);
+}
+#endif
+
 vec4 fragment(vec3 position, float mark) {
     vec2 share = position.xy / extent;
-    vec3 shown = texture(colour, drape_uv(share, textureSize(colour, 0)), SHARPER).rgb
-               * texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
+    vec3 shown = texture(colour, drape_uv(share, textureSize(colour, 0)), SHARPER).rgb;
+    shown *= facets ? vec3(light_of_face(position))
+                    : texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
     if (wireframe) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
-    if (mark > 0.0) shown = cut(share, mark);
+    if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot
     if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
     if (haze > 0.0) shown = mix(horizon, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
     return vec4(shown, 1.0);

@@ -45,7 +45,7 @@ def sketch_of(tmp_path) -> Callable[..., Sketch]:
         found = technique(name)
         wanted = [one for one in input_names(found) if not is_optional(found, one)]
         feeds = "".join(
-            f'[[pass]]\nname = "feed_{i}"\nuse = "generation/layered_noise"\nset = {{ seed = {i} }}\n'
+            f'[[pass]]\nname = "feed_{i}"\nuse = "generation/white_noise"\nset = {{ seed = {i} }}\n'
             for i in range(len(wanted))
         )
         wires = ", ".join(f'{one} = "feed_{i}"' for i, one in enumerate(wanted))
