@@ -178,7 +178,15 @@ def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple
     for name in companion.overwrites:
         if name not in written:
             raise companion.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
-    return replace(companion, outputs=outputs)
+    return replace(companion, outputs=outputs, accepts=_accepts(of))
+
+
+def _accepts(technique: Kernel | Graph) -> str:
+    """Return the sizes that a technique takes: those of the first kernel in it that asks for some."""
+    if isinstance(technique, Kernel):
+        return technique.accepts
+    found = (_accepts(spec.technique) for spec in technique.passes if spec.size is None)
+    return next(filter(None, found), "")
 
 
 def _check_files(kernel: Kernel, folder: Path) -> None:

@@ -228,3 +228,42 @@ def test_overwrites_names_an_output_or_a_buffer(folder):
     folder.write("fill.comp", FILL.replace("OPTION", ', overwrites = "wrok"'))
     with pytest.raises(PlaygroundError, match="no output or buffer 'wrok'; did you mean 'work'"):
         folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
+
+
+BUFFERED_HEAD = (
+    '#pragma compute(groups = "1, size.y", local = "1, 1", overwrites = "sums", '
+    'buffers = "sums:float:(size.x + 1) // 2 * 2 * size.y")'
+)
+BUFFERED = """
+uniform sampler2D values; //! input
+uniform float scale = 1.0; //! slider(0, 10)
+void main() {
+    float sum = 0.0;
+    int y = int(gl_GlobalInvocationID.y);
+    for (int x = 0; x < size.x; x++) {
+        sum += texelFetch(values, ivec2(x, y), 0).r * scale;
+        sums[y * ((size.x + 1) / 2 * 2) + x] = sum;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("size", [16, 17, [5, 3]])
+def test_a_buffer_of_an_outputs_name_is_that_output(any_engine, folder, sums, size):
+    """Its rows are filled up to 8 bytes, so those of an odd land have a float more."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("sums.glsl", SUMS.replace("log2(size.x)", "5"))
+    folder.write("sums.comp", BUFFERED_HEAD + BUFFERED)
+    found = any_engine.read(folder.sketch(BODY, size=f"size = {size}"), "sums")
+    nx, ny = size if isinstance(size, list) else (size, size)
+    y, x = np.mgrid[0:ny, 0:nx]
+    np.testing.assert_array_equal(found, np.cumsum((x * 3 + y * 5) % 8, axis=1))
+
+
+def test_a_buffer_too_small_for_its_output_has_a_sentence(any_engine, folder, sums):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("sums.comp", BUFFERED_HEAD.replace("2 * 2 *", "2 *") + BUFFERED)
+    with pytest.raises(PlaygroundError, match="holds 512 bytes; the output needs 1024"):
+        any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")

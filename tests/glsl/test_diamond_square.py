@@ -1,10 +1,9 @@
 """Diamond-square against the thesis's own loops in float64, with the same random numbers."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
+from playground.engine.engine import Engine
 from playground.errors import SketchError
 
 CORNERS = (0.1, 0.7, 0.4, 0.9)  # south-west, south-east, north-west, north-east
@@ -94,17 +93,91 @@ def test_it_is_the_thesis_land_at_1025(any_engine, make_sketch, numbers):
     np.testing.assert_allclose(any_engine.read(sketch, "land"), truth, atol=3e-6)
 
 
-def test_the_turns_are_the_figures(engine, make_sketch):
+FIGURES = {1: 4, 2: 5, 3: 9, 4: 13, 5: 25}  # points that are set after each turn, in figures 1.8 to 1.11
+PHASES = {
+    1: {(0, 0), (4, 0), (0, 4), (4, 4)},
+    2: {(2, 2)},
+    3: {(2, 0), (0, 2), (4, 2), (2, 4)},
+    4: {(1, 1), (3, 1), (1, 3), (3, 3)},
+    5: {(x, y) for x in range(5) for y in range(5) if (x + y) % 2 == 1},
+}
+
+
+def test_the_turns_are_the_figures(engine, make_sketch, numbers):
     """Figures 1.8 to 1.11: four corners, one centre, four edges, four centres, twelve edges."""
-    sketch = sketch_of(make_sketch, 5, corners=(1.0, 1.0, 1.0, 1.0))
-    known = [values != 0 for _, values in engine.steps(sketch, "land.raw")]
-    assert [k.sum() for k in known] == [0, 4, 5, 9, 13, 25]
-    places = [{(int(x), int(y)) for y, x in np.argwhere(k & ~b)} for b, k in pairwise(known)]
-    assert places[0] == {(0, 0), (4, 0), (0, 4), (4, 4)}
-    assert places[1] == {(2, 2)}
-    assert places[2] == {(2, 0), (0, 2), (4, 2), (2, 4)}
-    assert places[3] == {(1, 1), (3, 1), (1, 3), (3, 3)}
-    assert places[4] == {(x, y) for x in range(5) for y in range(5) if (x + y) % 2 == 1}
+    sketch = sketch_of(make_sketch, 5, corners=CORNERS, smoothing=0.5, seed=2)
+    drawn = numbers(5, 2)
+    truth = by_the_thesis(5, 0.5, CORNERS, lambda i, j: drawn[i, j])
+    states = [values.copy() for _, values in engine.steps(sketch, "land.raw")]
+    assert len(states) == 6 and not states[0].any()
+    for turn, count in FIGURES.items():
+        known = states[turn] != 0
+        assert known.sum() == count
+        np.testing.assert_allclose(states[turn][known], truth[known], atol=1e-6)
+        places = {(int(x), int(y)) for y, x in np.argwhere(known & (states[turn - 1] == 0))}
+        assert places == PHASES[turn]
+
+
+def known_of(make_sketch, size):
+    return make_sketch('[[pass]]\nname = "known"\nuse = "generation/diamond_square/known"\n', size=size)
+
+
+def test_the_mask_tells_the_turn_that_sets_a_point(engine, make_sketch):
+    sketch = known_of(make_sketch, 5)
+    for turn, phase in engine.steps(sketch, "known"):
+        assert (phase > 0).sum() == FIGURES.get(turn, 0)
+        for number in range(1, turn + 1):
+            places = {(int(x), int(y)) for y, x in np.argwhere(phase == number)}
+            assert places == PHASES[number]
+
+
+@pytest.mark.parametrize("size", [2, 3, 33])
+def test_the_mask_marks_what_the_land_knows(engine, make_sketch, size):
+    land = sketch_of(make_sketch, size, corners=(1.0, 1.0, 1.0, 1.0), smoothing=0.1)
+    phases = engine.steps(known_of(make_sketch, size), "known")
+    masks = [phase.copy() for _, phase in phases]
+    for turn, values in engine.steps(land, "land.raw"):
+        np.testing.assert_array_equal(masks[turn] > 0, values != 0)
+    assert masks[-1].min() > 0
+
+
+@pytest.mark.parametrize("size", [2, 3, 17, 129, 1025])
+@pytest.mark.parametrize("random", ["centred", "positive"])
+def test_both_drivers_give_the_same_bits(ctx, make_sketch, size, random):
+    """By fragment, by compute in place, and by whatever stands for the technique where there is compute."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    sketch = sketch_of(make_sketch, size, smoothing=0.63, corners=CORNERS, seed=5, random=random)
+    with Engine(ctx, driver="fragment") as engine:
+        fragment = engine.read(sketch, "land")
+    with Engine(ctx) as engine:
+        np.testing.assert_array_equal(engine.read(sketch, "land.raw"), fragment)
+        np.testing.assert_array_equal(engine.read(sketch, "land"), fragment)
+
+
+@pytest.mark.parametrize("size", [3, 65, 129, 257])
+@pytest.mark.parametrize("normalise", ["max", "minmax"])
+def test_both_drivers_normalise_to_the_same_bits(ctx, make_sketch, size, normalise):
+    """Whichever way the range is found: lands whose ends lie on a border, on a corner, anywhere."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
+        for seed, smoothing in ((1, 0.63), (2, 1.0), (3, 0.1), (4, 0.63), (5, 0.63), (6, 0.0)):
+            values = {"smoothing": smoothing, "corners": CORNERS, "normalise": normalise, "seed": seed}
+            sketch = sketch_of(make_sketch, size, **values)
+            np.testing.assert_array_equal(slow.read(sketch, "land"), fast.read(sketch, "land"))
+
+
+@pytest.mark.parametrize(("height", "left"), [(0.4, 0.4), (0.0, 0.0), (1.0, 1.0)])
+def test_level_land_has_no_range_to_stretch(engine, make_sketch, height, left):
+    for size in (5, 65):
+        values = {"smoothing": 0.0, "corners": (height,) * 4}
+        level = engine.read(sketch_of(make_sketch, size, normalise="minmax", **values), "land")
+        np.testing.assert_array_equal(level, 0)
+        level = engine.read(sketch_of(make_sketch, size, normalise="max", **values), "land")
+        np.testing.assert_array_equal(level, 1.0 if height else 0.0)
+        level = engine.read(sketch_of(make_sketch, size, **values), "land")
+        np.testing.assert_array_equal(level, np.float32(left))
 
 
 def test_corners_keep_their_heights(engine, make_sketch):
@@ -156,3 +229,54 @@ def test_seeds_are_lands(engine, make_sketch):
 def test_a_size_it_cannot_halve_is_refused_with_the_nearest(any_engine, make_sketch):
     with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
         any_engine.read(sketch_of(make_sketch, 100), "land")
+
+
+# ── the picture of a small land's points ─────────────────────────────────────
+
+PICTURE = """
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+set = { smoothing = 0.0, corners = [0.2, 0.2, 0.8, 0.8] }
+[[pass]]
+name = "phase"
+use = "generation/diamond_square/known"
+[view]
+use = "view/lattice"
+inputs = { height = "height", phase = "phase" }
+set = { first = "#102030", second = "#ff0000", third = "#0000ff", fourth = "#00ff00", fifth = "#ff8000" }
+"""
+RINGS = {1: (16, 32, 48), 2: (255, 0, 0), 3: (0, 0, 255), 4: (0, 255, 0), 5: (255, 128, 0)}
+
+
+@pytest.mark.parametrize("turn", range(6))
+@pytest.mark.parametrize("shape", [(250, 250), (400, 250)])
+def test_a_point_is_a_disc_with_the_ring_of_its_phase(engine, make_sketch, turn, shape):
+    """The lattice stands in the middle, 50 pixels from point to point, north on top."""
+    sketch = make_sketch(PICTURE, size=5)
+    picture = engine.render(sketch, size=shape, steps={"height.raw": turn, "phase": turn}).array.astype(int)
+    heights = by_the_thesis(5, 0.0, (0.2, 0.2, 0.8, 0.8), lambda i, j: 0.0)
+    for phase, places in PHASES.items():
+        for x, y in places:
+            row, column = 124 - 50 * (y - 2), shape[0] // 2 + 50 * (x - 2)
+            middle, ring = picture[row, column, :3], picture[row, column + 12, :3]
+            if phase <= turn:
+                np.testing.assert_allclose(middle, 255 * heights[y, x], atol=1)
+                np.testing.assert_allclose(ring, RINGS[phase], atol=1)
+            else:
+                np.testing.assert_allclose(middle, 255)
+                assert ring.min() == ring.max() > 200, "only a line of the lattice, or none"
+
+
+def test_between_the_points_is_paper_and_a_thin_line(engine, make_sketch):
+    picture = engine.render(make_sketch(PICTURE, size=5), size=(250, 250)).array.astype(int)
+    assert (picture[150, 150, :3] == 255).all(), "between four points"
+    lines = picture[150, :, 0]
+    assert 5 <= (lines < 250).sum() <= 10, "one line or two dim ones for each column of points"
+
+
+def test_phases_beyond_the_fifth_go_on_with_the_last_two_colours(engine, make_sketch):
+    picture = engine.render(make_sketch(PICTURE, size=9), size=(450, 450)).array.astype(int)
+    for (x, y), phase in {(1, 1): 4, (3, 5): 4, (1, 0): 5, (4, 3): 5}.items():
+        row, column = 224 - 50 * (y - 4), 225 + 50 * (x - 4)
+        np.testing.assert_allclose(picture[row, column + 12, :3], RINGS[phase], atol=1)

@@ -1,0 +1,101 @@
+"""What stands for diamond-square where there is compute: the same bits as its passes, whatever is asked."""
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import SketchError
+
+CORNERS = (0.1, 0.7, 0.4, 0.9)
+
+
+@pytest.fixture
+def fast(ctx):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx) as engine:
+        yield engine
+
+
+@pytest.fixture
+def slow(ctx):
+    with Engine(ctx, driver="fragment") as engine:
+        yield engine
+
+
+def sketch_of(make_sketch, size, **values):
+    given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
+    use = '[[pass]]\nname = "land"\nuse = "generation/diamond_square"\n'
+    return make_sketch(f"{use}[pass.set]\n{given}", size=size)
+
+
+def test_it_runs_and_by_fragment_the_passes_do(fast, slow, make_sketch):
+    sketch = sketch_of(make_sketch, 129)
+    fast.texture(sketch, "land")
+    slow.texture(sketch, "land")
+    assert fast.ran == ["land"]
+    assert "land.raw" in slow.ran
+
+
+@pytest.mark.parametrize("size", [2, 3, 5, 9, 17, 33, 65, 129, 257, 513])
+@pytest.mark.parametrize("normalise", ["none", "max", "minmax"])
+@pytest.mark.parametrize("random", ["centred", "positive"])
+def test_it_gives_the_bits_of_the_passes(fast, slow, make_sketch, size, normalise, random):
+    """Sizes of even and odd levels, of one group and of many."""
+    values = {"smoothing": 0.63, "corners": CORNERS, "seed": 5, "random": random, "normalise": normalise}
+    sketch = sketch_of(make_sketch, size, **values)
+    np.testing.assert_array_equal(fast.read(sketch, "land"), slow.read(sketch, "land"))
+
+
+# At 65 texels and seeds 172 and 291, at 129 and seed 61, the lowest or the highest stands in the
+# two western columns, which no eight columns hold; at 129 and seed 289 what lies past the
+# eastern border would be the highest.
+@pytest.mark.parametrize("size", [65, 129, 257])
+@pytest.mark.parametrize("smoothing", [1.0, 0.05])
+def test_no_height_is_missed_in_the_search_for_the_range(fast, make_sketch, size, smoothing):
+    """Rows that cannot hold the lowest or the highest are skipped; those that can must not be."""
+    for seed in (*range(8), 61, 172, 289, 291):
+        values = {"smoothing": smoothing, "corners": CORNERS, "seed": seed}
+        raw = fast.read(sketch_of(make_sketch, size, **values), "land")
+        share = (raw - raw.min()) / (raw.max() - raw.min())
+        found = fast.read(sketch_of(make_sketch, size, normalise="minmax", **values), "land")
+        np.testing.assert_array_equal(found, share)
+        found = fast.read(sketch_of(make_sketch, size, normalise="max", **values), "land")
+        np.testing.assert_array_equal(found, raw / raw.max())
+
+
+def test_land_below_0_is_not_turned_over(fast, slow, make_sketch):
+    """By "max", a land whose heights are all below 0 stays as it is."""
+    values = {"smoothing": 0.01, "normalise": "max", "corners": (0.0, 0.0, 0.0, 0.0)}
+    for seed in range(4):
+        sketch = sketch_of(make_sketch, 65, seed=seed, **values)
+        np.testing.assert_array_equal(fast.read(sketch, "land"), slow.read(sketch, "land"))
+
+
+def test_level_land_is_level(fast, make_sketch):
+    for size in (33, 129):
+        for normalise, height in (("none", np.float32(0.4)), ("max", 1.0), ("minmax", 0.0)):
+            sketch = sketch_of(make_sketch, size, smoothing=0.0, corners=(0.4,) * 4, normalise=normalise)
+            np.testing.assert_array_equal(fast.read(sketch, "land"), height)
+
+
+def test_a_turn_on_the_way_is_the_kernel_s(fast, make_sketch):
+    sketch = sketch_of(make_sketch, 65)
+    fast.read(sketch, "land", steps={"land.raw": 3})
+    assert "land.raw" in fast.ran
+    fast.read(sketch, "land")
+    assert fast.ran in ([], ["land"])
+
+
+def test_sizes_it_cannot_make_are_refused_as_the_kernel_refuses_them(fast, slow, make_sketch):
+    for engine in (fast, slow):
+        with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
+            engine.read(sketch_of(make_sketch, 100), "land")
+
+
+def test_keys_are_in_the_order_of_heights(on_gpu):
+    heights = np.array([-3e38, -1.0, -1e-30, -0.0, 0.0, 1e-38, 0.5, 0.50000006, 1.0, 3e38], np.float32)
+    file = "generation/diamond_square/order.glsl"
+    keys = on_gpu(file, "key_of_height(h)", h=heights)
+    assert (np.diff(keys.astype(np.int64)) > 0).all() and keys.min() > 0 and (~keys).min() > 0
+    np.testing.assert_array_equal(on_gpu(file, "height_of_key(key_of_height(h))", h=heights), heights)
