@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from playground.engine.kernels import Job, Kernels
+from playground.engine.programs import Program
 from playground.engine.results import Result
 from playground.gpu.wrap import COMPUTE
 from playground.sketch import expressions
@@ -41,7 +42,6 @@ class Companions:
     def run(self, job: Job) -> Result:
         """Run a companion; the result is the caller's."""
         step, kernel = job.step, job.step.kernel
-        program = self.kernels.program(step, COMPUTE)
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
         whole = all(output.name in kernel.overwrites for output in kernel.outputs)
@@ -52,9 +52,10 @@ class Companions:
             for unit, declared in enumerate(kernel.buffers):
                 buffers.append(self._buffer(job, declared, names))
                 buffers[-1].bind_to_storage_buffer(unit)
-            self.kernels.binder.bind(program, step, job.given, job.inputs)
             self.kernels.images(result, read=True)
+            bound: set[Program] = set()
             for iteration in range(repeat):
+                program = self._program(job, iteration, bound)
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
@@ -70,6 +71,22 @@ class Companions:
         finally:
             self._keep(buffers)
         return result
+
+    def _program(self, job: Job, iteration: int, bound: set[Program]) -> Program:
+        """Return the program of a turn with all that it reads, which is set once for a run.
+
+        Where the processor draws, there is one for each stage: what the others do would
+        be gone through as well, and thrown away.
+        """
+        step, stages = job.step, job.step.kernel.stages
+        stage = (("stage", stages[iteration]),) if stages else ()
+        program = self.kernels.program(step, COMPUTE, *stage)
+        if program not in bound:
+            self.kernels.binder.bind(program, step, job.given, job.inputs)
+            bound.add(program)
+        for name, number in stage:
+            program.set(name, number)
+        return program
 
     def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
         kernel: Kernel = job.step.kernel
@@ -87,19 +104,19 @@ class Companions:
         return found
 
     def _copy(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
-        """Fill an output's texture with the buffer of its name: rows from the south, filled up to 8 bytes."""
-        texture = result.textures[declared.name]
+        """Fill an output's texture with the buffer of its name: rows from the south, as its header fills them."""
+        texture, aligned = result.textures[declared.name], job.step.kernel.aligned
         row = texture.width * texture.components * 4
-        needed = -(-row // 8) * 8 * texture.height
+        needed = -(-row // aligned) * aligned * texture.height
         if texture.dtype != "f4" or buffer.size < needed:
             message = f"buffer '{declared.name}' holds {buffer.size} bytes; the output needs {needed}"
             raise job.step.kernel.error(f"pass '{job.step.path}': {message}, 32 bits a number")
-        texture.write(buffer, alignment=8)
+        texture.write(buffer, alignment=aligned)
 
     def _keep(self, buffers: list[moderngl.Buffer]) -> None:
         self._spare += buffers
         held = sum(buffer.size for buffer in self._spare)
-        while self._spare and held > self.kernels.pool.limit:
+        while len(self._spare) > len(buffers) and held > self.kernels.pool.limit:
             oldest = self._spare.pop(0)
             held -= oldest.size
             oldest.release()

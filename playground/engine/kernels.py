@@ -99,8 +99,11 @@ class Kernels:
             return self._in_place(job, program, state)
         return self._by_turns(job, program, driver, state, unit)
 
-    def program(self, step: Step, driver: str) -> Program:
-        """Return the program of a step; where the processor draws, one for each choice of menus."""
+    def program(self, step: Step, driver: str, *more: tuple[str, int]) -> Program:
+        """Return the program of a step; where the processor draws, one for each choice of menus.
+
+        ``more`` are whole numbers to compile in as well.
+        """
         if not self.software:
             return self.programs.get(step.kernel, driver)
         choices = (
@@ -108,7 +111,7 @@ class Kernels:
             for p in step.kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         )
-        return self.programs.get(step.kernel, driver, tuple((n, int(v)) for n, v in choices))  # type: ignore[arg-type]
+        return self.programs.get(step.kernel, driver, (*((n, int(v)) for n, v in choices), *more))  # type: ignore[arg-type]
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""

@@ -91,7 +91,15 @@ def _read_text(kernel: Kernel) -> _Text:
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a companion's is not
     header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
-    header += [kernel.samples, kernel.local, kernel.buffers, kernel.overwrites, counts]
+    header += [
+        kernel.samples,
+        kernel.local,
+        kernel.buffers,
+        kernel.overwrites,
+        kernel.aligned,
+        kernel.stages,
+        counts,
+    ]
     header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))

@@ -83,7 +83,7 @@ class Runner:
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
         for name in GIVEN:
-            if name in ("iteration", "iterations", "until", "size") or not kernel.reads(name):
+            if name in ("iteration", "iterations", "until", "stage", "size") or not kernel.reads(name):
                 continue
             if name == "spacing":
                 extent = self._given["extent"]

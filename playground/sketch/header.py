@@ -33,7 +33,7 @@ _KEYS = {
     "kernel": ("output", "repeat", "accepts", "visits", "stride", "at_once"),
     "source": ("name", "output"),
     "draw": ("mesh", "count", "output", "blend", "depth", "samples", "repeat"),
-    "compute": ("groups", "local", "buffers", "repeat", "overwrites"),
+    "compute": ("groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
 }
 _EXAMPLES = {
     "kernel": '(output = "height:r32f")',
@@ -219,6 +219,15 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
             )
         _check(f"buffer '{pieces[0]}'", pieces[2], names, line)
         buffers.append(Buffer(pieces[0], pieces[1], pieces[2]))
+    stages = [part.strip() for part in filter(None, options.get("stages", "").split(","))]
+    if not all(re.fullmatch(r"[0-9]{1,4}", part, re.ASCII) for part in stages):
+        raise line.error(f'stages = "{options["stages"]}": expected whole numbers parted by commas')
+    if stages and "repeat" in options:
+        raise line.error("stages says how many turns there are; leave repeat out")
+    if options.get("aligned", "8") not in ("4", "8"):
+        raise line.error(
+            f'aligned = "{options["aligned"]}": expected 4 or 8, the bytes that rows are filled up to'
+        )
     _check("groups", options["groups"], (*names, "iteration"), line, count=2)
     _check("repeat", options.get("repeat", "1"), names, line)
     return replace(
@@ -226,7 +235,9 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         groups=options["groups"],
         local=(int(local[0]), int(local[1])),
         buffers=tuple(buffers),
-        repeat=options.get("repeat", "1"),
+        repeat=str(len(stages)) if stages else options.get("repeat", "1"),
+        stages=tuple(int(part) for part in stages),
+        aligned=int(options.get("aligned", "8")),
         overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
     )
 

@@ -123,6 +123,8 @@ class Kernel:
     groups: str = ""  # of a compute companion
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
+    aligned: int = 8  # bytes that rows of an output's buffer are filled up to
+    stages: tuple[int, ...] = ()  # of a companion: what each of its turns does
     overwrites: tuple[str, ...] = ()  # outputs and buffers of a companion that need not begin as zeros
     title: str = ""  # the sentence that the file begins with
     companion: Kernel | None = None  # the .comp beside it

@@ -178,6 +178,11 @@ def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple
     for name in companion.overwrites:
         if name not in written:
             raise companion.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
+    floats = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}
+    for output in outputs:
+        held = next((b.type for b in companion.buffers if b.name == output.name), "")
+        if held and not (output.format.endswith("32f") and held in floats[output.components]):
+            raise companion.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
     return replace(companion, outputs=outputs, accepts=_accepts(of))
 
 

@@ -267,3 +267,84 @@ def test_a_buffer_too_small_for_its_output_has_a_sentence(any_engine, folder, su
     folder.write("sums.comp", BUFFERED_HEAD.replace("2 * 2 *", "2 *") + BUFFERED)
     with pytest.raises(PlaygroundError, match="holds 512 bytes; the output needs 1024"):
         any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
+
+
+STAGES = (
+    '#pragma compute(stages = "2, 0, 2, 1", groups = "size.x, size.y", '
+    'local = "1, 1", buffers = "work:int:500")'
+    """
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    int at = texel.y * size.x + texel.x;
+    if (stage == 2) work[at] = 10 * work[at] + 2 + iteration;
+    if (stage == 0) work[at] = 10 * work[at] + 9;
+    if (stage == 1) imageStore(out_sums, texel, vec4(float(work[at] * iterations)));
+}
+"""
+)
+
+
+def test_stages_say_what_each_turn_does(any_engine, folder):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", STAGES)
+    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
+    before = any_engine.runner.programs.compiled
+    for _ in range(2):
+        assert (any_engine.read(sketch, "a") == 4 * 294).all()
+        any_engine.cache.clear()
+    made = any_engine.runner.programs.compiled - before
+    assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
+
+
+def test_stages_take_the_place_of_repeat(folder):
+    folder.write("fill.glsl", PLAIN_FILL)
+    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers parted by commas"))
+    for option, message in wrong:
+        folder.write("fill.comp", STAGES.replace('1"', f"1{option}", 1))
+        with pytest.raises(PlaygroundError, match=message):
+            folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
+
+
+ROWS = """#pragma compute(groups = "size.x, size.y", local = "1, 1", aligned = "4", buffers = "sums:float:SIZE")
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    sums[texel.y * size.x + texel.x] = float(texel.x + 100 * texel.y);
+}
+"""
+
+
+@pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
+def test_a_buffer_may_be_an_output(any_engine, folder, size):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", ROWS.replace("SIZE", "size.x * size.y"))
+    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    y, x = np.mgrid[0 : size[1], 0 : size[0]]
+    np.testing.assert_array_equal(any_engine.read(sketch, "a"), x + 100 * y)
+
+
+def test_a_buffer_of_other_numbers_is_no_output(folder):
+    folder.write("fill.glsl", PLAIN_FILL)
+    for kind in ("int", "vec2"):
+        folder.write("fill.comp", ROWS.replace("sums:float:SIZE", f"sums:{kind}:9"))
+        with pytest.raises(PlaygroundError, match=f"a buffer of {kind} cannot be the output sums:r32f"):
+            folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
+    folder.write("fill.glsl", PLAIN_FILL.replace("r32f", "r16f"))
+    folder.write("fill.comp", ROWS.replace("SIZE", "size.x * size.y"))
+    with pytest.raises(PlaygroundError, match="cannot be the output sums:r16f"):
+        folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
+
+
+def test_one_that_stands_for_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
+    folder.write("values.glsl", VALUES)
+    folder.write("doubled.glsl", DOUBLED)
+    folder.write("add.glsl", ADD.replace('"sum:r32f"', '"sum:r32f", accepts = "2**n"'))
+    folder.write("triple.toml", GRAPH)
+    folder.write("triple.comp", TRIPLE_HEAD + TRIPLE)
+    body = '[[pass]]\nname = "values"\nuse = "./values"\n[[pass]]\nname = "t"\nuse = "./triple"\n'
+    any_engine.read(folder.sketch(body, size="size = 16"), "t")
+    with pytest.raises(PlaygroundError, match="not 20 x 20; the nearest it takes: 16 x 16 or 32 x 32"):
+        any_engine.read(folder.sketch(body, size="size = 20"), "t")
