@@ -104,7 +104,7 @@ class Companions:
         return found
 
     def _copy(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
-        """Fill an output's texture with the buffer of its name: rows from the south, as its header fills them."""
+        """Fill an output's texture with the buffer of its name: rows from the south, aligned as it says."""
         texture, aligned = result.textures[declared.name], job.step.kernel.aligned
         row = texture.width * texture.components * 4
         needed = -(-row // aligned) * aligned * texture.height

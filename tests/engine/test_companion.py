@@ -307,7 +307,7 @@ def test_stages_take_the_place_of_repeat(folder):
             folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
-ROWS = """#pragma compute(groups = "size.x, size.y", local = "1, 1", aligned = "4", buffers = "sums:float:SIZE")
+ROWS = """#pragma compute(groups = "size.x,size.y", local = "1,1", aligned = "4", buffers = "sums:float:SIZE")
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     sums[texel.y * size.x + texel.x] = float(texel.x + 100 * texel.y);

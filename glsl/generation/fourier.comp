@@ -1,0 +1,352 @@
+// generation/fourier.comp -- the same land by transforms of sixteen numbers at a time, of half the spectrum.
+//
+//   gives    height
+//   needs    maths/complex.glsl, maths/fourier.glsl, maths/power.glsl, maths/whole.glsl, noise/hash.glsl
+//   units    heights without unit: 0..1, unless normalise says otherwise
+//   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
+//            others 1992, "Numerical Recipes in C", section 12.3
+//   tested   tests/glsl/test_fourier.py, against scipy.fft and against generation/fourier
+//   agrees   with the passes of generation/fourier within 1e-5
+//
+// Rows y, y + n/4, y + n/2 and y + 3n/4 of the land are two complex rows, and both lie in one
+// row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in
+// base 16: the top one, one more where n > 8, and a lowest of 1 to 4 bits. Each stage takes
+// sixteen numbers that differ in one digit, transforms them and puts them back where they were:
+//   DRAW      random numbers, and the top digit of x
+//   HIGHER    a middle digit
+//   LOW_X     the lowest digit of x
+//   TOP_Y     the spectra of the four real rows, from those of the two, and the top digit of y
+//   MIDDLE    the lowest digit of y, the filter, and the lowest digit again
+// and backwards to heights, whose range is then known, for SHOW. What a digit of place has
+// become is a digit of frequency, in reverse order: the top digit counts single waves.
+//
+// Backward is forward of the conjugates, so MIDDLE conjugates, and two rows of four come out
+// negated. The real rows need frequencies 0 to n/2 along x only: a thread of TOP_Y takes two
+// of them with their opposites, four columns, in which it then leaves the two for all rows.
+// Frequencies 0 and n/2 are their own opposites and have the columns beyond the last instead.
+//
+// Shorter sides than 64 are repeated up to 64; all other frequencies are then 0 by themselves.
+#include "maths/complex.glsl"
+#include "maths/fourier.glsl"
+#include "maths/power.glsl"
+#include "maths/whole.glsl"
+#include "noise/hash.glsl"
+#pragma compute(stages = "0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 5, 7, 8", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 11 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4")
+
+uniform float roughness = 2.0; //! slider(0, 4) step(0.01) The r of 1 / f^r
+uniform uint seed = 7u;        //! slider(0, 9999) Which land
+uniform int normalise = 2;     //! menu("none", "max", "minmax") What is stretched to 1
+
+const int DRAW = 0, HIGHER = 1, LOW_X = 2, TOP_Y = 3, MIDDLE = 4;
+const int HIGHER_BACK = 5, TOP_Y_BACK = 6, SHOW = 7, SHOW_LAST_ROW = 8;
+
+ivec2 period;  // texels after which the land repeats
+ivec2 count;   // of the numbers transformed, along each axis
+ivec2 bits;    // log2(count)
+int rows;      // of `waves`
+int pitch;     // from one of its rows to the next
+vec4 v[16];
+
+// ── where things lie ─────────────────────────────────────────────────────────
+
+int lowest_digit(int n) {
+    return n < 8 ? n - 4 : n == 8 ? 4 : n - 8;
+}
+
+int frequency_of(int place, int n) {
+    int low = max(n - 8, 0);
+    int rest = place & ((1 << (n - 4)) - 1);
+    return (place >> (n - 4)) + ((rest >> low) << 4) + ((rest & ((1 << low) - 1)) << 8);
+}
+
+// The place of the frequency 16 k along x.
+int place_of_sixteenfold(int k) {
+    int low = max(bits.x - 8, 0);
+    return ((k & 15) << low) | (k >> 4);
+}
+
+// The four columns of a pair of frequencies along x, and those frequencies. The pairs are
+// half the spectrum: neighbours among the places whose top digit is 1 to 7, or 8 in its lower
+// half, whose opposites lie mirrored in those of 15 to 8; then those whose top digit is 0.
+ivec4 columns_of(int pair, out ivec2 frequencies) {
+    int n = bits.x;
+    int simple = 15 * (count.x >> 6);
+    if (pair < simple) {
+        int place = (count.x >> 4) + 2 * pair;
+        int below = (1 << (n - 4)) - 1;
+        int opposite = ((16 - (place >> (n - 4))) << (n - 4)) | (below - (place & below));
+        frequencies = ivec2(frequency_of(place, n), frequency_of(place + 1, n));
+        return ivec4(place, opposite, place + 1, opposite - 1);
+    }
+    int k = 2 * (pair - simple);
+    int all_k = count.x >> 4;
+    frequencies = 16 * ivec2(k, k + 1);
+    ivec4 found = ivec4(place_of_sixteenfold(k), place_of_sixteenfold((all_k - k) & (all_k - 1)),
+                        place_of_sixteenfold(k + 1), place_of_sixteenfold(all_k - k - 1));
+    if (k == 0) found.y = count.x;
+    if (2 * k == all_k) found.yzw = count.x + ivec3(1, 2, 3);
+    return found;
+}
+
+// Sixteen numbers of one digit, whose lowest bit is bit p of the place.
+struct Sixteen {
+    int base;           // of the first, in `waves`
+    int apart;          // from one to the next
+    int place;          // of the first
+    int low;            // the digits below
+    ivec2 frequencies;  // of the two columns along x, for numbers along y
+};
+
+Sixteen along_x(int job, int p) {
+    Sixteen s;
+    int mine = job & ((count.x >> 4) - 1);
+    s.low = mine & ((1 << p) - 1);
+    s.place = ((mine >> p) << (p + 4)) | s.low;
+    s.base = (job >> (bits.x - 4)) * pitch + s.place;
+    s.apart = 1 << p;
+    s.frequencies = ivec2(0);
+    return s;
+}
+
+// The top two bits of a place along y are the column of four.
+Sixteen along_y(int job, int p) {
+    Sixteen s;
+    int pairs = (count.x >> 2) + 1;
+    int mine = quotient(job, pairs);
+    ivec4 columns = columns_of(job - mine * pairs, s.frequencies);
+    s.low = mine & ((1 << p) - 1);
+    s.place = ((mine >> p) << (p + 4)) | s.low;
+    int quarter = s.place >> (bits.y - 2);
+    int column = quarter < 2 ? (quarter == 0 ? columns.x : columns.y) : (quarter == 2 ? columns.z : columns.w);
+    s.base = (s.place & (rows - 1)) * pitch + column;
+    s.apart = pitch << p;
+    return s;
+}
+
+// ── the stages ───────────────────────────────────────────────────────────────
+
+vec2 near_roots[4], far_roots[4];
+
+// For root(e) = exp(-2 pi i e low / 2^(p + 4)): a product of two, so that no error grows.
+void find_roots(int low, int p) {
+    near_roots[0] = far_roots[0] = vec2(1.0, 0.0);
+    for (int k = 1; k < 4; k++) {
+        near_roots[k] = conjugate(root_of_one(k * low, 16 << p));
+        far_roots[k] = conjugate(root_of_one(4 * k * low, 16 << p));
+    }
+}
+
+vec2 root(int e) {
+    return complex_product(near_roots[e & 3], far_roots[e >> 2]);
+}
+
+// The numbers of a texel and of the one half the count further north.
+vec2 drawn(int x, int y) {
+    ivec2 texel = ivec2(x, y) & (period - 1);
+    int half_way = period.y >> 1;
+    vec2 pair = random_pair(ivec2(texel.x, texel.y & (half_way - 1)), seed) * 2.0 - 1.0;
+    if (texel.y >= half_way) pair.x = pair.y;
+    return count.y > period.y ? pair.xx : pair;
+}
+
+void draw(int job) {
+    int p = bits.x - 4;
+    int low = job & ((1 << p) - 1);
+    int row = job >> p;
+    for (int e = 0; e < 16; e++) v[e] = vec4(drawn((e << p) | low, row), drawn((e << p) | low, row + rows)).xzyw;
+    transform16(v);
+    find_roots(low, p);
+    int base = row * pitch + low;
+    for (int e = 0; e < 16; e++) waves[base + (e << p)] = both_products(v[place16(e)], root(e));
+}
+
+void higher(Sixteen s, int p) {
+    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e * s.apart];
+    transform16(v);
+    find_roots(s.low, p);
+    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = both_products(v[place16(e)], root(e));
+}
+
+void higher_back(Sixteen s, int p) {
+    find_roots(s.low, p);
+    for (int e = 0; e < 16; e++) v[e] = both_products(waves[s.base + e * s.apart], root(e));
+    transform16(v);
+    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[place16(e)];
+}
+
+void low_x(Sixteen s) {
+    int levels = lowest_digit(bits.x);
+    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e];
+    transform_blocks(v, levels);
+    int block = ~((1 << levels) - 1);
+    for (int e = 0; e < 16; e++) waves[s.base + ((e & block) | block_number(e, levels))] = v[e];
+}
+
+void top_y(int job) {
+    int pairs = (count.x >> 2) + 1;
+    int p = bits.y - 4;
+    int low = quotient(job, pairs);
+    ivec2 unused;
+    ivec4 columns = columns_of(job - low * pairs, unused);
+    ivec4 from = columns;
+    if (from.y >= count.x) from.y = from.x;
+    // Of z = r + i s the spectrum of r is Z[k] + conj Z[-k], that of s is (Z[k] - conj Z[-k]) / i, each doubled.
+    for (int i = 0; i < 4; i++) {
+        int base = ((i << p) | low) * pitch;
+        vec4 a = waves[base + from.x];
+        vec4 b = waves[base + from.y];
+        vec4 c = waves[base + from.z];
+        vec4 d = waves[base + from.w];
+        v[i] = vec4(a.x + b.x, a.y - b.y, c.x + d.x, c.y - d.y);
+        v[i + 4] = vec4(a.y + b.y, b.x - a.x, c.y + d.y, d.x - c.x);
+        v[i + 8] = vec4(a.z + b.z, a.w - b.w, c.z + d.z, c.w - d.w);
+        v[i + 12] = vec4(a.w + b.w, b.z - a.z, c.w + d.w, d.z - c.z);
+    }
+    transform16(v);
+    find_roots(low, p);
+    for (int e = 0; e < 16; e++) waves[(((e & 3) << p) | low) * pitch + columns[e >> 2]] = both_products(v[place16(e)], root(e));
+}
+
+void top_y_back(int job) {
+    int pairs = (count.x >> 2) + 1;
+    int p = bits.y - 4;
+    int low = quotient(job, pairs);
+    ivec2 unused;
+    ivec4 columns = columns_of(job - low * pairs, unused);
+    find_roots(low, p);
+    for (int e = 0; e < 16; e++) v[e] = both_products(waves[(((e & 3) << p) | low) * pitch + columns[e >> 2]], root(e));
+    transform16(v);
+    // Conjugates: of Z[k] = R[k] + i S[k] and of Z[-k] = conj R[k] + i conj S[k].
+    for (int i = 0; i < 4; i++) {
+        int base = ((i << p) | low) * pitch;
+        vec4 a = v[place16(i)];
+        vec4 b = v[place16(i + 4)];
+        vec4 c = v[place16(i + 8)];
+        vec4 d = v[place16(i + 12)];
+        waves[base + columns.x] = vec4(a.x + b.y, a.y - b.x, c.x + d.y, c.y - d.x);
+        waves[base + columns.y] = vec4(a.x - b.y, -a.y - b.x, c.x - d.y, -c.y - d.x);
+        waves[base + columns.z] = vec4(a.z + b.w, a.w - b.z, c.z + d.w, c.w - d.z);
+        waves[base + columns.w] = vec4(a.z - b.w, -a.w - b.z, c.z - d.w, -c.w - d.z);
+    }
+}
+
+// What the filter makes of a frequency, with all that the transforms multiply a number by taken out.
+float weight(int k, int l) {
+    ivec2 along = ivec2(k, l);
+    along -= count * ivec2(greaterThan(2 * along, count));
+    vec2 f = vec2(along) * float(max(period.x, period.y)) / vec2(count);
+    float squared = dot(f, f);
+    float found = squared > 0.0 ? power(max(squared, 0.5), -0.5 * roughness) : 1.0;
+    return found * 0.5 / (float(count.x) * float(count.y));
+}
+
+void middle(Sixteen s) {
+    int levels = lowest_digit(bits.y);
+    int block = ~((1 << levels) - 1);
+    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e * s.apart];
+    transform_blocks(v, levels);
+    for (int e = 0; e < 16; e++) {
+        int l = frequency_of(s.place | (e & block) | block_number(e, levels), bits.y);
+        float a = weight(s.frequencies.x, l);
+        float b = weight(s.frequencies.y, l);
+        v[e] *= vec4(a, -a, b, -b);
+    }
+    transform_blocks_back(v, levels);
+    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[e];
+}
+
+// ── heights ──────────────────────────────────────────────────────────────────
+
+// A whole number that grows with a height.
+uint code_of(float height) {
+    uint found = floatBitsToUint(height);
+    return (found & 0x80000000u) != 0u ? ~found : found | 0x80000000u;
+}
+
+float height_of(uint code) {
+    return uintBitsToFloat((code & 0x80000000u) != 0u ? code & 0x7fffffffu : ~code);
+}
+
+// `bounds` are the greatest code, and the greatest complement of one: zeros are less than any.
+void measure() {
+    vec4 least = v[0];
+    vec4 most = v[0];
+    for (int e = 1; e < 16; e++) {
+        least = min(least, v[e]);
+        most = max(most, v[e]);
+    }
+    uint lowest = ~code_of(min(min(least.x, least.z), -max(most.y, most.w)));
+    uint highest = code_of(max(max(most.x, most.z), -min(least.y, least.w)));
+    // Most threads have nothing to change, and see that sooner than an atomic tells them.
+    if (lowest > bounds[0]) atomicMax(bounds[0], lowest);
+    if (highest > bounds[1]) atomicMax(bounds[1], highest);
+}
+
+// As generation/normalise/apply has it.
+vec4 normalised(vec4 h, vec2 range) {
+    if (normalise == 0) return h;
+    float low = normalise == 1 ? 0.0 : range.x;
+    float span = range.y - low;
+    if (!(span > 1e-37)) return normalise == 1 ? h : vec4(0.0);
+    vec4 share = (h - low) / span;
+    return normalise == 1 ? share : clamp(share, 0.0, 1.0);
+}
+
+// Four heights in each of four rows, a quarter of the count apart; `from` is the first's texel
+// along the row, and `at` its place among the fours of `height`. A row's last four may go on
+// in the next row, but not a quarter's, which is a multiple of four rows.
+void show(int row, int from, int at) {
+    vec4 found[4];
+    for (int j = 0; j < 4; j++) {
+        int rows_on = int(from + j >= size.x) + int(from + j >= 2 * size.x);
+        int x = from + j - rows_on * size.x;
+        found[j] = waves[(row + rows_on) * pitch + (x & (count.x - 1))] * vec4(1.0, -1.0, 1.0, -1.0);
+    }
+    vec2 range = vec2(height_of(~bounds[0]), height_of(bounds[1]));
+    int quarter = (rows >> 2) * size.x;
+    int all_fours = (size.x * size.y + 3) >> 2;
+    for (int g = 0; g < 4; g++) {
+        if (at + g * quarter < all_fours) {
+            height[at + g * quarter] = normalised(vec4(found[0][g], found[1][g], found[2][g], found[3][g]), range);
+        }
+    }
+}
+
+void main() {
+    period = size - (size & 1);
+    count = max(period, ivec2(64));
+    bits = ivec2(findMSB(count.x), findMSB(count.y));
+    rows = count.y >> 2;
+    pitch = count.x + 4;
+
+    int job = int(gl_GlobalInvocationID.x);
+    bool x_axis = iteration < 3 || iteration > 7;
+    bool top = iteration == 10;
+    int n = x_axis ? bits.x : bits.y;
+    int p = top ? n - 4 : n - 8;
+    int jobs = x_axis ? count.x * rows >> 4 : ((count.x >> 2) + 1) * (count.y >> 4);
+    if ((stage == HIGHER || stage == HIGHER_BACK) && p <= 0) jobs = 0;
+    int fours = (size.x + 3) >> 2;
+    if (stage == SHOW) jobs = fours * rows;
+    if (stage == SHOW_LAST_ROW) jobs = size.y > count.y ? fours : 0;
+    if (job >= jobs) return;
+
+    if (stage == DRAW) draw(job);
+    if (stage == LOW_X) low_x(along_x(job, 0));
+    if (stage == TOP_Y) top_y(job);
+    if (stage == MIDDLE) middle(along_y(job, 0));
+    if (stage == TOP_Y_BACK) top_y_back(job);
+    if (stage == HIGHER || stage == HIGHER_BACK) {
+        Sixteen sixteen = along_x(job, p);
+        if (!x_axis) sixteen = along_y(job, p);
+        if (stage == HIGHER) higher(sixteen, p);
+        else higher_back(sixteen, p);
+        if (top) measure();
+    }
+    if (stage == SHOW || stage == SHOW_LAST_ROW) {
+        int row = stage == SHOW ? quotient(job, fours) : 0;
+        int start = (stage == SHOW ? row : count.y) * size.x;
+        int at = ((start + 3) >> 2) + job - row * fours;
+        if (4 * at - start < size.x) show(row, 4 * at - start, at);
+    }
+}

@@ -1,0 +1,488 @@
+"""Fourier land against scipy.fft in float64 on the same random numbers, and against its own definition."""
+
+from itertools import product
+
+import moderngl
+import numpy as np
+import pytest
+import scipy.fft
+
+from playground.engine.engine import Engine
+from playground.errors import PlaygroundError, SketchError
+from playground.paths import GLSL
+from playground.sketch.source import read_source
+
+NUMBERS = """
+#include "noise/hash.glsl"
+#pragma kernel(output = "numbers:rg32f")
+vec2 kernel(ivec2 texel) { return random_pair(texel, 5u) * 2.0 - 1.0; }
+"""
+TRANSFORMS = """
+[[pass]]
+name = "numbers"
+use = "./numbers"
+[[pass]]
+name = "there"
+use = "generation/fourier/transform"
+inputs = { initial = "numbers" }
+[[pass]]
+name = "back"
+use = "generation/fourier/transform"
+inputs = { initial = "there" }
+set = { direction = "backward" }
+[[pass]]
+name = "backward"
+use = "generation/fourier/transform"
+inputs = { initial = "numbers" }
+set = { direction = "backward" }
+"""
+SIDES = [
+    (1, 1),
+    (2, 2),
+    (4, 4),
+    (8, 8),
+    (16, 4),
+    (2, 64),
+    (1, 32),
+    (128, 128),
+    (64, 256),
+    (4096, 2),
+    (2, 4096),
+]
+LANDS = [(2, 2), (4, 4), (5, 5), (8, 4), (16, 33), (64, 64), (65, 128), (129, 129), (512, 64), (257, 257)]
+
+
+def frequencies(nx, ny):
+    """Return f of each number of a spectrum, in waves along the longer side."""
+    longer = max(nx, ny)
+    return np.hypot(scipy.fft.fftfreq(nx, 1 / longer), scipy.fft.fftfreq(ny, 1 / longer)[:, None])
+
+
+def filtered(grid, roughness):
+    """Return the land of a grid of random numbers by the four steps of section 1.3.3."""
+    spectrum = scipy.fft.fft2(grid.astype(np.float64))
+    f = frequencies(*grid.shape[::-1])
+    f[0, 0] = 1.0
+    return scipy.fft.ifft2(spectrum / f**roughness).real
+
+
+def as_complex(array):
+    return array[..., 0].astype(np.float64) + 1j * array[..., 1]
+
+
+def apart(found, wanted):
+    """Return the greatest difference, as a share of the greatest number there is."""
+    return np.abs(found - wanted).max() / np.abs(wanted).max()
+
+
+def even(size):
+    return tuple(side - side % 2 for side in size)
+
+
+def minmax(land):
+    return (land - land.min()) / (land.max() - land.min())
+
+
+@pytest.fixture
+def transforms(make_sketch):
+    def make(size):
+        return make_sketch(TRANSFORMS, size=list(size), numbers=NUMBERS)
+
+    return make
+
+
+@pytest.fixture
+def sketch_of(make_sketch):
+    def make(size=(64, 64), **values):
+        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        use = f'[[pass]]\nname = "land"\nuse = "generation/fourier"\n[pass.set]\n{given}'
+        return make_sketch(use, size=list(size))
+
+    return make
+
+
+def grid_of(engine, sketch, size):
+    """Return the random numbers of one period."""
+    nx, ny = even(size)
+    return engine.read(sketch, "land.grid")[:ny, :nx]
+
+
+def truth_of(engine, sketch, size, roughness):
+    land = filtered(grid_of(engine, sketch, size), roughness)
+    return np.pad(land, [(0, side % 2) for side in size[::-1]], mode="wrap")
+
+
+# ── the transform, turn by turn ──────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("size", SIDES, ids=str)
+def test_the_transform_is_scipys(engine, transforms, size):
+    sketch = transforms(size)
+    numbers = as_complex(engine.read(sketch, "numbers"))
+    assert apart(as_complex(engine.read(sketch, "there")), scipy.fft.fft2(numbers)) < 6e-7
+    assert apart(as_complex(engine.read(sketch, "backward")), scipy.fft.ifft2(numbers)) < 6e-7
+    assert apart(as_complex(engine.read(sketch, "back")), numbers) < 1.5e-6
+
+
+def test_the_transform_is_the_sum_that_defines_it(engine, transforms):
+    nx, ny = 8, 4
+    sketch = transforms((nx, ny))
+    numbers = as_complex(engine.read(sketch, "numbers"))
+    wanted = np.zeros((ny, nx), complex)
+    for ly, lx, y, x in product(range(ny), range(nx), range(ny), range(nx)):
+        wanted[ly, lx] += numbers[y, x] * np.exp(-2j * np.pi * (lx * x / nx + ly * y / ny))
+    assert apart(as_complex(engine.read(sketch, "there")), wanted) < 3e-7
+
+
+def test_energy_is_kept(engine, transforms):
+    """Parseval: the squares of the numbers and those of their spectrum have the same mean."""
+    sketch = transforms((128, 64))
+    numbers, spectrum = (as_complex(engine.read(sketch, name)) for name in ("numbers", "there"))
+    power = (np.abs(spectrum) ** 2).sum() / spectrum.size
+    assert power == pytest.approx((np.abs(numbers) ** 2).sum(), rel=1e-6)
+
+
+def test_one_wave_is_one_number(engine, make_sketch):
+    waves = (
+        '#pragma kernel(output = "numbers:r32f")\nfloat kernel(ivec2 texel) {'
+        " return cos(6.283185307 * (3.0 * float(texel.x) / 32.0 - float(texel.y) / 16.0)); }"
+    )
+    sketch = make_sketch(TRANSFORMS, size=[32, 16], numbers=waves)
+    spectrum = as_complex(engine.read(sketch, "there"))
+    wanted = np.zeros((16, 32))
+    wanted[15, 3] = wanted[1, 29] = 32 * 16 / 2
+    np.testing.assert_allclose(spectrum, wanted, atol=1e-4)
+
+
+def test_every_turn_is_a_level(engine, transforms):
+    """After t turns numbers evenly apart are transformed, 2^t at a time: rows first, then columns."""
+    nx, ny = 16, 8
+    sketch = transforms((nx, ny))
+    numbers = as_complex(engine.read(sketch, "numbers"))
+    shown = [as_complex(values) for _, values in engine.steps(sketch, "there")]
+    assert len(shown) == 4 + 3 + 1
+    by_rows = np.fft.fft(numbers, axis=1)
+    for turn, found in enumerate(shown):
+        many = 2 ** min(turn, 4)
+        parts = np.fft.fft(numbers.reshape(ny, many, nx // many), axis=1)
+        wanted = parts.transpose(0, 2, 1).reshape(ny, nx)
+        if turn > 4:
+            many = 2 ** (turn - 4)
+            parts = np.fft.fft(by_rows.reshape(many, ny // many, nx), axis=0)
+            wanted = parts.transpose(1, 0, 2).reshape(ny, nx)
+        assert apart(found, wanted) < 5e-7, turn
+
+
+def test_a_transform_of_nothing_is_nothing(engine, make_sketch):
+    sketch = make_sketch('[[pass]]\nname = "there"\nuse = "generation/fourier/transform"\n', size=16)
+    np.testing.assert_array_equal(engine.read(sketch, "there"), 0)
+
+
+@pytest.mark.parametrize("count", [1, 2, 8, 64, 4096, 16384])
+def test_roots_of_one_are_good_to_float(on_gpu, count):
+    k = np.arange(count + 1)
+    found = as_complex(on_gpu("maths/complex.glsl", f"root_of_one(k, {count})", k=k))
+    errors = found - np.exp(2j * np.pi * k / count)
+    assert max(np.abs(errors.real).max(), np.abs(errors.imag).max()) < 1e-7
+    if count >= 8:
+        quarter = count // 4
+        np.testing.assert_array_equal(found[::quarter], [1, 1j, -1, -1j, 1])
+        np.testing.assert_array_equal(found[quarter : 2 * quarter], 1j * found[:quarter])
+        np.testing.assert_array_equal(found[::-1], found.conj())
+
+
+def test_complex_numbers(on_gpu):
+    a, b = np.random.default_rng(0).uniform(-2, 2, (2, 50, 2)).astype(np.float32)
+    wanted = as_complex(a) * as_complex(b)
+    found = as_complex(on_gpu("maths/complex.glsl", "complex_product(a, b)", a=a, b=b))
+    np.testing.assert_allclose(found, wanted, atol=1e-6)
+    found = as_complex(on_gpu("maths/complex.glsl", "conjugate(a)", a=a))
+    np.testing.assert_array_equal(found, as_complex(a).conj())
+
+
+@pytest.mark.parametrize("y", [0.0, -0.005, -0.5, -0.85, -1.0, -1.25, -2.0, 0.5, 1.7])
+def test_powers(on_gpu, y):
+    draws = np.random.default_rng(1)
+    x = np.concatenate([np.arange(1, 2000), draws.uniform(1e-3, 2**24, 5000), 2.0 ** np.arange(-20, 24)])
+    x = x.astype(np.float32)
+    found = on_gpu("maths/power.glsl", "power(x, y)", x=x, y=np.float32(y))
+    np.testing.assert_allclose(found, x.astype(np.float64) ** np.float64(np.float32(y)), rtol=2e-6)
+    assert found[0] == 1.0
+
+
+# ── the land ─────────────────────────────────────────────────────────────────
+
+
+def test_the_grid_is_random_and_repeats(engine, sketch_of, on_gpu):
+    size = (65, 33)
+    grid = engine.read(sketch_of(size, seed=11), "land.grid")
+    x, y = np.meshgrid(np.arange(64), np.arange(16))
+    texel = (x.ravel(), y.ravel())
+    pairs = on_gpu("noise/hash.glsl", "random_pair(texel, 11u)", texel=np.stack(texel, axis=-1)) * 2 - 1
+    np.testing.assert_array_equal(grid[:16, :64].ravel(), pairs[:, 0])
+    np.testing.assert_array_equal(grid[16:32, :64].ravel(), pairs[:, 1])
+    np.testing.assert_array_equal(grid[:, 64], grid[:, 0])
+    np.testing.assert_array_equal(grid[32], grid[0])
+    assert len(np.unique(grid[:32, :64])) > 0.99 * 32 * 64
+
+
+@pytest.mark.parametrize(
+    ("size", "roughness"),
+    [(size, 2.0) for size in LANDS] + [((64, 64), r) for r in (0.0, 1.7, 2.5, 4.0)],
+    ids=str,
+)
+def test_the_land_is_scipys(engine, sketch_of, size, roughness):
+    sketch = sketch_of(size, roughness=roughness, seed=3, normalise="none")
+    land = truth_of(engine, sketch, size, roughness)
+    assert apart(engine.read(sketch, "land"), land) < 2e-6
+    sketch = sketch.with_values({"land.normalise": "minmax"})
+    np.testing.assert_allclose(engine.read(sketch, "land"), minmax(land), atol=4e-6)
+
+
+@pytest.mark.parametrize("size", [(512, 512), (1025, 257), (1024, 1024), (4096, 16), (17, 4097)], ids=str)
+def test_larger_lands_are_scipys(any_engine, sketch_of, size):
+    sketch = sketch_of(size, seed=4)
+    land = minmax(truth_of(any_engine, sketch, size, 2.0))
+    np.testing.assert_allclose(any_engine.read(sketch, "land"), land, atol=5e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(2048, 2048), (4097, 4097)], ids=str)
+def test_the_largest_lands_are_scipys(any_engine, sketch_of, size):
+    sketch = sketch_of(size, seed=4)
+    land = minmax(truth_of(any_engine, sketch, size, 2.0))
+    np.testing.assert_allclose(any_engine.read(sketch, "land"), land, atol=1e-5)
+
+
+def test_both_drivers_give_the_same_bits(ctx, sketch_of):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
+        for inner in ("spectrum", "filtered", "land"):  # asked for by name, it is made by turns
+            values = [e.read(sketch_of((129, 64)), f"land.{inner}") for e in (fragment, compute)]
+            np.testing.assert_array_equal(*values)
+
+
+@pytest.mark.parametrize("mode", ["none", "max", "minmax"])
+def test_normalise(engine, sketch_of, mode):
+    sketch = sketch_of((64, 32), seed=9, normalise=mode)
+    land = truth_of(engine, sketch, (64, 32), 2.0)
+    wanted = {"none": land, "max": land / land.max(), "minmax": minmax(land)}[mode]
+    found = engine.read(sketch, "land")
+    assert apart(found, wanted) < 4e-6
+    if mode != "none":
+        assert found.max() == 1.0
+    if mode == "minmax":
+        assert found.min() == 0.0
+
+
+def test_a_land_all_below_0_stays_by_max(engine, sketch_of):
+    sketch = sketch_of((2, 2), seed=1, roughness=4.0, normalise="max")
+    land = engine.read(sketch, "land")
+    assert land.max() < 0, "this seed's four numbers are below 0"
+    np.testing.assert_allclose(land, truth_of(engine, sketch, (2, 2), 4.0), atol=1e-6)
+
+
+@pytest.mark.parametrize("size", [(3, 3), (65, 65), (65, 64), (32, 33), (513, 129)], ids=str)
+def test_one_texel_more_than_a_period_begins_again(engine, sketch_of, size):
+    land = engine.read(sketch_of(size), "land")
+    assert land.shape == size[::-1]
+    period = even(size)
+    if size[0] > period[0]:
+        np.testing.assert_array_equal(land[:, -1], land[:, 0])
+    if size[1] > period[1]:
+        np.testing.assert_array_equal(land[-1], land[0])
+    np.testing.assert_allclose(
+        land[: period[1], : period[0]], engine.read(sketch_of(period), "land"), atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("roughness", [1.5, 2.0, 2.5])
+def test_the_land_goes_on_at_its_seam(any_engine, sketch_of, roughness):
+    """Column n - 1 neighbours column 0: the step between them is a step like any other."""
+    for axis in (0, 1):
+        land = any_engine.read(sketch_of((256, 256), roughness=roughness), "land").astype(np.float64)
+        steps = np.abs(np.roll(land, -1, axis) - land).mean(axis=1 - axis)
+        assert 0.8 * steps[:-1].min() < steps[-1] < 1.2 * steps[:-1].max()
+
+
+def test_a_land_that_does_not_repeat_would_show(any_engine, sketch_of):
+    """The check above can fail: a tilt tears the seam."""
+    land = any_engine.read(sketch_of((256, 256)), "land") + np.linspace(0, 1, 256)
+    steps = np.abs(np.roll(land, -1, 1) - land).mean(axis=0)
+    assert steps[-1] > 3 * steps[:-1].max()
+
+
+@pytest.mark.parametrize("roughness", [0.0, 2.5, 4.0])
+def test_the_mean_is_left_alone(engine, sketch_of, roughness):
+    sketch = sketch_of((64, 32), roughness=roughness, normalise="none")
+    spectrum, weighed = (engine.read(sketch, f"land.{name}") for name in ("spectrum", "filtered"))
+    np.testing.assert_array_equal(weighed[0, 0], spectrum[0, 0])
+    mean = grid_of(engine, sketch, (64, 32)).mean(dtype=np.float64)
+    assert engine.read(sketch, "land").mean(dtype=np.float64) == pytest.approx(mean, abs=1e-7)
+
+
+def test_without_roughness_nothing_changes(engine, sketch_of):
+    sketch = sketch_of((65, 65), roughness=0.0, normalise="none")
+    np.testing.assert_allclose(engine.read(sketch, "land"), engine.read(sketch, "land.grid"), atol=2e-6)
+
+
+@pytest.mark.parametrize("roughness", [1.0, 2.0, 2.5, 3.0])
+def test_power_falls_as_the_frequency_to_minus_2_r(any_engine, sketch_of, roughness):
+    land = any_engine.read(sketch_of((512, 512), roughness=roughness), "land").astype(np.float64)
+    power = np.abs(scipy.fft.fft2(land)) ** 2
+    f = frequencies(512, 512)
+    rings = np.round(np.log2(np.where(f > 0, f, 1)) * 4)
+    octaves = np.arange(8, 30)  # from 4 waves to 150
+    means = [np.log2(power[rings == ring].mean()) for ring in octaves]
+    slope = np.polyfit(octaves / 4, means, 1)[0]
+    assert slope == pytest.approx(-2 * roughness, abs=0.12)
+
+
+def test_higher_r_is_smoother(any_engine, sketch_of):
+    lands = [any_engine.read(sketch_of((256, 256), roughness=r), "land") for r in (1.5, 2.0, 2.5, 3.0)]
+    rough = [np.abs(np.diff(land)).mean() for land in lands]
+    assert rough == sorted(rough, reverse=True) and rough[0] > 3 * rough[-1]
+
+
+def test_hills_are_as_long_as_wide_on_any_land(any_engine, sketch_of):
+    """On a land four times as long as wide, a step east is on average as high as a step north."""
+    for seed in range(4):
+        land = any_engine.read(sketch_of((512, 128), roughness=1.0, seed=seed), "land").astype(np.float64)
+        east, north = (np.abs(np.roll(land, -1, axis) - land).mean() for axis in (1, 0))
+        assert 0.95 < east / north < 1.05
+
+
+def test_heights_of_a_large_land_keep_their_digits(any_engine, sketch_of):
+    land = any_engine.read(sketch_of((512, 512), normalise="none"), "land")
+    assert len(np.unique(land)) > 0.9 * land.size
+
+
+def test_seeds_are_lands(engine, sketch_of):
+    lands = [engine.read(sketch_of(seed=s), "land").copy() for s in (1, 2, 1)]
+    np.testing.assert_array_equal(lands[0], lands[2])
+    assert np.abs(lands[0] - lands[1]).max() > 0.2
+
+
+@pytest.mark.parametrize(
+    ("size", "nearest"),
+    [
+        ((1000, 1000), "513 x 513 or 1024 x 1024"),
+        ((1023, 1023), "513 x 513 or 1024 x 1024"),
+        ((1026, 1026), "1025 x 1025 or 2048 x 2048"),
+        ((100, 64), "65 x 64 or 128 x 64"),
+        ((1, 1), "2 x 2"),
+    ],
+    ids=str,
+)
+def test_other_sizes_are_refused_with_those_nearest(engine, sketch_of, size, nearest):
+    with pytest.raises(SketchError, match=f"not {size[0]} x {size[1]}; the nearest it takes: {nearest}$"):
+        engine.read(sketch_of(size), "land")
+
+
+def test_the_steps_of_a_land_s_transform(any_engine, sketch_of):
+    sketch = sketch_of((32, 16))
+    shown = [values for _, values in any_engine.steps(sketch, "land.spectrum")]
+    assert len(shown) == 5 + 4 + 1
+    np.testing.assert_array_equal(shown[0][..., 0], grid_of(any_engine, sketch, (32, 16)))
+    assert apart(as_complex(shown[-1]), scipy.fft.fft2(as_complex(shown[0]))) < 5e-7
+
+
+def test_the_magnitude_of_a_spectrum(engine, make_sketch):
+    passes = TRANSFORMS + (
+        '[[pass]]\nname = "magnitude"\nuse = "generation/fourier/magnitude"\n'
+        'inputs = { spectrum = "there" }\nset = { decades = 4.0 }\n'
+    )
+    sketch = make_sketch(passes, size=[64, 32], numbers=NUMBERS)
+    spectrum = np.fft.fftshift(as_complex(engine.read(sketch, "there")))
+    wanted = 1 + np.log10(np.abs(spectrum) / np.sqrt(spectrum.size / 3)) / 4
+    found = engine.read(sketch, "magnitude")
+    np.testing.assert_allclose(found, wanted, atol=1e-5)
+    assert np.median(found) == pytest.approx(1 + np.log10(np.sqrt(2)) / 4, abs=0.05)  # of two numbers a texel
+
+
+# ── the companion ────────────────────────────────────────────────────────────
+
+
+def test_a_companion_makes_the_land_where_there_is_compute(any_engine, sketch_of):
+    sketch = sketch_of((64, 64))
+    any_engine.read(sketch, "land")
+    assert (any_engine.ran == ["land"]) == any_engine.info.compute
+    any_engine.read(sketch, "land", steps={"land.spectrum": 3})
+    assert "land.spectrum" in any_engine.ran, "turns are not shown by the companion"
+
+
+@pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])
+def test_the_companion_is_the_passes_at_every_size(ctx, sketch_of, side):
+    """Sides of every number of bits, beside one that is longer and one that is shorter."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
+        for size in ((side, side), (side, 128), (32, side)):
+            for roughness in (0.0, 2.0):
+                sketch = sketch_of(size, roughness=roughness, seed=side)
+                np.testing.assert_allclose(fast.read(sketch, "land"), slow.read(sketch, "land"), atol=3e-6)
+
+
+def test_sides_too_long_for_the_companion_are_refused(any_engine, sketch_of):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    with pytest.raises(PlaygroundError, match="MiB; 2048 at most"):
+        any_engine.read(sketch_of((8192, 2)), "land")
+
+
+@pytest.fixture
+def sixteen(ctx):
+    """Give ``sixteen(call, numbers)``: maths/fourier.glsl's ``call`` on each row, as v[16]."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    code = read_source(GLSL / "maths/fourier.glsl", (GLSL,)).code
+
+    def run(call, numbers):
+        text = (
+            f"#version 430\nlayout(local_size_x = 1) in;\n{code}\n"
+            "layout(std430, binding = 0) buffer k_numbers { vec4 numbers[]; };\n"
+            "void main() { vec4 v[16]; int row = 16 * int(gl_WorkGroupID.x);\n"
+            f"for (int i = 0; i < 16; i++) v[i] = numbers[row + i];\n{call};\n"
+            "for (int i = 0; i < 16; i++) numbers[row + i] = v[i]; }\n"
+        )
+        pairs = np.stack([numbers.real, numbers.imag, -numbers.imag, numbers.real], axis=-1)  # z and i z
+        buffer = ctx.buffer(pairs.astype(np.float32).tobytes())
+        shader: moderngl.ComputeShader = ctx.compute_shader(text)
+        buffer.bind_to_storage_buffer(0)
+        shader.run(len(numbers))
+        found = np.frombuffer(buffer.read(), np.float32).reshape(*numbers.shape, 4)
+        buffer.release()
+        shader.release()
+        np.testing.assert_allclose(as_complex(found[..., 2:]), 1j * as_complex(found), atol=1e-5)
+        return as_complex(found)
+
+    return run
+
+
+def reversed_bits(number, bits):
+    return int(f"{number:0{bits}b}"[::-1], 2) if bits else 0
+
+
+def test_sixteen_numbers(sixteen):
+    numbers = np.random.default_rng(2).standard_normal((9, 16, 2)) @ [1, 1j]
+    found = sixteen("transform16(v)", numbers)
+    places = [(k % 4) * 4 + k // 4 for k in range(16)]
+    np.testing.assert_allclose(found[:, places], np.fft.fft(numbers), atol=3e-6)
+
+
+@pytest.mark.parametrize("levels", range(5))
+def test_blocks_of_numbers(sixteen, levels):
+    count = 2**levels
+    numbers = np.random.default_rng(3).standard_normal((9, 16, 2)) @ [1, 1j]
+    wanted = np.fft.fft(numbers.reshape(9, -1, count)).reshape(9, 16)
+    places = [place - place % count + reversed_bits(place % count, levels) for place in range(16)]
+    found = sixteen(f"transform_blocks(v, {levels})", numbers)
+    np.testing.assert_allclose(found[:, places], wanted, atol=3e-6)
+    found = sixteen(f"transform_blocks_back(v, {levels})", numbers[:, places])
+    np.testing.assert_allclose(found, wanted, atol=3e-6)
+    told = sixteen(
+        f"for (int i = 0; i < 16; i++) v[i] = vec4(block_number(i, {levels})) * vec4(1, 0, 0, 1)",
+        numbers,
+    )
+    np.testing.assert_array_equal(told[0].real, [reversed_bits(p % count, levels) for p in range(16)])
