@@ -59,15 +59,20 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
 vec2 slope_at(sampler2D field, vec2 place, vec2 spacing, int way) {
     ivec2 low = ivec2(place);
     vec2 part = place - vec2(low);
-    // Loops, because software renderers take both ways of an if: on a node this is one turn.
+    // Loops that ask at their end: software renderers take both ways of an if, and go once
+    // through a loop that asks first before it knows that it is over. On a node this is one turn.
     ivec2 turns = ivec2(part.x > 0.0 ? 2 : 1, part.y > 0.0 ? 2 : 1);
     vec2 total = vec2(0.0);
-    for (int y = 0; y < turns.y; y++) {
-        for (int x = 0; x < turns.x; x++) {
+    int y = 0;
+    do {
+        int x = 0;
+        do {
             float weight = (x == 1 ? part.x : 1.0 - part.x) * (y == 1 ? part.y : 1.0 - part.y);
             total += weight * slope_of_node(field, low + ivec2(x, y), spacing, way);
-        }
-    }
+            x++;
+        } while (x < turns.x);
+        y++;
+    } while (y < turns.y);
     return total;
 }
 #endif

@@ -411,9 +411,87 @@ def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit
     assert 0 < (ways[0][..., 3] != ways[1][..., 3]).mean() < 0.2
 
 
-def test_moving_the_sun_leaves_the_land_and_its_range_alone(any_engine, lit):
-    sketch = lit(ROUGH, "ray_cast", (135, 25))
+@pytest.mark.parametrize("form", ["march", "sweep"])
+def test_moving_the_sun_leaves_the_land_and_what_is_known_of_it_alone(any_engine, lit, form):
+    sketch = lit(ROUGH, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
-    assert len(any_engine.ran) == 4
+    assert {"height", "light.tops", "light.range.whole"} < set(any_engine.ran)
     any_engine.read(sketch.with_values({"light.sun": (140, 25)}), "light")
-    assert any_engine.ran == ["light.march"]
+    assert any_engine.ran == ["light.horizon", "light.visibility", "light.light"]
+    shapes = {step.path: step.size for step in any_engine.plan.walk()}
+    assert shapes["light.horizon"] == ((65, 65) if form == "sweep" else (1, 1))
+
+
+# What every method of shadows ends with
+
+
+def test_light_is_what_is_seen_of_the_sun_and_of_the_sky(engine, make_sketch):
+    """V falls on the sun's light and F on the sky's, each channel for itself."""
+    given = """
+#pragma kernel(output = "v:rgba32f")
+uniform vec3 step_of = vec3(0.1, 0.0, 0.0);
+vec4 kernel(ivec2 texel) { return vec4(float(texel.x) * step_of, 1.0); }
+"""
+    passes = """
+[[pass]]
+name = "height"
+use = "./land"
+set = { rise = [0.05, 0.02] }
+[[pass]]
+name = "visibility"
+use = "./given"
+[[pass]]
+name = "sky_factor"
+use = "./given"
+set = { step_of = [0.0, 0.05, 0.1] }
+[[pass]]
+name = "light"
+use = "lighting/shade"
+[pass.set]
+sun = [200.0, 40.0]
+gain = 1.5
+sun_colour = [1.0, 0.8, 0.6]
+sky_colour = [0.5, 0.6, 0.7]
+ambient = 0.3
+"""
+    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, land=PLANE, given=given)
+    light = engine.read(sketch, "light")
+    x = np.broadcast_to(np.arange(9), (9, 9))
+    normal = np.array([-0.05 * 50 / 10, -0.02 * 50 / 10, 1.0])
+    received = normal @ sun_vector(200, 40) / np.linalg.norm(normal)
+    wanted = np.stack(
+        [
+            1.0 * 1.5 * received * 0.1 * x,
+            0.8 * 1.5 * received * 0.1 * x + 0.6 * 0.3 * 0.05 * x,
+            0.6 * 1.5 * received * 0.1 * x + 0.7 * 0.3 * 0.1 * x,
+            0.1 * x,
+        ],
+        axis=-1,
+    )
+    np.testing.assert_allclose(light, wanted, rtol=2 * HALF, atol=1e-4)
+
+
+def test_light_of_another_size_reads_what_it_is_given_between_texels(engine, make_sketch):
+    given = """
+#pragma kernel(output = "v:r32f")
+float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
+"""
+    passes = (
+        '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "visibility"\nuse = "./given"\n'
+        '[[pass]]\nname = "light"\nuse = "lighting/shade"\nsize = [25, 33]\nset = { sun = [0.0, 90.0] }\n'
+    )
+    light = engine.read(make_sketch(passes, size=9, land=PLANE, given=given), "light")
+    y, x = np.mgrid[0:33, 0:25]
+    np.testing.assert_allclose(light[..., 3], (x / 3 + 2 * (y / 4)) / 64, rtol=2 * HALF, atol=1e-4)
+
+
+def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
+    """Texels of the light on texels of the land stand beside others that do not."""
+    sun = (135, 25)
+    sketch = lit(ROUGH, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
+    heights = engine.read(sketch, "height").astype(np.float64) * 300
+    places = np.meshgrid(np.linspace(0, 64, 97), np.linspace(0, 64, 129), indexing="ij")
+    slopes = [map_coordinates(s, places, order=1) for s in np.gradient(heights, 10.0)]
+    normal = np.stack([-slopes[1], -slopes[0], np.ones_like(slopes[0])], axis=-1)
+    wanted = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
+    np.testing.assert_allclose(engine.read(sketch, "light")[..., 0], wanted, rtol=2 * HALF, atol=1e-3)

@@ -1,0 +1,567 @@
+"""Shadows, hard and soft, marched and swept: slow marches in float64, quadrature, symmetries, limits.
+
+The marches here know nothing of early ends, of leaps or of lines: they look from a place along
+its way to the sun at every piece of land, and measure angles and lengths. That both drivers
+give the same bits is tested in test_drivers.py.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
+
+from playground.engine.engine import Engine
+
+DATA = Path(__file__).resolve().parents[2] / "glsl/sketches/data/jacksboro_fault_dem.npz"
+BOTH_FORMS = pytest.mark.parametrize("form", ["march", "sweep"])
+SOFT = ["soft_cone", "soft_cylinder", "sun_disc"]
+EVERY = [
+    *[("ray_cast", form) for form in ("march", "sweep")],
+    *[("soft_cone", form) for form in ("march", "sweep")],
+    *[("sun_disc", form) for form in ("march", "sweep")],
+    ("soft_cylinder", None),
+    ("night", None),
+]
+EVERY_METHOD = pytest.mark.parametrize(("method", "form"), EVERY, ids=lambda v: str(v))
+
+# Hills of four sizes, turned or mirrored when asked to.
+HILLS = """
+#include "noise/hash.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float scale = 1.0;
+uniform float base = 0.0;
+uniform int turned = 0;   //! menu("no", "quarter", "mirrored")
+float value(ivec2 texel) {
+    float total = 0.0;
+    for (int k = 0; k < 4; k++) {
+        float cell = float(16 >> k);
+        vec2 place = vec2(texel) / cell;
+        ivec2 low = ivec2(place);
+        vec2 part = place - vec2(low);
+        part = part * part * (3.0 - 2.0 * part);
+        float south = mix(random(low, uint(k)), random(low + ivec2(1, 0), uint(k)), part.x);
+        float north = mix(random(low + ivec2(0, 1), uint(k)), random(low + 1, uint(k)), part.x);
+        total += mix(south, north, part.y) * cell / 30.0;
+    }
+    return total;
+}
+float kernel(ivec2 texel) {
+    ivec2 from = texel;
+    if (turned == 1) from = ivec2(texel.y, size.x - 1 - texel.x);
+    if (turned == 2) from.x = size.x - 1 - texel.x;
+    return base + scale * value(from);
+}
+"""
+FLAT = """
+#pragma kernel(output = "height:r32f")
+uniform float base = 0.37;
+float kernel(ivec2 texel) { return base; }
+"""
+# A mountain, the valley y = 32 between two slopes, a wall with a needle.
+SHAPES = """
+#pragma kernel(output = "height:r32f")
+uniform int which = 0;  //! menu("cone", "valley", "wall", "needle")
+float kernel(ivec2 texel) {
+    vec2 middle = vec2(texel) - 0.5 * vec2(size - 1);
+    if (which == 0) return max(1.0 - length(middle) / 24.0, 0.0);
+    if (which == 1) return abs(middle.y) / 32.0;
+    if (which == 2) return texel.x == size.x / 2 ? 1.0 : 0.0;
+    return texel == size / 2 ? 1000.0 : 0.0;
+}
+"""
+
+
+@pytest.fixture
+def lit(make_sketch):
+    """Give a sketch of a land and its light: sun in degrees, sizes in texels, metres."""
+
+    def make(land, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values):
+        values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
+        settings = ["".join(f"{k} = {_toml(v)}\n" for k, v in each.items()) for each in (given or {}, values)]
+        at = f"size = {light_size}\n" if light_size else ""
+        passes = (
+            f'[[pass]]\nname = "height"\nuse = "./land"\n[pass.set]\n{settings[0]}'
+            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{settings[1]}'
+        )
+        return make_sketch(passes, size=size, extent=extent, relief=relief, land=land)
+
+    return make
+
+
+def _toml(value):
+    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
+
+
+@pytest.fixture
+def jacksboro(make_sketch):
+    """Give a sketch of the Jacksboro fault, lit."""
+
+    def make(method, sun, **values):
+        settings = "".join(f"{k} = {_toml(v)}\n" for k, v in {"sun": sun, **values}.items())
+        passes = (
+            f'[[pass]]\nname = "height"\nuse = "generation/heightmap"\nset = {{ elevation = "{DATA.name}" }}\n'
+            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n[pass.set]\n{settings}'
+        )
+        return make_sketch(passes, size=[403, 344], extent=[29900.0, 31900.0], relief=840.0)
+
+    def copied(*args, **values):
+        sketch = make(*args, **values)
+        target = Path(sketch.folder) / DATA.name
+        if not target.exists():
+            target.write_bytes(DATA.read_bytes())
+        return sketch
+
+    return copied
+
+
+def visible(engine, sketch):
+    """Return the visible part of the sun, as the method itself gives it."""
+    inner = "light.moon.visibility" if "night" in _used(sketch) else "light.visibility"
+    return engine.read(sketch, inner)
+
+
+def _used(sketch):
+    return next(p.use for p in sketch.graph.passes if p.name == "light")
+
+
+def sun_vector(azimuth, elevation):
+    a, e = np.radians([azimuth, elevation])
+    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
+
+
+class Views:
+    """Every place's way to the sun, step by step: how far off land is, and how high over the place [m]."""
+
+    def __init__(self, heights, sun, spacing, stride=1.0, finer=1):
+        ny, nx = heights.shape
+        places = np.mgrid[0 : (ny - 1) * finer + 1, 0 : (nx - 1) * finer + 1].astype(np.float64) / finer
+        azimuth = np.radians(sun[0])
+        ahead = np.array([np.cos(azimuth), np.sin(azimuth)])  # metres north and east
+        texels = ahead / np.array(spacing)[::-1]
+        run = stride / np.abs(texels).max()  # metres on the level in a step
+        foot = map_coordinates(heights, places, order=1)
+        self.foot, self.steps = foot, []
+        last = np.array([ny - 1, nx - 1])[:, None, None]
+        for k in range(1, int(max(nx, ny) / stride) + 2):
+            at = places + (k * run * texels)[:, None, None]
+            inside = ((at >= -1e-6) & (at <= last + 1e-6)).all(axis=0)
+            if not inside.any():
+                break
+            land = map_coordinates(heights, np.clip(at, 0, last), order=1)
+            self.steps.append((k * run, np.where(inside, land - foot, -np.inf)))
+
+    def horizon(self):
+        """Return the angle of the highest land on the way, in degrees; -90 where there is none."""
+        found = np.full(self.foot.shape, -90.0)
+        for far, over in self.steps:
+            found = np.maximum(found, np.degrees(np.arctan2(np.where(np.isinf(over), -1e12, over), far)))
+        return found
+
+    def free_of_beam(self, elevation, radius_at, first=1.0):
+        """Return the least share of an upright stick, around the ray, that stands over the land."""
+        found = np.full(self.foot.shape, first)
+        for far, over in self.steps:
+            radius, middle = radius_at(far), far * np.tan(np.radians(elevation))
+            free = np.clip(middle + radius - np.maximum(over, middle - radius), 0, 2 * radius)
+            found = np.minimum(found, free / (2 * radius))
+        return found
+
+
+def part_of_disc(line):
+    """Return the share of a disc of radius 1 over a line, by counting points of a fine lattice."""
+    axis = (np.arange(1200) + 0.5) / 600 - 1
+    x, y = np.meshgrid(axis, axis)
+    heights = np.sort(y[x * x + y * y <= 1])
+    return 1 - np.searchsorted(heights, line) / heights.size
+
+
+# What a walk leaps over
+
+
+@pytest.mark.parametrize("size", [(1, 1), (16, 17), (65, 33), (40, 100)], ids=str)
+def test_tops_are_the_highest_of_blocks_and_of_their_borders(any_engine, make_sketch, size):
+    passes = (
+        '[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
+        '[[pass]]\nname = "tops"\nuse = "lighting/walk_tops"\nsize = "(height.size + 15) // 16"\n'
+    )
+    sketch = make_sketch(passes, size=list(size))
+    heights = any_engine.read(sketch, "height")
+    tops = any_engine.read(sketch, "tops")
+    # The filter's window begins at its own texel, and what lies beside the land is as low as can be.
+    wanted = maximum_filter(heights, size=17, origin=-8, mode="constant", cval=-1.0)[::16, ::16]
+    np.testing.assert_array_equal(tops, wanted)
+
+
+@pytest.mark.parametrize("method", ["ray_cast", *SOFT])
+@pytest.mark.parametrize("sun", [(135, 25), (262, 7), (0, 4)], ids=str)
+def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
+    """With blocks that reach to the sky every step is looked at, and the bits are the same."""
+    sky = '#pragma kernel(output = "tops:r32f")\nfloat kernel(ivec2 texel) { return 1e6; }\n'
+    head = (
+        '[[pass]]\nname = "height"\nuse = "generation/gradient_noise"\nset = { frequency = 3.0, seed = 5 }\n'
+        '[[pass]]\nname = "range"\nuse = "terrain/range"\n'
+        '[[pass]]\nname = "horizon"\nuse = "./sky"\nsize = 1\n'
+    )
+    found = []
+    for use in ("lighting/walk_tops", "./sky"):
+        passes = (
+            f'{head}[[pass]]\nname = "tops"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
+            f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/visibility"\nset = {{ sun = {list(sun)} }}\n'
+        )
+        sketch = make_sketch(passes, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
+        found.append(any_engine.read(sketch, "seen"))
+    assert 0.05 < (found[0] < 1).mean() and (found[0] > 0).mean() > 0.05
+    np.testing.assert_array_equal(found[0], found[1])
+
+
+# Against the slow marches
+
+
+SUNS = [(135, 25), (90, 15), (0, 6), (317, 40), (45, 10), (222.5, 60)]
+GRID = {"size": [65, 49], "extent": [640, 960], "relief": 300.0}
+SPACING = (10.0, 20.0)
+
+
+def heights_of(engine, sketch, relief=300.0):
+    return engine.read(sketch, "height").astype(np.float64) * relief
+
+
+@pytest.mark.parametrize("sun", SUNS, ids=str)
+@pytest.mark.parametrize(("delta_r", "stride"), [(0.01, 1.0), (0.1, 0.5), (0.3, 2.0), (1.5, 1.0)])
+def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, stride):
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, stride=stride, **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING, stride)
+    grows = delta_r / np.cos(np.radians(sun[1]))
+    wanted = views.free_of_beam(sun[1], lambda far: far * grows)
+    found = visible(any_engine, sketch)
+    assert wanted.min() < 0.5 or sun[1] > 30
+    # Close to the texel a cone of 0.01 is centimetres wide: a float's rounding is some of that.
+    np.testing.assert_allclose(found, wanted, atol=2e-3 if delta_r < 0.05 else 2e-4)
+
+
+@pytest.mark.parametrize("sun", SUNS[:3], ids=str)
+def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engine, lit, sun):
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, stride=0.5, growth="per step", **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING, 0.5)
+    wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
+    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=5e-4)
+    same = [lit(HILLS, "soft_cone", sun, growth=g, **GRID) for g in ("per unit of path", "per step")]
+    np.testing.assert_array_equal(visible(any_engine, same[0]), visible(any_engine, same[1]))
+
+
+@pytest.mark.parametrize("sun", SUNS[1:5], ids=str)
+@pytest.mark.parametrize("radius", [0.5, 20.0])
+def test_the_cylinder_is_that_of_a_slow_march(any_engine, lit, sun, radius):
+    sketch = lit(HILLS, "soft_cylinder", sun, radius=radius, **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING)
+    wanted = views.free_of_beam(sun[1], lambda _: radius / 255 * 300, first=0.5)
+    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=3e-4)
+
+
+@pytest.mark.parametrize("sun", [*SUNS[:4], (200, 0.1), (200, -0.2)], ids=str)
+@pytest.mark.parametrize("diameter", [0.53, 10.0])
+def test_the_disc_is_that_of_a_slow_march_and_quadrature(any_engine, lit, sun, diameter):
+    sketch = lit(HILLS, "sun_disc", sun, diameter=diameter, **GRID)
+    horizon = np.maximum(Views(heights_of(any_engine, sketch), sun, SPACING).horizon(), 0)
+    wanted = part_of_disc((horizon - sun[1]) / (diameter / 2))
+    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=3e-3)
+
+
+@pytest.mark.parametrize("sun", [(135, 25), (262, 7)], ids=str)
+def test_light_of_another_size_marches_from_its_own_places(any_engine, lit, sun):
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.1, light_size='["3*size.x-2", "3*size.y-2"]', **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING, finer=3)
+    wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
+    found = visible(any_engine, sketch)
+    assert found.shape == (145, 193)
+    np.testing.assert_allclose(found, wanted, atol=5e-4)
+
+
+def test_the_disc_is_cut_as_quadrature_cuts_it(on_gpu):
+    lines = np.linspace(-1.2, 1.2, 500)
+    found = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
+    np.testing.assert_allclose(found, part_of_disc(lines), atol=1e-3)
+    assert found[0] == 1 and found[-1] == 0
+
+
+def test_a_line_is_off_by_less_than_the_thesis_ramp_is(on_gpu):
+    """Eqs 3.8 and 4.3 fall evenly across the sun; the disc's area does not, by up to 0.058."""
+    lines = np.linspace(-1, 1, 2001)
+    found = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
+    assert np.abs(found - (0.5 - lines / 2)).max() == pytest.approx(0.058, abs=1e-3)
+
+
+# Flat land
+
+
+@pytest.mark.parametrize("elevation", [3.0, 25.0, 60.0])
+@pytest.mark.parametrize("azimuth", [0.0, 90.0, 137.0])
+def test_on_flat_land_the_cylinder_is_half_of_l_dot_n(any_engine, lit, azimuth, elevation):
+    plain = any_engine.read(lit(FLAT, "l_dot_n", (azimuth, elevation)), "light")
+    found = any_engine.read(lit(FLAT, "soft_cylinder", (azimuth, elevation)), "light")
+    np.testing.assert_array_equal(found[..., :3], plain[..., :3] / 2)
+
+
+@BOTH_FORMS
+@pytest.mark.parametrize("elevation", [0.0, 5.0, 30.0, 70.0, 89.9, 90.0])
+@pytest.mark.parametrize("azimuth", [270.0, 137.0])
+def test_on_flat_land_a_wide_cone_sees_the_known_part(any_engine, lit, form, azimuth, elevation):
+    found = visible(any_engine, lit(FLAT, "soft_cone", (azimuth, elevation), delta_r=1.5, form=form))
+    # Texels whose first step leaves the land see all of the sun.
+    inner = found[1:-1, 1:-1]
+    np.testing.assert_allclose(inner, (1 + np.sin(np.radians(elevation)) / 1.5) / 2, atol=1e-5)
+
+
+@BOTH_FORMS
+def test_on_flat_land_a_narrow_cone_and_the_disc_see_all(any_engine, lit, form):
+    for method in ("ray_cast", "soft_cone", "sun_disc"):
+        found = visible(any_engine, lit(FLAT, method, (77, 3), form=form))
+        np.testing.assert_array_equal(found, 1)
+
+
+@BOTH_FORMS
+@pytest.mark.parametrize("elevation", [0.2, 0.0, -0.1, -0.3])
+def test_on_flat_land_the_disc_sets(any_engine, lit, form, elevation):
+    found = visible(any_engine, lit(FLAT, "sun_disc", (200, elevation), form=form))
+    np.testing.assert_allclose(found, part_of_disc(-elevation / 0.265), atol=2e-3)
+
+
+# What holds for all
+
+
+@pytest.mark.parametrize("sun", [(135, 25), (262, 7), (45, 12)], ids=str)
+def test_a_thin_cone_is_a_ray_and_half_of_any_cone_is_what_a_ray_meets(any_engine, lit, sun):
+    ray = visible(any_engine, lit(HILLS, "ray_cast", sun, **GRID))
+    assert 0.02 < ray.mean() < 0.98
+    for delta_r in (0.0, 1e-6):
+        thin = visible(any_engine, lit(HILLS, "soft_cone", sun, delta_r=delta_r, **GRID))
+        assert (np.abs(thin - ray) > 1e-3).mean() < 2e-3
+    for delta_r in (0.01, 0.2):
+        cone = visible(any_engine, lit(HILLS, "soft_cone", sun, delta_r=delta_r, **GRID))
+        sure = np.abs(cone - 0.5) > 1e-6
+        np.testing.assert_array_equal(cone[sure] > 0.5, ray[sure] == 1)
+
+
+@EVERY_METHOD
+def test_lifting_the_land_changes_nothing(any_engine, lit, method, form):
+    values = {"form": form, "relief": 300.0, "extent": 640.0}
+    low, high = (
+        visible(any_engine, lit(HILLS, method, (135, 15), given={"base": b}, **values)) for b in (0.0, 5.0)
+    )
+    # Hills of 300 m, lifted by 1500 m: a float rounds to 0.1 mm, of centimetres in a narrow cone.
+    assert (np.abs(high - low) > 5e-3).mean() < 3e-3
+
+
+@EVERY_METHOD
+@pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
+def test_turned_and_mirrored_land_has_turned_and_mirrored_light(any_engine, lit, method, form, sun):
+    values = {"form": form, "relief": 300.0, "extent": 640.0}
+    straight = any_engine.read(lit(HILLS, method, sun, **values), "light")
+    y, x = np.mgrid[0:65, 0:65]
+    for given, moved, wanted in (
+        ("quarter", (sun[0] - 90, sun[1]), straight[64 - x, y]),
+        ("mirrored", (-sun[0], sun[1]), straight[:, ::-1]),
+    ):
+        found = any_engine.read(lit(HILLS, method, moved, given={"turned": given}, **values), "light")
+        assert (np.abs(found - wanted).max(axis=-1) > 5e-3).mean() < 2e-3
+
+
+DEGENERATE = [
+    {"size": [1, 1]},
+    {"size": [2, 2]},
+    {"size": [1, 20]},
+    {"size": [20, 1]},
+    {"relief": 0.0},
+    {"relief": 1e5},
+]
+
+
+@EVERY_METHOD
+def test_there_is_no_land_and_no_sun_without_numbers(any_engine, lit, method, form):
+    suns = [(0, 90), (90, 0), (33, 89.9999), (77, -0.1), (45, -90), (135, 20)]
+    for values in DEGENERATE:
+        sketch = lit(HILLS, method, (0, 0), form=form, **{"size": 17, **values})
+        for sun in suns:
+            moved = sketch.with_values({"light.sun": sun})
+            part = visible(any_engine, moved)
+            assert np.isfinite(part).all() and part.min() >= 0 and part.max() <= 1, (values, sun)
+            assert np.isfinite(any_engine.read(moved, "light")).all(), (values, sun)
+            if sun[1] < -0.3:
+                assert part.max() == 0
+
+
+@EVERY_METHOD
+@pytest.mark.parametrize("which", ["wall", "needle"])
+def test_walls_and_needles_throw_shadows_of_numbers(any_engine, lit, method, form, which):
+    for sun in ((90, 20), (60, 5), (0, 90)):
+        sketch = lit(SHAPES, method, sun, form=form, size=33, given={"which": which})
+        part = visible(any_engine, sketch)
+        assert np.isfinite(part).all() and part.min() >= 0 and part.max() <= 1
+        if which == "wall" and sun == (90, 20):
+            assert part[16, 15] == 0 or method in ("night",)
+
+
+@pytest.mark.parametrize("method", ["ray_cast", "soft_cone"])
+@BOTH_FORMS
+def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
+    assert visible(any_engine, lit(HILLS, method, (90, -0.01), relief=3000.0, form=form)).max() == 0
+
+
+# The sweep
+
+
+def test_both_drivers_sweep_alike(ctx, lit):
+    """The fragment driver sweeps each texel's band anew, the companion each band once."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
+        for azimuth in (0, 12.3, 45, 90, 100, 135, 161, 180, 225, 230, 270, 301, 315, 317, 359.99999):
+            sketch = lit(HILLS, "sun_disc", (azimuth, 9.0), form="sweep", size=[49, 65], relief=300.0)
+            found = [engine.read(sketch, "light.horizon") for engine in (plain, swept)]
+            np.testing.assert_array_equal(found[0], found[1])
+        assert swept.ran[:2] != [] and "light.horizon" in swept.ran
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 90.0, 180.0, 270.0, 45.0, 225.0])
+def test_along_axes_and_diagonals_the_sweep_is_the_march(any_engine, lit, azimuth):
+    """Lines meet texels only, and four slopes are enough to find what shadows a narrow cone."""
+    values = {"size": 129, "relief": 300.0, "extent": 1280.0}
+    for method in ("ray_cast", "soft_cone", "sun_disc"):
+        march, sweep = (
+            visible(any_engine, lit(HILLS, method, (azimuth, 9), form=form, **values))
+            for form in ("march", "sweep")
+        )
+        difference = np.abs(march - sweep)
+        assert (difference > 1e-3).mean() < 2e-3 and difference.mean() < 1e-4
+
+
+# Shares of texels whose hard shadow may differ, and mean and root mean square of soft parts' differences.
+BOUNDS = {5.0: (0.006, 0.006, 0.06), 25.0: (0.0003, 0.0003, 0.01)}
+
+
+@pytest.mark.parametrize("elevation", [5.0, 25.0])
+@pytest.mark.parametrize("azimuth", [105.0, 200.0])
+def test_on_real_land_the_sweep_is_nearly_the_march(any_engine, jacksboro, azimuth, elevation):
+    sun = (azimuth, elevation)
+    hard, mean, square = BOUNDS[elevation]
+    march, sweep = (visible(any_engine, jacksboro("ray_cast", sun, form=f)) for f in ("march", "sweep"))
+    assert (march == 0).mean() > 0.005
+    assert (march != sweep).mean() <= hard
+    # What the sweep lights and the march does not lies beside what the march lights.
+    beside = binary_dilation(march == 1, np.ones((3, 3)))
+    assert ((sweep == 1) & ~beside).mean() <= hard / 10
+    for method in ("soft_cone", "sun_disc"):
+        march, sweep = (visible(any_engine, jacksboro(method, sun, form=f)) for f in ("march", "sweep"))
+        difference = np.abs(march - sweep)
+        assert difference.mean() <= mean and np.sqrt((difference**2).mean()) <= square
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 20.0, 71.0, 135.0])
+def test_the_sweep_sees_a_cone_shaped_mountain_as_the_march_does(any_engine, lit, azimuth):
+    values = {"size": 97, "extent": 960.0, "relief": 240.0}
+    for elevation in (20.0, 35.0):
+        sun = (azimuth, elevation)
+        march, sweep = (
+            visible(any_engine, lit(SHAPES, "soft_cone", sun, form=f, delta_r=0.05, **values))
+            for f in ("march", "sweep")
+        )
+        assert (march < 0.5).mean() > 0.005
+        assert np.abs(march - sweep).mean() < 2e-3 and np.abs(march - sweep).max() < 0.25
+
+
+@pytest.mark.parametrize("azimuth", [180.0, 170.0, 205.0, 140.0])
+def test_the_sweep_finds_the_other_rim_of_a_valley(any_engine, lit, azimuth):
+    """Slopes of 100 m on 320 m, 10 m a texel: the southern rim's angle is known in closed form."""
+    values = {"extent": 640.0, "given": {"which": "valley"}, "diameter": 4.0, "form": "sweep"}
+    y = np.arange(65.0)
+    height = np.abs(y - 32) / 32 * 100
+    lean = np.abs(np.cos(np.radians(azimuth)))  # of the way to the sun, that part leads south
+    rim = np.where(y > 0, (100 - height) / np.maximum(y * 10, 1e-9), 0) * lean
+    slope = (np.roll(height, 1) - height) / 10 * lean
+    # Ways that leave the land by its side see no rim.
+    seen = (y >= 8) & (y * np.abs(np.tan(np.radians(azimuth))) < 27)
+    for elevation in (3.0, 6.0, 9.0, 12.0, 15.0):
+        found = any_engine.read(lit(SHAPES, "sun_disc", (azimuth, elevation), **values), "light.horizon")
+        # What lies above or below the disc is not looked for.
+        ends = np.tan(np.radians([elevation - 2, elevation + 2]))
+        wanted = np.clip(np.maximum(rim, slope), *ends)[seen]
+        middle = np.clip(found[:, 30:35], *ends)[seen]
+        assert len(set(wanted)) > 5 or elevation > 12 or azimuth == 140
+        np.testing.assert_allclose(middle, np.broadcast_to(wanted[:, None], middle.shape), atol=0.004)
+
+
+# Night
+
+
+def test_night_is_the_widest_cone_with_a_gain_of_1(any_engine, lit):
+    values = {"relief": 300.0, "extent": 640.0}
+    night = any_engine.read(lit(HILLS, "night", (135, 25), **values), "light")
+    cone = any_engine.read(lit(HILLS, "soft_cone", (135, 25), delta_r=1.5, gain=1.0, **values), "light")
+    np.testing.assert_array_equal(night, cone)
+
+
+LAMP = {"sun": (0, -10), "lamp_gain": 2.0, "reach": 200.0, "lamp_height": 100.0, "lamp_colour": (1.0, 0.5, 0.25)}
+
+
+@pytest.mark.parametrize("falloff", ["inverse square", "soft"])
+def test_a_lamp_lights_flat_land_by_its_distance(any_engine, lit, falloff):
+    values = {k: v for k, v in LAMP.items() if k != "sun"}
+    sketch = lit(
+        FLAT, "night", LAMP["sun"], size=[65, 33], extent=[640, 640], lamp=(0.25, 0.5), falloff=falloff, **values
+    )
+    light = any_engine.read(sketch, "light")
+    y, x = np.mgrid[0:33, 0:65] * np.array([20.0, 10.0])[:, None, None]
+    far = np.sqrt((x - 160) ** 2 + (y - 320) ** 2 + 100**2)
+    falls = (200 / far) ** 2 if falloff == "inverse square" else np.maximum(1 - (far / 200) ** 2, 0) ** 2
+    received = 2 * 100 / far * falls
+    np.testing.assert_allclose(light[..., 0], received, rtol=1e-3, atol=1e-4)
+    np.testing.assert_allclose(light[..., 1:3], light[..., :1] * [0.5, 0.25], rtol=2e-3, atol=1e-4)
+
+
+@pytest.mark.parametrize("radius", [0.0, 20.0])
+def test_a_wall_throws_the_lamp_s_shadow(any_engine, lit, radius):
+    """The lamp stands at 100 m, 160 m west of a wall of 50 m: behind it 160 m are dark."""
+    values = {k: v for k, v in LAMP.items() if k != "sun"}
+    sketch = lit(
+        SHAPES, "night", LAMP["sun"], size=[65, 33], extent=[640, 320], relief=50.0, lamp=(0.25, 0.5),
+        lamp_radius=radius, given={"which": "wall"}, **values,
+    )  # fmt: skip
+    row = any_engine.read(sketch, "light")[16, :, 0]
+    behind = (np.arange(65) - 32) * 10.0
+    dark = (behind > 15) & (behind < (155 if radius == 0 else 110))
+    np.testing.assert_array_equal(row[dark], 0)
+    assert row[(behind > (165 if radius == 0 else 250))].min() > 0 and row[behind < -15].min() > 0
+    # A large lamp is seen in part from where its middle is behind the crest.
+    assert (row[(behind > 130) & (behind < 155)].max() > 0) == (radius > 0)
+
+
+def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
+    values = {k: v for k, v in LAMP.items() if k != "sun"}
+    sketch = lit(HILLS, "night", LAMP["sun"], relief=300.0, extent=640.0, lamp=(0.5, 0.25), lamp_radius=0.0, **values)
+    heights = heights_of(any_engine, sketch)
+    light = any_engine.read(sketch, "light")[..., 0]
+    y, x = np.mgrid[0:65, 0:65].astype(np.float64)
+    stand = np.array([32.0, 16.0, heights[16, 32] + 100])
+    clear = np.full(x.shape, np.inf)
+    steps = np.maximum(np.abs(stand[0] - x), np.abs(stand[1] - y))
+    for k in range(1, 65):
+        share = np.minimum(k / np.maximum(steps, 1e-9), 1.0)
+        land = map_coordinates(heights, [y + share * (stand[1] - y), x + share * (stand[0] - x)], order=1)
+        over = heights + share * (stand[2] - heights) - land
+        clear = np.where(k < steps - 1e-6, np.minimum(clear, over), clear)
+    north, east = np.gradient(heights, 10.0)
+    way = np.stack([(stand[0] - x) * 10, (stand[1] - y) * 10, stand[2] - heights], axis=-1)
+    facing = way[..., 2] - east * way[..., 0] - north * way[..., 1]
+    sure = (np.abs(clear) > 0.01) & (np.abs(facing) > 0.1)
+    wanted = (clear > 0) & (facing > 0)
+    assert sure.mean() > 0.9 and 0.1 < wanted.mean() < 0.9
+    np.testing.assert_array_equal(light[sure] > 0, wanted[sure])
+
+
+def test_a_lamp_on_the_ground_and_one_on_a_land_of_one_texel_are_numbers(any_engine, lit):
+    for size in ([1, 1], [2, 2], [1, 20], [33, 33]):
+        for height in (0.0, 40.0):
+            values = {"lamp_gain": 8.0, "lamp": (0.5, 0.5), "lamp_height": height, "lamp_radius": 0.0}
+            light = any_engine.read(lit(HILLS, "night", (30, 20), size=size, **values), "light")
+            assert np.isfinite(light).all() and light.min() >= 0
