@@ -1,7 +1,7 @@
 // lighting/l_dot_n.glsl -- light by how squarely the sun meets the slope; nothing throws a shadow.
 //
 //   gives    light: red, green, blue; alpha the visible part of the sun, here always 1
-//   needs    lighting/sun.glsl, terrain/heightfield.glsl
+//   needs    lighting/daylight_reading.glsl, lighting/sun.glsl, terrain/heightfield.glsl
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.5.3
 //   tested   tests/glsl/test_lighting.py, against inclined planes and NumPy
@@ -9,11 +9,13 @@
 // light = sun colour max(0, N·L) gain + sky colour ambient. The thesis gives no number for
 // its gain in section 3.5.3 and 2 in 5.4. Its ambient light is 0: shadows are pitch black.
 // The light map may have another size than the heights; slopes are metres over metres.
+#include "lighting/daylight_reading.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f")
 
 uniform sampler2D height;                //! input
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
 uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
@@ -26,6 +28,7 @@ vec4 kernel(ivec2 texel) {
     vec2 place = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
     vec2 slope = relief * slope_at(height, place, metres, normal);
-    float received = gain * sun_on(normal_of_slope(slope), to_sun(sun));
-    return vec4(sun_colour * received + sky_colour * ambient, 1.0);
+    Sunlight from = sunlight(daylight, sun, sun_colour, sky_colour);
+    float received = gain * sun_on(normal_of_slope(slope), from.direction);
+    return vec4(from.sun * received + from.sky * ambient, 1.0);
 }

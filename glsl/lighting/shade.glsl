@@ -1,7 +1,7 @@
 // lighting/shade.glsl -- light from the sun's visible part and from the sky: what every method of shadows ends with.
 //
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is turned away from it
-//   needs    lighting/sun.glsl, terrain/heightfield.glsl; unwired, the sun and the sky are whole
+//   needs    lighting/daylight_reading.glsl, lighting/sun.glsl, terrain/heightfield.glsl; unwired, the sun and the sky are whole
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, sections 3.5.3 and 4.4 (eqs 4.1 and 4.2)
 //   tested   tests/glsl/test_lighting.py, against NumPy
@@ -9,6 +9,7 @@
 // light = sun colour gain V max(0, N·L) + sky colour ambient F. V and F may have other sizes
 // than the light: they are read where the texel stands. F has three channels, since ground that
 // throws light back has a colour.
+#include "lighting/daylight_reading.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f")
@@ -16,6 +17,7 @@
 uniform sampler2D height;                //! input
 uniform sampler2D visibility;            //! input("white")
 uniform sampler2D sky_factor;            //! input("white")
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
 uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
@@ -49,11 +51,12 @@ vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
     vec2 slope = relief * slope_at(height, place, spacing_of(grid, extent), normal);
-    vec3 light = to_sun(sun);
+    Sunlight from = sunlight(daylight, sun, sun_colour, sky_colour);
+    vec3 light = from.direction;
     float received = max(0.0, dot(normal_of_slope(slope), light));
     // Where nothing is wired to say so, a sun below the horizon is hidden.
     if (light.z < 0.0 && textureSize(visibility, 0) == ivec2(1)) received = 0.0;
     float visible = received > 0.0 ? read_at(visibility, texel).r : 0.0;
-    vec3 sky = sky_colour * ambient * read_at(sky_factor, texel);
-    return vec4(sun_colour * (visible * gain * received) + sky, visible);
+    vec3 sky = from.sky * ambient * read_at(sky_factor, texel);
+    return vec4(from.sun * (visible * gain * received) + sky, visible);
 }

@@ -1,7 +1,7 @@
 // lighting/sun_sweep.glsl -- the horizon towards the sun, by a sweep over the land along parallel lines.
 //
 //   gives    horizon: tangents of the horizon's elevation, one a texel of the land
-//   needs    lighting/sun.glsl, lighting/sun_sweep/band.glsl, maths/land.glsl
+//   needs    lighting/daylight_reading.glsl, lighting/sun_sweep/band.glsl, maths/land.glsl
 //   units    rise over run; -10000 where no land stands towards the sun
 //   source   see lighting/sun_sweep/band.glsl
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
@@ -15,20 +15,22 @@
 // Against a march: hard shadows differ on at most 0.6 % of the texels of the lands that ship, at
 // a sun of 5 to 25 degrees, and at a shadow's edge; a soft part by 0.006 on average, by 0.02 for a
 // cone as wide as the night's. Along axes and diagonals they are the same but for rounding.
-#include "lighting/sun.glsl"
+#include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "lighting/sun_sweep/plain.glsl"
 #include "maths/land.glsl"
 #pragma kernel(output = "horizon:r32f")
 
 uniform sampler2D height;              //! input
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);  //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform int shape = 0;                 //! menu("point", "cone", "disc") group("Sweep") What stands for the sun
 uniform float spread = 0.0;            //! slider(0, 20) step(0.01) group("Sweep") Of a cone, its radius over its length; of a disc, its diameter in degrees
 
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec3 light = to_sun(sun);
+    vec2 place_of_sun = sun_place(daylight, sun);
+    vec3 light = to_sun(place_of_sun);
     Lines lines = lines_towards(grid, light, spacing_of(grid, extent));
     if (size != grid) return NO_HORIZON;
     return swept_horizon(height, texel, lines, slopes_around(lines, light, shape, spread), relief);

@@ -1,7 +1,7 @@
 // view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    lighting/sun.glsl, maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour
 //            and a light if there are
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
@@ -12,6 +12,8 @@
 // The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
 // costs six times the frame, and light carries the detail that its facets lack. Asked to, each
 // facet is lit by its own normal instead, so that the mesh itself is what one sees.
+#include "lighting/daylight_reading.glsl"
+#include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/drape.glsl"
 #include "view/wires.glsl"
@@ -20,6 +22,7 @@
 uniform sampler2D height;  //! input("linear")
 uniform sampler2D colour;  //! input("linear", "mipmap", "white")
 uniform sampler2D light;   //! input("linear", "mipmap", "white")
+uniform sampler2D daylight;  //! input("black")
 
 uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side
 uniform bool wireframe = false;       //! group("Mesh") Draw the mesh's edges; hidden ones stay hidden
@@ -32,6 +35,7 @@ uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh
 uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
 uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
+uniform int sky = 0;  //! menu("colours", "daylight") group("Sky") Whether the haze has that colour, or that of the sky of lighting/daylight
 
 // Where height, colour or light is not a number, as in view/map.
 const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
@@ -82,6 +86,7 @@ vec4 fragment(vec3 position, float mark) {
     if (wireframe) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
     if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot
     if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
-    if (haze > 0.0) shown = mix(horizon, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
+    vec3 air = sky == 1 && is_daylight(daylight) ? horizon_of(daylight) : horizon;
+    if (haze > 0.0) shown = mix(air, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
     return vec4(shown, 1.0);
 }

@@ -1,21 +1,53 @@
-// view/sky.glsl -- what is behind the land: one colour overhead, one at the horizon, one underfoot.
+// view/sky.glsl -- what is behind the land: three colours, or the sky of some daylight with the sun in it.
 //
 //   gives    frame, linear light
-//   needs    the camera
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl; the camera; daylight if there is any
 //   units    colours linear
-//   source   none: a backdrop. The physical sky is a technique of its own
-//   tested   tests/glsl/test_view.py: the horizon's colour at the horizon, overhead's above
+//   source   the colours: none, a backdrop; the sky: see lighting/daylight/dome
+//   tested   tests/glsl/test_view.py: the horizon's colour at the horizon, overhead's above; and
+//            tests/glsl/test_daylight.py: the sky's colours and the sun's disc where they belong
+#include "lighting/daylight_reading.glsl"
+#include "lighting/daylight_sky.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
+uniform sampler2D daylight;  //! input("black")
+uniform int sky = 0;         //! menu("colours", "daylight") group("Sky") What is behind the land: the colours below, or the sky of lighting/daylight if the sketch has it
 uniform vec3 zenith = vec3(0.105, 0.245, 0.56);  //! colour group("Sky") Straight overhead
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);   //! colour group("Sky") Level with the eye
-uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky") Straight underfoot, where there is no land
+uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky") Straight underfoot, where there is no land; under daylight, what it is in white light
+
+// The sun is 47,000 times as bright as white paper in its light, far past what half floats
+// hold and smooth edges bear.
+const float BRIGHTEST = 60.0;
+
+vec3 direction_of(vec2 pixel) {
+    vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(away.xyz / away.w - eye);
+}
+
+// How much of a pixel the sun's disc covers.
+float disc_in(vec3 towards, vec3 sun, float pixel) {
+    return towards.z < 0.0 ? 0.0 : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
+}
+
+vec3 daylight_in(vec3 towards, float pixel) {
+    vec3 seen = sky_towards(daylight, towards);
+    Sunlight from = sunlight(daylight, vec2(0.0), vec3(0.0), vec3(0.0));
+    float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
+    vec3 disc = from.sun * min(46750.0, BRIGHTEST / max(lit, 1e-9));
+    seen = mix(seen, max(disc, seen), disc_in(towards, from.direction, pixel));
+    vec3 below = nadir * level_light(daylight);
+    return towards.z < 0.0 ? mix(seen, below, 1.0 - exp(3.0 * towards.z)) : seen;
+}
 
 vec4 kernel(ivec2 texel) {
-    vec2 place = (vec2(texel) + 0.5) / vec2(size) * 2.0 - 1.0;
-    vec4 away = world_from_clip * vec4(place, 1.0, 1.0);
-    vec3 towards = normalize(away.xyz / away.w - eye);
+    vec3 towards = direction_of(vec2(texel) + 0.5);
     // Both halves leave the horizon at the same pace, so that no line is seen there.
     float share = 1.0 - exp(-3.0 * abs(towards.z));
-    return vec4(mix(horizon, towards.z > 0.0 ? zenith : nadir, share), 1.0);
+    vec3 seen = mix(horizon, towards.z > 0.0 ? zenith : nadir, share);
+    if (sky == 1 && is_daylight(daylight)) {
+        float pixel = distance(towards, direction_of(vec2(texel) + vec2(0.5, 1.5)));
+        seen = daylight_in(towards, max(pixel, 1e-6));
+    }
+    return vec4(seen, 1.0);
 }

@@ -1,7 +1,7 @@
 // lighting/ray_cast/visibility.glsl -- whether a walk towards the sun meets land: 1 where it does not, 0 where it does.
 //
 //   gives    visibility: the visible part of the sun, 0 or 1
-//   needs    lighting/sun.glsl, lighting/walk.glsl; the land's tops and range, or its swept horizon, as inputs
+//   needs    lighting/daylight_reading.glsl, lighting/walk.glsl; the land's tops and range, or its swept horizon, as inputs
 //   units    without unit
 //   source   Belaiche 2010, section 3.5.4
 //   tested   tests/glsl/test_lighting.py and tests/glsl/test_shadows.py, against marches in NumPy and walls' shadows in metres
@@ -12,7 +12,7 @@
 // Mended: the thesis reads the texel that the ray's place is cut down to, which moves every
 // shadow half a texel to the south-west; here heights are interpolated between texels' centres,
 // and the land ends at the last one. Its way remains a choice, for comparison.
-#include "lighting/sun.glsl"
+#include "lighting/daylight_reading.glsl"
 #include "lighting/walk.glsl"
 #pragma kernel(output = "visibility:r32f")
 
@@ -20,6 +20,7 @@ uniform sampler2D height;                //! input
 uniform sampler2D tops;                  //! input
 uniform sampler2D range;                 //! input
 uniform sampler2D horizon;               //! input
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
@@ -42,7 +43,8 @@ float seen(Walk walk, int count, bool on_lines) {
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
-    vec3 light = to_sun(sun);
+    vec2 place_of_sun = sun_place(daylight, sun);
+    vec3 light = to_sun(place_of_sun);
     if (light.z < 0.0) return 0.0;
     if (form == 1) return texelFetch(horizon, texel, 0).r * length(light.xy) > light.z ? 0.0 : 1.0;
     vec2 place = place_on(grid, texel, size);

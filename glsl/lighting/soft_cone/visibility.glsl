@@ -1,7 +1,7 @@
 // lighting/soft_cone/visibility.glsl -- how much of a cone from the texel towards the sun the land leaves free.
 //
 //   gives    visibility: the visible part of the sun, 0..1
-//   needs    lighting/sun.glsl, lighting/walk.glsl; the land's tops and range, or its swept horizon, as inputs
+//   needs    lighting/daylight_reading.glsl, lighting/walk.glsl; the land's tops and range, or its swept horizon, as inputs
 //   units    without unit; the cone's radius is measured upright, in metres
 //   source   Belaiche 2010, section 4.4.2, eq. 4.3
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
@@ -18,7 +18,7 @@
 //
 // In tangents of elevations the free part is 1/2 - (horizon - sun) cos(elevation) / (2 delta_r):
 // so the sweep, which finds the horizon, gives it too.
-#include "lighting/sun.glsl"
+#include "lighting/daylight_reading.glsl"
 #include "lighting/walk.glsl"
 #pragma kernel(output = "visibility:r32f")
 
@@ -26,6 +26,7 @@ uniform sampler2D height;                //! input
 uniform sampler2D tops;                  //! input
 uniform sampler2D range;                 //! input
 uniform sampler2D horizon;               //! input
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform float delta_r = 0.01;            //! slider(0, 2) step(0.001) group("Cone") label("Δr") What the cone's radius grows over one unit of path. The real sun's is 0.0046
 uniform int growth = 0;                  //! menu("per unit of path", "per step") group("Cone") What delta_r is counted by; the thesis counts steps, however long they are
@@ -57,7 +58,8 @@ float seen(Walk walk, int count, float part, float grows, bool on_lines) {
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
-    vec3 light = to_sun(sun);
+    vec2 place_of_sun = sun_place(daylight, sun);
+    vec3 light = to_sun(place_of_sun);
     if (light.z < 0.0) return 0.0;
     if (form == 1) return free_part(light.z - texelFetch(horizon, texel, 0).r * length(light.xy), delta_r);
     vec2 place = place_on(grid, texel, size);

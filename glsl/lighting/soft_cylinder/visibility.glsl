@@ -1,7 +1,7 @@
 // lighting/soft_cylinder/visibility.glsl -- how much of a cylinder from the texel towards the sun the land leaves free: never more than half.
 //
 //   gives    visibility: the visible part of the sun, 0..1/2
-//   needs    lighting/sun.glsl, lighting/walk.glsl; the land's tops and range as inputs
+//   needs    lighting/daylight_reading.glsl, lighting/walk.glsl; the land's tops and range as inputs
 //   units    without unit; the cylinder's radius is measured upright
 //   source   Belaiche 2010, section 4.4.1, eq. 4.3
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
@@ -11,13 +11,14 @@
 // half, ((HL + r) - H) / 2r being 1/2 where HL is H; and neighbours no higher than the radius hide more.
 //
 // The radius is in the thesis's grey levels, of which there are 255 from height 0 to height 1.
-#include "lighting/sun.glsl"
+#include "lighting/daylight_reading.glsl"
 #include "lighting/walk.glsl"
 #pragma kernel(output = "visibility:r32f")
 
 uniform sampler2D height;                //! input
 uniform sampler2D tops;                  //! input
 uniform sampler2D range;                 //! input
+uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform float radius = 0.5;              //! slider(0, 64) step(0.1) group("Cylinder") unit("grey levels") Half of the cylinder's width; 255 grey levels are the height from 0 to 1
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
@@ -42,7 +43,8 @@ float seen(Walk walk, int count, float wide, bool on_lines) {
 
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec3 light = to_sun(sun);
+    vec2 place_of_sun = sun_place(daylight, sun);
+    vec3 light = to_sun(place_of_sun);
     if (light.z < 0.0) return 0.0;
     vec2 place = place_on(grid, texel, size);
     float wide = radius / 255.0 * relief;

@@ -1,0 +1,72 @@
+// lighting/daylight/light.glsl -- what sun and sky come to, under clouds and to the adapted eye.
+//
+//   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2 the
+//            sky's light on level ground; 3 the zenith, what all is multiplied by for the eye; 4 the
+//            mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of open sky
+//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place and two tables
+//   units    light without unit, 1 that of the sun outside the air on a surface that faces it; degrees
+//   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
+//            light, whose reading to the power -adaptation is the exposure
+//   tested   tests/glsl/test_daylight.py, against float64, and for every place of the sun
+//
+// From noon to the end of twilight light falls by eight powers of ten, which neither the eye
+// nor half floats follow. So exposure by the light begins here, where floats are whole; view/present
+// has the rest. Adaptation 1 keeps level ground as bright all day, 0 keeps nature's numbers.
+#include "lighting/sun.glsl"
+#include "sky/clouds.glsl"
+#include "sky/columns.glsl"
+#include "sky/dome.glsl"
+#pragma kernel(output = "light:rgba32f")
+
+uniform sampler2D place;           //! input
+uniform sampler2D columns;         //! input
+uniform sampler2D dome;            //! input
+uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform float clouds = 0.0;        //! slider(0, 1) step(0.01) Cover of cloud: dims the sun, whitens the sky
+uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01) How much of the light's loss the eye makes up for
+
+const int AROUND = 24;
+const int UP = 24;
+const float HORIZON = 0.03;  // the sine of where the horizon's colour is taken
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+
+vec3 towards(float rise, float turned, vec3 sun) {
+    vec2 ahead = dot(sun.xy, sun.xy) > 1e-12 ? normalize(sun.xy) : vec2(0.0, 1.0);
+    vec2 level = cos(turned) * ahead + sin(turned) * vec2(-ahead.y, ahead.x);
+    return vec3(sqrt(max(1.0 - rise * rise, 0.0)) * level, rise);
+}
+
+vec4 kernel(ivec2 texel) {
+    vec2 at = texelFetch(place, ivec2(0), 0).rg;
+    vec3 sun = to_sun(at);
+    vec3 beam = left_of_sunlight(columns, air_of(turbidity), 0.0, sun.z);
+    vec3 sky = vec3(0.0);
+    vec3 horizon = vec3(0.0);
+    for (int column = 0; column < AROUND; column++) {
+        // The half turns on both sides of the sun are alike.
+        float turned = (float(column) + 0.5) / float(AROUND) * 3.14159265;
+        horizon += dome_at(dome, 0, towards(HORIZON, turned, sun), sun) / float(AROUND);
+        for (int row = 0; row < UP; row++) {
+            // Equal steps of the squared sine weigh each direction by its sine, as level ground does.
+            float rise = sqrt((float(row) + 0.5) / float(UP));
+            sky += dome_at(dome, 0, towards(rise, turned, sun), sun) / float(AROUND * UP);
+        }
+    }
+    vec3 zenith = dome_at(dome, 0, vec3(0.0, 0.0, 1.0), sun);
+
+    float level = max(sun.z, 0.0);
+    float open = 1.0 - clouds;
+    vec3 whole = (beam * level + sky) * under_clouds(clouds);
+    beam *= beam_through_clouds(clouds);
+    // What clouds take from the sun and hide of the sky, less what they hold back, they send down.
+    vec3 cloud = max(whole - beam * level - open * sky, 0.0);
+    float eye = pow(max(dot(whole, LUMINANCE), 1e-12), -adaptation);
+    vec4 found = vec4(eye * cloud, open);
+    if (texel.x == 0) found = vec4(sun, at.y);
+    if (texel.x == 1) found = vec4(eye * beam, at.x);
+    if (texel.x == 2) found = vec4(eye * (open * sky + cloud), 1.0);
+    if (texel.x == 3) found = vec4(eye * (open * zenith + cloud * overcast(1.0)), eye);
+    if (texel.x == 4) found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
+    if (texel.x == 5) found = vec4(eye * whole, 1.0);
+    return found;
+}
