@@ -9,7 +9,7 @@
 // The walk begins at a place's own height and takes equal steps. What a method asks at each step
 // is its own: whether land stands over the ray, or over the lower side of a cone around it.
 //
-// Blocks of 16 texels know their highest height (lighting/walk_tops). A block that lies wholly
+// Blocks of 16 texels know their highest height (lighting/ray_cast/tops). A block that lies wholly
 // below what is asked about is left in one leap. All heights in it are interpolated from its own
 // texels and those just after, which its top includes, so the leap passes over nothing.
 #ifndef LIGHTING_WALK

@@ -5,6 +5,7 @@ its way to the sun at every piece of land, and measure angles and lengths. That 
 give the same bits is tested in test_drivers.py.
 """
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -94,25 +95,20 @@ def _toml(value):
 
 
 @pytest.fixture
-def jacksboro(make_sketch):
+def jacksboro(make_sketch, tmp_path):
     """Give a sketch of the Jacksboro fault, lit."""
+    shutil.copy(DATA, tmp_path)
 
     def make(method, sun, **values):
         settings = "".join(f"{k} = {_toml(v)}\n" for k, v in {"sun": sun, **values}.items())
         passes = (
-            f'[[pass]]\nname = "height"\nuse = "generation/heightmap"\nset = {{ elevation = "{DATA.name}" }}\n'
+            '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+            f'set = {{ elevation = "{DATA.name}" }}\n'
             f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n[pass.set]\n{settings}'
         )
         return make_sketch(passes, size=[403, 344], extent=[29900.0, 31900.0], relief=840.0)
 
-    def copied(*args, **values):
-        sketch = make(*args, **values)
-        target = Path(sketch.folder) / DATA.name
-        if not target.exists():
-            target.write_bytes(DATA.read_bytes())
-        return sketch
-
-    return copied
+    return make
 
 
 def visible(engine, sketch):
@@ -183,7 +179,7 @@ def part_of_disc(line):
 def test_tops_are_the_highest_of_blocks_and_of_their_borders(any_engine, make_sketch, size):
     passes = (
         '[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
-        '[[pass]]\nname = "tops"\nuse = "lighting/walk_tops"\nsize = "(height.size + 15) // 16"\n'
+        '[[pass]]\nname = "tops"\nuse = "lighting/ray_cast/tops"\nsize = "(height.size + 15) // 16"\n'
     )
     sketch = make_sketch(passes, size=list(size))
     heights = any_engine.read(sketch, "height")
@@ -204,7 +200,7 @@ def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
         '[[pass]]\nname = "horizon"\nuse = "./sky"\nsize = 1\n'
     )
     found = []
-    for use in ("lighting/walk_tops", "./sky"):
+    for use in ("lighting/ray_cast/tops", "./sky"):
         passes = (
             f'{head}[[pass]]\nname = "tops"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
             f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/visibility"\nset = {{ sun = {list(sun)} }}\n'
@@ -501,14 +497,27 @@ def test_night_is_the_widest_cone_with_a_gain_of_1(any_engine, lit):
     np.testing.assert_array_equal(night, cone)
 
 
-LAMP = {"sun": (0, -10), "lamp_gain": 2.0, "reach": 200.0, "lamp_height": 100.0, "lamp_colour": (1.0, 0.5, 0.25)}
+LAMP = {
+    "sun": (0, -10),
+    "lamp_gain": 2.0,
+    "reach": 200.0,
+    "lamp_height": 100.0,
+    "lamp_colour": (1.0, 0.5, 0.25),
+}
 
 
 @pytest.mark.parametrize("falloff", ["inverse square", "soft"])
 def test_a_lamp_lights_flat_land_by_its_distance(any_engine, lit, falloff):
     values = {k: v for k, v in LAMP.items() if k != "sun"}
     sketch = lit(
-        FLAT, "night", LAMP["sun"], size=[65, 33], extent=[640, 640], lamp=(0.25, 0.5), falloff=falloff, **values
+        FLAT,
+        "night",
+        LAMP["sun"],
+        size=[65, 33],
+        extent=[640, 640],
+        lamp=(0.25, 0.5),
+        falloff=falloff,
+        **values,
     )
     light = any_engine.read(sketch, "light")
     y, x = np.mgrid[0:33, 0:65] * np.array([20.0, 10.0])[:, None, None]
@@ -538,7 +547,9 @@ def test_a_wall_throws_the_lamp_s_shadow(any_engine, lit, radius):
 
 def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
     values = {k: v for k, v in LAMP.items() if k != "sun"}
-    sketch = lit(HILLS, "night", LAMP["sun"], relief=300.0, extent=640.0, lamp=(0.5, 0.25), lamp_radius=0.0, **values)
+    sketch = lit(
+        HILLS, "night", LAMP["sun"], relief=300.0, extent=640.0, lamp=(0.5, 0.25), lamp_radius=0.0, **values
+    )
     heights = heights_of(any_engine, sketch)
     light = any_engine.read(sketch, "light")[..., 0]
     y, x = np.mgrid[0:65, 0:65].astype(np.float64)

@@ -1,4 +1,4 @@
-// lighting/walk_tops.glsl -- the highest height in each block of 16 texels of a land, for walks that leap over low blocks.
+// lighting/ray_cast/tops.glsl -- the highest height in each block of 16 texels of a land, for walks that leap over low blocks.
 //
 //   gives    tops: a texel a block; each knows the texels just after it as well
 //   needs    lighting/walk.glsl
