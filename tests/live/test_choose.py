@@ -127,4 +127,7 @@ def test_the_parts_of_a_technique_are_not_offered() -> None:
 
 
 def test_a_view_is_not_replaced_by_linear_light() -> None:
-    assert choices(load("jacksboro"), "view") == ["view/terrain"]
+    offered = choices(load("jacksboro"), "view")
+    assert "view/terrain" in offered
+    # A frame of linear light would be shown as if it were encoded.
+    assert not {"view/land", "view/sky", "view/sea"} & set(offered)
