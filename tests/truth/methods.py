@@ -1,0 +1,144 @@
+"""How each method of lighting is set up to be compared: one sun of strength 1, white, and nothing else.
+
+A method is a technique in ``glsl/lighting``, under one choice of its parameters. ``land_pass`` hands a
+land of the truth to the engine; the engine's own heights, times the relief, are what the truth is worked
+out from, so both look at the same numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from playground.engine.engine import Engine
+from playground.paths import GLSL
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+from .land import Array, Land
+
+SUN, SKY = "sun", "sky"
+
+
+@dataclass(frozen=True)
+class Method:
+    """A technique under one choice of its parameters."""
+
+    name: str
+    use: str  # below lighting/
+    values: Mapping[str, object] = field(default_factory=dict)
+    gives: str = SUN  # what its light is compared with
+    filtered: bool = False  # by the thesis's mean filter, afterwards
+    shadows: bool = True  # land hides its sun as it would hide a sun of this diameter
+    diameter: float = 0.0  # [degrees] of the sun that it has in mind, at most; 0: a point
+    measured: bool = True  # against the truth under the real sun
+    output: str = ""  # which of its outputs is its light
+
+    @property
+    def exists(self) -> bool:
+        """Say whether the library has it."""
+        return any((GLSL / "lighting" / f"{self.use}{end}").is_file() for end in (".glsl", ".toml"))
+
+
+def _wide(delta_r: float) -> float:
+    """Return the diameter [degrees] of a sun that a cone of that tangent holds."""
+    return 2 * float(np.degrees(np.arctan(delta_r)))
+
+
+_ONE = {"gain": 1.0}
+_SWEPT = {"gain": 1.0, "form": "sweep"}
+
+METHODS = [
+    Method("height difference", "height_difference", _ONE, shadows=False),
+    Method("L·N", "l_dot_n", _ONE, shadows=False),
+    Method("ray cast", "ray_cast", _ONE),
+    Method("ray cast, sweep", "ray_cast", _SWEPT),
+    Method("ray cast, mean filter", "ray_cast", _ONE, shadows=False, filtered=True),
+    Method("cylinder", "soft_cylinder", _ONE, shadows=False),
+    Method("cone 0.01", "soft_cone", _ONE, diameter=_wide(0.01)),
+    Method("cone 0.01, sweep", "soft_cone", _SWEPT, diameter=_wide(0.01)),
+    Method("cone 0.0046", "soft_cone", {**_ONE, "delta_r": 0.0046}, diameter=_wide(0.0046)),
+    Method("cone 0.0046, sweep", "soft_cone", {**_SWEPT, "delta_r": 0.0046}, diameter=_wide(0.0046)),
+    Method("sun disc", "sun_disc", _ONE, diameter=0.53),
+    Method("sun disc, stride 0.25", "sun_disc", {**_ONE, "stride": 0.25}, diameter=0.53),
+    Method("sun disc, sweep", "sun_disc", _SWEPT, diameter=0.53),
+    Method("night", "night", _ONE, shadows=False, measured=False),
+]
+"""What is compared. Without shadows are: those that throw none; the filter, which smears them; the
+cylinder and the night's cone, whose sun is far wider than the sun."""
+
+
+def written(value: object) -> str:
+    """Return a value as TOML writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{value}"'
+    return str([float(v) for v in value]) if isinstance(value, tuple | list) else str(value)
+
+
+RAISED = """#pragma kernel(output = "height:r32f")
+uniform sampler2D land;     //! input
+uniform float base = 0.0;
+float kernel(ivec2 texel) { return base + texelFetch(land, texel, 0).r; }
+"""
+
+
+def sketch_of(folder: Path, land: Land, passes: str, *, base: float = 0.0) -> Sketch:
+    """Write a sketch of a land, as the pass ``height``, and the passes that light it.
+
+    Heights are 0..1 and ``base`` more; the relief makes them metres.
+    """
+    low, relief = float(land.heights.min()), relief_of(land)
+    ny, nx = land.heights.shape
+    # A file of heights has two texels a side or more; of a smaller land, some are not read.
+    kept = np.pad((land.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
+    np.save(folder / "land.npy", kept.astype(np.float32))
+    (folder / "raised.glsl").write_text(RAISED)
+    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    path = folder / "sketch.toml"
+    path.write_text(
+        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+        '[[pass]]\nname = "land"\nuse = "generation/heightmap"\n'
+        f'size = {list(kept.shape[::-1])}\nset = {{ elevation = "land.npy", first_row = "south" }}\n'
+        f'[[pass]]\nname = "height"\nuse = "./raised"\nset = {{ base = {float(base)} }}\n{passes}'
+    )
+    return load(path)
+
+
+def relief_of(land: Land) -> float:
+    """Return the metres that height 1 stands for; 1 where the land is flat."""
+    return float(np.ptp(land.heights)) or 1.0
+
+
+def passes_of(method: Method, sun: tuple[float, float] | None = None) -> str:
+    """Return the passes of one method; its last is named ``light``."""
+    values = dict(method.values)
+    if sun is not None:
+        values["sun"] = sun
+    name = "unfiltered" if method.filtered else "light"
+    setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
+    passes = f'[[pass]]\nname = "{name}"\nuse = "lighting/{method.use}"\n[pass.set]\n{setting}'
+    if method.filtered:
+        passes += (
+            '[[pass]]\nname = "light"\nuse = "lighting/mean_filter"\ninputs = { light = "unfiltered" }\n'
+        )
+    return passes
+
+
+def as_read(engine: Engine, sketch: Sketch, land: Land) -> Land:
+    """Return the land as the engine's texture has it."""
+    heights = engine.read(sketch, "height").astype(np.float64) * relief_of(land)
+    return Land(heights, land.spacing, land.name)
+
+
+def lit(
+    engine: Engine, folder: Path, method: Method, land: Land, sun: tuple[float, float], *, base: float = 0.0
+) -> Array:
+    """Return a method's light (ny, nx, components); the sun's visible part is in alpha."""
+    sketch = sketch_of(folder, land, passes_of(method, sun if method.gives == SUN else None), base=base)
+    found = engine.read(sketch, f"light:{method.output}" if method.output else "light").astype(np.float64)
+    return found.reshape(*land.heights.shape, -1)
