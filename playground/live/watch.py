@@ -39,7 +39,7 @@ class Watcher:
         self._lock = threading.Lock()
         self._followed: dict[Path, tuple[Signature | None, bytes]] = {}  # signature and hash when last seen
         self._others: dict[Path, bytes] = {}  # hashes of what is not followed, once told of
-        self._changed: set[Path] = set()
+        self._changed: dict[Path, bytes | None] = {}  # with the hash last taken, where that is known
         self._stop = threading.Event()
         self._again = threading.Event()  # set to have the folders read anew
         self._thread: threading.Thread | None = None
@@ -82,7 +82,7 @@ class Watcher:
                 signature = _signature(path)
                 self._followed[path] = (signature, _hash(path))
                 if read_at is not None and signature and signature[1] / 1e9 > read_at - _JUST:
-                    self._changed.add(path)
+                    self._changed[path] = None
             told = bool(self._changed)
             if _folders(self._followed) != folders:
                 self._again.set()
@@ -90,10 +90,18 @@ class Watcher:
             self._wake()
 
     def take(self) -> set[Path]:
-        """Return the files that changed since the last call."""
+        """Return the files that changed since the last call.
+
+        One that changed and changed back, as a file does that is truncated and written
+        anew with the same text, is not among them.
+        """
         with self._lock:
-            changed, self._changed = self._changed, set()
-        return changed
+            changed, self._changed = self._changed, {}
+            return {path for path, taken in changed.items() if taken is None or self._seen(path) != taken}
+
+    def _seen(self, path: Path) -> bytes:
+        """Return the hash of what was last seen of a file; empty when nothing was."""
+        return self._followed[path][1] if path in self._followed else self._others.get(path, b"")
 
     def _run(self) -> None:
         while not self._stop.is_set():
@@ -144,14 +152,13 @@ class Watcher:
         told = False
         with self._lock:
             for path, (signature, digest) in seen.items():
+                before = self._seen(path)
                 if path in self._followed:
-                    differs = self._followed[path][1] != digest
                     self._followed[path] = (signature, digest)
                 else:
-                    differs = self._others.get(path) != digest
                     self._others[path] = digest
-                if differs:
-                    self._changed.add(path)
+                if digest != before:
+                    self._changed.setdefault(path, before)
                     told = True
         if told:
             self._wake()

@@ -108,6 +108,16 @@ def test_saving_what_was_there_is_no_change(watched: Watched) -> None:
     assert watched.sees_nothing()
 
 
+def test_a_change_that_is_undone_before_it_is_taken_is_none(watched: Watched) -> None:
+    save_in_place(watched.file, "two")
+    assert watched.woken.wait(LIMIT)
+    watched.woken.clear()
+    save_in_place(watched.file, "one")
+    assert watched.sees_nothing()
+    save_in_place(watched.file, "two")
+    assert watched.sees(watched.file)
+
+
 def test_a_deleted_file_is_a_change_and_so_is_its_return(watched: Watched) -> None:
     watched.file.unlink()
     assert watched.sees(watched.file)
