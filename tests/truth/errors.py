@@ -3,8 +3,10 @@
     python tests/truth [--size 97] [--json] [NAME…]
 
 Prints one table: the mean and the 99th percentile, over the texels, of the error of the
-sun's visible part and of the light (of the sky's light, for methods of the sky), both 0..1;
-and the mean error of the visible part over the texels that truly see a part of the sun.
+sun's visible part and of the light, both 0..1; and the mean error of the visible part over the
+texels that truly see a part of the sun. Methods of the sky are held against an even sky of
+strength 1, those of sun and sky against both, and those that throw light on against radiosity,
+on the same lands at 25 x 25, over ground of colour 0.5.
 """
 
 from __future__ import annotations
@@ -25,8 +27,9 @@ from rich.table import Table
 from playground.api import headless
 from playground.engine.engine import Engine
 
+from .bounce import bounced
 from .land import LANDS, SUNS, Array, Land
-from .methods import METHODS, SKY, Method, as_read, lit, sketch_of
+from .methods import AMBIENT, BOTH, BOUNCED, GROUND, METHODS, SKY, SUN, Method, as_read, lit, sketch_of
 from .sky import sky_visibility
 from .sun import sunlight
 
@@ -37,6 +40,7 @@ class Errors:
 
     method: str
     land: str
+    gives: str  # "sun", "sky", "sun and sky", "sky and bounces"
     elevation: float | None  # [degrees] of the sun; None for the sky
     visibility_mean: float | None
     visibility_p99: float | None
@@ -52,6 +56,11 @@ class Truth:
     land: Land
     suns: tuple[tuple[Array, Array], ...]  # visible share and light, for each of SUNS
     sky: Array
+    small: Land
+    bounced: Array  # on the small land, over ground of colour GROUND
+
+
+SMALL = 25  # texels a side, where each sees each
 
 
 @lru_cache(maxsize=8)
@@ -63,23 +72,28 @@ def truth_of(
     engine: Engine, folder: Path, name: str, size: int, *, strips: int = 12, azimuths: int = 48
 ) -> Truth:
     """Work out the truth for one of the lands, at the heights that the engine's texture has."""
-    land = as_read(engine, sketch_of(folder, _heights(name, size), ""), _heights(name, size))
+    land, small = (
+        as_read(engine, sketch_of(folder, _heights(name, n), ""), _heights(name, n)) for n in (size, SMALL)
+    )
     suns = tuple(sunlight(land, *sun, count=strips) for sun in SUNS)
-    return Truth(land, suns, sky_visibility(land, count=azimuths))
+    thrown = bounced(small, sky_visibility(small, count=azimuths), GROUND, count=azimuths)
+    return Truth(land, suns, sky_visibility(land, count=azimuths), small, thrown)
 
 
 def measure(engine: Engine, folder: Path, method: Method, truth: Truth) -> Iterator[Errors]:
     """Yield a method's errors on one land."""
-    name = truth.land.name
-    if method.gives == SKY:
-        found = lit(engine, folder, method, truth.land, SUNS[0])
-        yield Errors(method.name, name, None, None, None, None, *_spread(found[..., 0] - truth.sky))
+    head = (method.name, truth.land.name, method.gives)
+    if method.gives in (SKY, BOUNCED):
+        land, wanted = (truth.land, truth.sky) if method.gives == SKY else (truth.small, truth.bounced)
+        found = lit(engine, folder, method, land, None)
+        yield Errors(*head, None, None, None, None, *_spread(found[..., 0] - wanted))
         return
     for sun, (share, light) in zip(SUNS, truth.suns, strict=True):
         found = lit(engine, folder, method, truth.land, sun)
         away, partly = found[..., 3] - share, (share > 0) & (share < 1)
         inside = float(np.abs(away[partly]).mean()) if partly.any() else None
-        yield Errors(method.name, name, sun[1], *_spread(away), inside, *_spread(found[..., 0] - light))
+        wanted = light + AMBIENT * truth.sky if method.gives == BOTH else light
+        yield Errors(*head, sun[1], *_spread(away), inside, *_spread(found[..., 0] - wanted))
 
 
 def _spread(error: Array) -> tuple[float, float]:
@@ -108,7 +122,7 @@ def main(arguments: list[str] | None = None) -> None:
         for row in found:
             print(json.dumps(asdict(row)))
         return
-    console = Console(width=None if sys.stdout.isatty() else 100)
+    console = Console(width=None if sys.stdout.isatty() else 110)
     console.print(table_of(found, f"error against the truth, {options.size} x {options.size}, {renderer}"))
 
 
@@ -119,18 +133,19 @@ def table_of(found: Iterable[Errors], title: str) -> Table:
         table.add_column(heading)
     for heading in ("sun", "visibility: mean", "p99", "in penumbra", "light: mean", "p99"):
         table.add_column(heading, justify="right")
-    method, land = "", ""
+    last, land = ("", ""), ""
     for row in found:
-        if method and row.method != method:
+        head = (row.method, row.gives)
+        if last[0] and head != last:
             table.add_section()
-        if row.method != method:
+        if head != last:
             land = ""
         numbers = (row.visibility_mean, row.visibility_p99, row.penumbra_mean, row.light_mean, row.light_p99)
         table.add_row(
-            row.method if row.method != method else "",
+            "" if head == last else row.method if row.gives == SUN else f"{row.method} ({row.gives})",
             row.land if row.land != land else "",
-            "sky" if row.elevation is None else f"{row.elevation:g}°",
+            "" if row.elevation is None else f"{row.elevation:g}°",
             *("" if number is None else f"{number:.4f}" for number in numbers),
         )
-        method, land = row.method, row.land
+        last, land = head, row.land
     return table

@@ -1,6 +1,6 @@
 """How each method of lighting is set up to be compared: one sun of strength 1, white, and nothing else.
 
-A method is a technique in ``glsl/lighting``, under one choice of its parameters. ``land_pass`` hands a
+A method is a technique in ``glsl/lighting``, under one choice of its parameters. ``sketch_of`` hands a
 land of the truth to the engine; the engine's own heights, times the relief, are what the truth is worked
 out from, so both look at the same numbers.
 """
@@ -20,7 +20,9 @@ from playground.sketch.model import Sketch
 
 from .land import Array, Land
 
-SUN, SKY = "sun", "sky"
+SUN, SKY, BOTH, BOUNCED = "sun", "sky", "sun and sky", "sky and bounces"
+AMBIENT = 0.4  # the even sky's strength beside a sun of 1, where there are both
+GROUND = 0.5  # the ground's colour, where light is thrown on
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,9 @@ class Method:
     use: str  # below lighting/
     values: Mapping[str, object] = field(default_factory=dict)
     gives: str = SUN  # what its light is compared with
-    filtered: bool = False  # by the thesis's mean filter, afterwards
+    after: str = ""  # a technique below lighting/ that changes its light afterwards
+    after_values: Mapping[str, object] = field(default_factory=dict)
+    arc: str = ""  # a parameter that takes the sun's azimuth too
     shadows: bool = True  # land hides its sun as it would hide a sun of this diameter
     diameter: float = 0.0  # [degrees] of the sun that it has in mind, at most; 0: a point
     measured: bool = True  # against the truth under the real sun
@@ -50,13 +54,19 @@ def _wide(delta_r: float) -> float:
 
 _ONE = {"gain": 1.0}
 _SWEPT = {"gain": 1.0, "form": "sweep"}
+_EIGHT = {"gain": 1.0, "measured": "eight directions"}
+_ON_ARC = {"gain": 1.0, "measured": "on its arc"}
+_WHITE, _BLACK, _GREY = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (GROUND, GROUND, GROUND)
+_PATCHES = dict.fromkeys(("overhead", "north", "east", "south", "west"), _WHITE)
+_ALL = {"summed": "over all directions", "directions": 32}
+_WITH_SKY = {"ambient": AMBIENT, "sky_colour": _WHITE, "ground": _BLACK}
 
 METHODS = [
     Method("height difference", "height_difference", _ONE, shadows=False),
     Method("L·N", "l_dot_n", _ONE, shadows=False),
     Method("ray cast", "ray_cast", _ONE),
     Method("ray cast, sweep", "ray_cast", _SWEPT),
-    Method("ray cast, mean filter", "ray_cast", _ONE, shadows=False, filtered=True),
+    Method("ray cast, mean filter", "ray_cast", _ONE, shadows=False, after="mean_filter"),
     Method("cylinder", "soft_cylinder", _ONE, shadows=False),
     Method("cone 0.01", "soft_cone", _ONE, diameter=_wide(0.01)),
     Method("cone 0.01, sweep", "soft_cone", _SWEPT, diameter=_wide(0.01)),
@@ -66,9 +76,19 @@ METHODS = [
     Method("sun disc, stride 0.25", "sun_disc", {**_ONE, "stride": 0.25}, diameter=0.53),
     Method("sun disc, sweep", "sun_disc", _SWEPT, diameter=0.53),
     Method("night", "night", _ONE, shadows=False, measured=False),
+    Method("horizon sun, on its arc", "horizon_sun", _ON_ARC, arc="arc", diameter=0.53),
+    Method("horizon sun, eight", "horizon_sun", _EIGHT, shadows=False),
+    Method("horizon sky, table", "horizon_sky", {"ground": _BLACK}, SKY, output="k"),
+    Method("horizon sky, 32 directions", "horizon_sky", {"ground": _BLACK, **_ALL}, SKY, output="k"),
+    Method("sky patches, all white", "sky_patches", {"ground": _BLACK, **_PATCHES}, SKY),
+    Method("analytic", "analytic", {**_EIGHT, **_WITH_SKY}, BOTH),
+    Method("sun disc, interreflection", "sun_disc", _ONE, BOTH, "interreflection", {**_ALL, **_WITH_SKY}),
+    Method("interreflection, table", "horizon_sky", {"ground": _GREY}, BOUNCED),
+    Method("interreflection, 32 directions", "horizon_sky", {"ground": _GREY, **_ALL}, BOUNCED),
 ]
 """What is compared. Without shadows are: those that throw none; the filter, which smears them; the
-cylinder and the night's cone, whose sun is far wider than the sun."""
+cylinder and the night's cone, whose sun is far wider than the sun; the horizon between two of eight
+directions, which rounds off what stands there."""
 
 
 def written(value: object) -> str:
@@ -115,18 +135,19 @@ def relief_of(land: Land) -> float:
 
 
 def passes_of(method: Method, sun: tuple[float, float] | None = None) -> str:
-    """Return the passes of one method; its last is named ``light``."""
+    """Return the passes of one method; its last is named ``light``. Methods of the sky have no sun."""
     values = dict(method.values)
-    if sun is not None:
-        values["sun"] = sun
-    name = "unfiltered" if method.filtered else "light"
+    if sun is not None and method.gives in (SUN, BOTH):
+        values |= {"sun": sun, **({method.arc: sun[0]} if method.arc else {})}
+    if not method.after:
+        return _pass("light", method.use, values)
+    return _pass("given", method.use, values) + _pass("light", method.after, method.after_values, "given")
+
+
+def _pass(name: str, use: str, values: Mapping[str, object], light: str = "") -> str:
+    wires = f'inputs = {{ light = "{light}" }}\n' if light else ""
     setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
-    passes = f'[[pass]]\nname = "{name}"\nuse = "lighting/{method.use}"\n[pass.set]\n{setting}'
-    if method.filtered:
-        passes += (
-            '[[pass]]\nname = "light"\nuse = "lighting/mean_filter"\ninputs = { light = "unfiltered" }\n'
-        )
-    return passes
+    return f'[[pass]]\nname = "{name}"\nuse = "lighting/{use}"\n{wires}[pass.set]\n{setting}'
 
 
 def as_read(engine: Engine, sketch: Sketch, land: Land) -> Land:
@@ -136,9 +157,15 @@ def as_read(engine: Engine, sketch: Sketch, land: Land) -> Land:
 
 
 def lit(
-    engine: Engine, folder: Path, method: Method, land: Land, sun: tuple[float, float], *, base: float = 0.0
+    engine: Engine,
+    folder: Path,
+    method: Method,
+    land: Land,
+    sun: tuple[float, float] | None,
+    *,
+    base: float = 0.0,
 ) -> Array:
-    """Return a method's light (ny, nx, components); the sun's visible part is in alpha."""
-    sketch = sketch_of(folder, land, passes_of(method, sun if method.gives == SUN else None), base=base)
+    """Return a method's light (ny, nx, components); in alpha is the visible part of the sun."""
+    sketch = sketch_of(folder, land, passes_of(method, sun), base=base)
     found = engine.read(sketch, f"light:{method.output}" if method.output else "light").astype(np.float64)
     return found.reshape(*land.heights.shape, -1)

@@ -1,0 +1,41 @@
+// lighting/horizon_sun/angles.glsl -- horizons as the sun's method keeps them: shares of a quarter circle, over the slope.
+//
+//   gives    angles_ahead, angles_behind: the horizons' elevations, 0 level and 1 straight up;
+//            facing: the normal, by its place in the table of sunlight
+//   needs    lighting/horizons/map_reading.glsl, lighting/horizons/open_sky.glsl,
+//            lighting/sun.glsl, terrain/heightfield.glsl; the horizons' tangents
+//   units    shares of 90 degrees, in 16 bits
+//   source   Belaiche 2010, section 3.4, figures 3.1 and 3.2
+//   tested   tests/glsl/test_analytic.py, against float64
+//
+// An effective horizon is never below the slope itself, nor below the level. The sun has no
+// part in this: a sun that moves finds it done.
+#include "lighting/horizons/map_reading.glsl"
+#include "lighting/horizons/open_sky.glsl"
+#include "lighting/sun.glsl"
+#include "terrain/heightfield.glsl"
+#pragma kernel(output = "angles_ahead:rgba16, angles_behind:rgba16, facing:rg8")
+
+uniform sampler2D height;     //! input
+uniform sampler2D ahead;      //! input
+uniform sampler2D behind;     //! input
+uniform float first = 0.0;    //! angle(-360, 360) unit("°") Azimuth of the first horizon; the others follow counterclockwise by 45 degrees
+uniform int normal = 0;       //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+
+float angle_over(float tangent, vec2 slope, vec2 towards) {
+    return atan(horizon_over_slope(tangent, slope, towards)) / 1.57079633;
+}
+
+void kernel(ivec2 texel, out vec4 angles_ahead, out vec4 angles_behind, out vec2 facing) {
+    ivec2 grid = textureSize(height, 0);
+    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
+    vec4 before = map_at(ahead, texel, size);
+    vec4 after = map_at(behind, texel, size);
+    for (int k = 0; k < 4; k++) {
+        vec2 towards = cos_sin_degrees(first - 45.0 * float(k)).yx;
+        angles_ahead[k] = angle_over(before[k], slope, towards);
+        angles_behind[k] = angle_over(after[k], slope, -towards);
+    }
+    // Whole numbers from 1 to 255, so that a level normal is one of them.
+    facing = (floor(normal_of_slope(slope).xy * 127.0 + 0.5) + 128.0) / 255.0;
+}

@@ -1,0 +1,70 @@
+// lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, which horizons count, and how much of its disc is over them.
+//
+//   gives    ARC, EIGHT, on_arc, Weights, weights_of, elevation_of, disc_seen
+//   needs    maths/angle.glsl
+//   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
+//   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
+//            "Real-Time Photorealistic Terrain Lighting"; between eight horizons: Max 1988,
+//            "Horizon Mapping: Shadows for Bump-Mapped Surfaces"
+//   tested   tests/glsl/test_analytic.py, against float64
+//
+// The thesis has the sun rise in one direction, go through the zenith and set in the opposite
+// one: two horizons a texel are enough. A sun that stands elsewhere is put on its arc, where it
+// is nearest. With eight horizons the sun may stand anywhere, and its horizon is taken between
+// the two that are nearest to its azimuth, which rounds off what stands between them.
+#ifndef LIGHTING_HORIZON_SUN_ARC
+#define LIGHTING_HORIZON_SUN_ARC
+#include "maths/angle.glsl"
+
+// How many directions the horizons were measured in.
+const int ARC = 0;
+const int EIGHT = 1;
+
+// The sun's direction, put on the upright circle through the azimuth `arc` where there is one.
+vec3 on_arc(vec3 to_sun, float arc, int measured) {
+    vec2 level = cos_sin_degrees(arc).yx;
+    vec2 held = vec2(dot(to_sun.xy, level), to_sun.z);
+    float reach = length(held);
+    // Square to the arc every place on it is as near: then take the zenith.
+    held = reach < 1e-6 ? vec2(0.0, 1.0) : held / reach;
+    return measured == ARC ? vec3(held.x * level, held.y) : to_sun;
+}
+
+// How much each of the measured horizons counts: those ahead, and the opposite ones.
+struct Weights {
+    vec4 ahead;
+    vec4 behind;
+};
+
+// For a sun on its arc it is the first or the one opposite; else the two that are nearest of
+// eight, 45 degrees apart counterclockwise from the arc's.
+Weights weights_of(vec3 to_sun, float arc, int measured) {
+    Weights weights;
+    if (measured == ARC) {
+        bool far = dot(to_sun.xy, cos_sin_degrees(arc).yx) < 0.0;
+        weights.ahead = vec4(far ? 0.0 : 1.0, 0.0, 0.0, 0.0);
+        weights.behind = vec4(far ? 1.0 : 0.0, 0.0, 0.0, 0.0);
+        return weights;
+    }
+    // Straight up, no azimuth is the sun's.
+    vec2 level = dot(to_sun.xy, to_sun.xy) < 1e-12 ? vec2(0.0, 1.0) : to_sun.xy;
+    float turn = (arc - degrees(atan(level.x, level.y))) / 45.0;
+    vec4 number = vec4(0.0, 1.0, 2.0, 3.0);
+    vec4 ahead = turn - number;
+    vec4 behind = ahead - 4.0;
+    weights.ahead = max(1.0 - abs(ahead - 8.0 * floor(ahead / 8.0 + 0.5)), 0.0);
+    weights.behind = max(1.0 - abs(behind - 8.0 * floor(behind / 8.0 + 0.5)), 0.0);
+    return weights;
+}
+
+// The elevation of a unit vector.
+float elevation_of(vec3 to_sun) {
+    return degrees(atan(to_sun.z, length(to_sun.xy)));
+}
+
+// Eq. 3.8: how much of the sun's diameter is over the horizon. The part of the disc's area
+// differs from this by up to 0.058.
+float disc_seen(float elevation, float diameter, float horizon) {
+    return clamp((elevation + 0.5 * diameter - horizon) / max(diameter, 1e-6), 0.0, 1.0);
+}
+#endif

@@ -1,0 +1,402 @@
+// lighting/horizons.comp -- the horizons around each texel, and the sky over them, by sweeps along lines.
+//
+//   gives    ahead, behind: tangents of the horizons' elevations in four directions and in the
+//            four opposite; sky: K(p), the share of an even sky's light; land: the heights here
+//   needs    lighting/horizons/course.glsl, lighting/horizons/open_sky.glsl, maths/whole.glsl, terrain/heightfield.glsl
+//   units    tangents are rises over runs, 0 and up, at most 60000; heights without unit
+//   source   Timonen and Westerholm 2010, "Scalable Height Field Self-Shadowing", section 3: of the
+//            land that a line has passed, its upper hull is all that matters; blocks and the near
+//            rows are made here
+//   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
+//   agrees   as said there, on land: tests/glsl/test_horizons.py
+//
+// Sight lines of one direction are parallel, a texel apart, and each texel of a row is on one of
+// them. A sweep follows the lines from the end of the land that they look to, back to the other.
+// Of what it has passed it keeps the upper hull: no other point can be on a horizon. So a texel
+// costs a few points of a hull, however wide the land.
+//
+// A thread has four lines beside each other, and goes in blocks of eight rows:
+//   - four rows ahead of each texel are looked at exactly, between texels as the march does it:
+//     so near, a line that runs up to half a texel beside a texel would be far off;
+//   - what is further on is looked at from the line instead, where it passes beside the texel:
+//     so a slope to the side counts for nothing. First what the block reaches;
+//   - then the hull is followed from its near end, for all rows at once, as long as the next point
+//     shows more to one of them; points that rows of the block cover are dropped from it;
+//   - then the block's own hull goes on top: a word with a bit for each row, and the number of
+//     the block that was on top before it.
+// The hull lies four rows further on than the block, so that no texel meets its near rows there.
+//
+// First the heights are laid into an image of this pass's size: a processor reads images several
+// times faster than textures. Then sweeps take turns with sums: a sweep leaves its tangents in
+// lines, a sum reads them back for each texel. The header says for how many pairs of directions
+// there is room in one turn.
+//
+// A light map coarser than the heights would miss what stands between its texels: give this pass
+// at least as many texels as the land has.
+#include "lighting/horizons/course.glsl"
+#include "lighting/horizons/open_sky.glsl"
+#include "maths/whole.glsl"
+#include "terrain/heightfield.glsl"
+#pragma compute(stages = "0, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2", groups = "((size.x + 31) // 32 if iteration % 2 == 0 else (size.x + size.y + 191) // 128) if iteration <= 2 * ((directions // 2 - 1) // (2 * max(min(2 ** 25 // ((size.x + 32) * (size.y + 32)), 4), 1)) + 1) else 1, ((size.y + 63) // 64 if iteration % 2 == 0 else min(8, directions // 2)) if iteration <= 2 * ((directions // 2 - 1) // (2 * max(min(2 ** 25 // ((size.x + 32) * (size.y + 32)), 4), 1)) + 1) else 1", local = "32, 1", buffers = "sky:float:size.x * size.y; hull:int:2 * max(min(2 ** 25 // ((size.x + 32) * (size.y + 32)), 4), 1) * (size.x + size.y + 64) * ((max(size.x, size.y) + 31) // 8); even_lines:uvec4:max(min(2 ** 25 // ((size.x + 32) * (size.y + 32)), 4), 1) * ((size.x + 32) * (size.y + 32) // 4); odd_lines:uvec4:max(min(2 ** 25 // ((size.x + 32) * (size.y + 32)), 4), 1) * ((size.x + 32) * (size.y + 32) // 4)", overwrites = "sky, hull, even_lines, odd_lines", aligned = "4")
+
+uniform sampler2D height;               //! input
+uniform int directions = 8;             //! slider(2, 64) step(2) Directions around; K is of all of them
+uniform float first = 0.0;              //! angle(-360, 360) unit("°") Azimuth of the first direction; the others follow counterclockwise
+uniform vec2 sun = vec2(0.0, 0.0);      //! direction Its azimuth is added to the first, for horizons that follow the sun
+uniform bool keep = true;               //! Keep the horizons of eight directions; without, only K is found
+uniform int normal = 0;                 //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+
+const int BLOCK = 8;            // rows of a block, and bits of a word of the hull
+const int NEAR = 4;             // rows that are looked at exactly
+const int ROWS = BLOCK + NEAR;
+const int CHUNK = 64;           // rows of the land that a thread sums
+const float NONE = -1e30;       // a height that hides nothing
+const float HIGHEST = 60000.0;  // a tangent that a half float holds
+
+// What is done for each of several rows is written out: an array whose index is a loop's counter
+// would lie in memory.
+#define UP_TO_4(DO) DO(0) DO(1) DO(2) DO(3)
+#define UP_TO_8(DO) UP_TO_4(DO) DO(4) DO(5) DO(6) DO(7)
+#define UP_TO_12(DO) UP_TO_8(DO) DO(8) DO(9) DO(10) DO(11)
+#define ROWS_1(DO, d) DO(0, d)
+#define ROWS_2(DO, d) ROWS_1(DO, d) DO(1, d)
+#define ROWS_3(DO, d) ROWS_2(DO, d) DO(2, d)
+#define ROWS_4(DO, d) ROWS_3(DO, d) DO(3, d)
+#define ROWS_5(DO, d) ROWS_4(DO, d) DO(4, d)
+#define ROWS_6(DO, d) ROWS_5(DO, d) DO(5, d)
+#define ROWS_7(DO, d) ROWS_6(DO, d) DO(6, d)
+#define ROWS_8(DO, d) ROWS_7(DO, d) DO(7, d)
+#define ROWS_9(DO, d) ROWS_8(DO, d) DO(8, d)
+#define ROWS_10(DO, d) ROWS_9(DO, d) DO(9, d)
+#define ROWS_11(DO, d) ROWS_10(DO, d) DO(10, d)
+#define EACH_PAIR(DO) ROWS_11(DO, 1) ROWS_10(DO, 2) ROWS_9(DO, 3) ROWS_8(DO, 4) ROWS_7(DO, 5) ROWS_6(DO, 6) ROWS_5(DO, 7) ROWS_4(DO, 8) ROWS_3(DO, 9) ROWS_2(DO, 10) ROWS_1(DO, 11)
+
+// How the pairs of directions are shared out over the turns. No buffer may be larger than
+// 128 MiB on some drivers, and the widest lands need that for one pair, so there are two.
+struct Turn {
+    int pairs;      // in all
+    int from, end;  // those of this turn
+    int apart;      // in a buffer, from one pair to the next
+};
+
+// The turns that the header lists after those that are needed have no pairs.
+Turn turn_at(int number) {
+    Turn turn;
+    turn.pairs = pairs_of(directions);
+    turn.apart = (size.x + 32) * (size.y + 32) / 4;
+    int room = 2 * (even_lines.length() / turn.apart);
+    int turns = (turn.pairs + room - 1) / room;
+    int batch = ((turn.pairs + 1) / 2 + turns - 1) / turns * 2;
+    turn.from = min(number * batch, turn.pairs);
+    turn.end = min(turn.from + batch, turn.pairs);
+    return turn;
+}
+
+// Line 0 is the first that meets the land.
+int first_line(Course course) {
+    return -max(drifted(course, 0), drifted(course, course.rows - 1));
+}
+
+// Where a group of four lines has a row: four texels, each with what is ahead of it in the lower
+// half and what is behind in the upper. As many groups as can be on a row have room, and as many
+// more as can leave it within a block; beyond these the room is used again.
+int place_of(Course course, int group, int row) {
+    int groups = (course.across + 31) >> 2;
+    return (group - groups * quotient(group, groups)) * course.rows + row;
+}
+
+float land_at(ivec2 texel) {
+    return imageLoad(out_land, texel).r;
+}
+
+// Sweeps
+
+// A block's rows and after them the nearest rows of the block before, on four lines.
+vec4 here[ROWS];       // heights of the texels
+vec4 along[ROWS];      // heights where the lines cross the row
+vec4 upper[ROWS];      // how much higher the next texel of the row is
+vec4 lower[ROWS];      // how much higher this one is than the texel before it
+float beside[ROWS];    // how far the lines run beside the middle of their texels
+vec4 found[BLOCK];     // horizons, for rows 1 m apart and heights of 1
+vec4 steepest[ROWS];   // of the rows that will go on the hull, the slopes to those after them
+vec4 gentlest[ROWS];   // and from those before them
+
+void enter_row(int row, Course course, int line, int first_row) {
+    int at = line + drifted(course, first_row + row);
+    int last = course.across - 1;
+    float t0 = land_at(texel_of(course, first_row + row, clamp(at - 1, 0, last)));
+    float t1 = land_at(texel_of(course, first_row + row, clamp(at, 0, last)));
+    float t2 = land_at(texel_of(course, first_row + row, clamp(at + 1, 0, last)));
+    float t3 = land_at(texel_of(course, first_row + row, clamp(at + 2, 0, last)));
+    float t4 = land_at(texel_of(course, first_row + row, clamp(at + 3, 0, last)));
+    float t5 = land_at(texel_of(course, first_row + row, clamp(at + 4, 0, last)));
+    upper[row] = vec4(t2 - t1, t3 - t2, t4 - t3, t5 - t4);
+    lower[row] = vec4(t1 - t0, upper[row].xyz);
+    beside[row] = beside_of(course, first_row + row);
+    // As unsigned numbers, those below 0 are large.
+    uvec4 across = uvec4(ivec4(at, at + 1, at + 2, at + 3));
+    bvec4 on_land = lessThan(across, uvec4(first_row + row < course.rows ? course.across : 0));
+    here[row] = mix(vec4(NONE), vec4(t1, t2, t3, t4), on_land);
+    along[row] = here[row] + max(beside[row], 0.0) * upper[row] + min(beside[row], 0.0) * lower[row];
+}
+
+// A row's texels look at the d-th row from them, on their own lines of sight.
+void look_near(int row, int d) {
+    float part = beside[row + d] - beside[row];
+    vec4 there = here[row + d] + max(part, 0.0) * upper[row + d] + min(part, 0.0) * lower[row + d];
+    found[row] = max(found[row], (there - here[row]) * (1.0 / float(d)));
+}
+
+// 1/x, with one division for four.
+vec4 reciprocals(vec4 x) {
+    float left = x.x * x.y;
+    float right = x.z * x.w;
+    vec2 halves = vec2(right, left) * (1.0 / (left * right));
+    return vec4(halves.x * x.y, halves.x * x.x, halves.y * x.w, halves.y * x.z);
+}
+
+// The lowest bit of a word: its nearest row.
+int nearest_in(int word) {
+    return (floatBitsToInt(float(word & -word)) >> 23) - 127;
+}
+
+#define BEYOND(row) here[row] = vec4(NONE); along[row] = vec4(NONE); upper[row] = vec4(0.0); lower[row] = vec4(0.0); beside[row] = 0.0;
+#define SHIFT(row) here[BLOCK + row] = here[row]; along[BLOCK + row] = along[row]; upper[BLOCK + row] = upper[row]; lower[BLOCK + row] = lower[row]; beside[BLOCK + row] = beside[row];
+#define ENTER(row) enter_row(row, course, line, first_row);
+#define CLEAR(row) found[row] = vec4(0.0);
+#define CLEAR_HULL(row) steepest[row] = vec4(NONE); gentlest[row] = vec4(-NONE);
+#define LOOK_NEAR(row) look_near(row, 1); look_near(row, 2); look_near(row, 3); look_near(row, 4);
+#define LOOK(row, d) { \
+    vec4 slope = (along[row + d] - along[row]) * (1.0 / float(d)); \
+    if (d > NEAR && row < BLOCK) found[min(row, BLOCK - 1)] = max(found[min(row, BLOCK - 1)], slope); \
+    if (row >= NEAR) { steepest[row] = max(steepest[row], slope); gentlest[row + d] = min(gentlest[row + d], slope); } }
+#define TAKE(row) now[row] = along[row][which];
+#define SEE(row) seen[row] = found[row][which];
+#define GIVE(row) found[row] = mix(found[row], vec4(seen[row]), equal(ivec4(which), ivec4(0, 1, 2, 3)));
+#define LOOK_FAR(row) { \
+    vec4 part = reciprocals(away - vec4(row, row + 1, row + 2, row + 3)); \
+    seen[row] = max(seen[row], (tall - now[row]) * part.x); \
+    seen[row + 1] = max(seen[row + 1], (tall - now[row + 1]) * part.y); \
+    seen[row + 2] = max(seen[row + 2], (tall - now[row + 2]) * part.z); \
+    seen[row + 3] = max(seen[row + 3], (tall - now[row + 3]) * part.w); }
+#define COVER(row) if (row < NEAR) highest_near = max(highest_near, now[row] - slope * float(row)); else highest = max(highest, now[row] - slope * float(row));
+#define ON_HULL(row) if (row >= NEAR && max(steepest[row][which], (top_tall - now[row]) / (top_away - float(row))) < gentlest[row][which] && now[row] > 0.5 * NONE) word |= 1 << max(row - NEAR, 0);
+// What is ahead comes first, what is behind is added.
+#define PUT(lines) lines[at] = back ? lines[at] | four << 16 : four
+#define LEAVE(row) if (first_row + row < course.rows) { \
+    vec4 tangents = min(found[row] * (course.steep * relief), HIGHEST); \
+    uvec2 two = uvec2(packHalf2x16(tangents.xy), packHalf2x16(tangents.zw)); \
+    uvec4 four = uvec4(two.x & 0xffffu, two.x >> 16, two.y & 0xffffu, two.y >> 16); \
+    int at = place + (back ? -row : row); \
+    if ((pair & 1) == 0) PUT(even_lines); else PUT(odd_lines); }
+
+// The height where a line crosses a row.
+float height_on(Course course, int row, int line) {
+    int at = line + drifted(course, row);
+    float part = beside_of(course, row);
+    float texel = land_at(texel_of(course, row, at));
+    float other = land_at(texel_of(course, row, clamp(part < 0.0 ? at - 1 : at + 1, 0, course.across - 1)));
+    return texel + abs(part) * (other - texel);
+}
+
+// One of the four lines looks at the hull, and puts the block's rows on it.
+void follow_hull(int which, int block, Course course, int line, int hull_at, int apart, inout ivec4 top_word, inout ivec4 top_block) {
+    float now[ROWS];
+    float seen[BLOCK];
+    UP_TO_12(TAKE)
+    UP_TO_8(SEE)
+    int word = top_word[which];
+    int in_block = top_block[which];
+    bool going = in_block >= 0;
+    int first_row = block * BLOCK;
+    int row = in_block * BLOCK + NEAR + nearest_in(word);
+    // The point that is looked at, and the topmost that stays on the hull: height, rows away.
+    float tall = going ? height_on(course, row, line + which) : NONE;
+    float away = going ? float(row - first_row) : 1e9;
+    float top_tall = tall;
+    float top_away = away;
+    int rest = word;
+    int rest_in = in_block;
+    while (going) {
+        LOOK_FAR(0) LOOK_FAR(4)
+        // The next point.
+        rest &= rest - 1;
+        if ((rest & 0xffff) == 0) {
+            rest_in = (rest >> 16) - 1;
+            if (rest_in >= 0) rest = hull[hull_at + which + rest_in * apart];
+        }
+        bool more = rest_in >= 0;
+        row = rest_in * BLOCK + NEAR + nearest_in(rest);
+        float next_tall = height_on(course, row, line + which);
+        float next_away = float(row - first_row);
+        // Whoever stands over the line through both sees more at the next; a row that will be on
+        // the hull and stands there covers this point.
+        float slope = more ? (next_tall - tall) / (next_away - away) : 0.0;
+        float base = tall - slope * away;
+        float highest = NONE;
+        float highest_near = NONE;
+        UP_TO_12(COVER)
+        if (highest > base && more && top_away == away) {
+            word = rest;
+            in_block = rest_in;
+            top_tall = next_tall;
+            top_away = next_away;
+        }
+        going = max(highest, highest_near) > base && more;
+        tall = next_tall;
+        away = next_away;
+    }
+    int below = word;
+    word = 0;
+    UP_TO_12(ON_HULL)
+    bool grows = word != 0;
+    if (grows && in_block >= 0) hull[hull_at + which + in_block * apart] = below;
+    top_word[which] = grows ? word | ((in_block + 1) << 16) : below;
+    top_block[which] = grows ? block : in_block;
+    UP_TO_8(GIVE)
+}
+
+void sweep(Turn turn) {
+    int pair = turn.from + int(gl_WorkGroupID.y);
+    int group = int(gl_GlobalInvocationID.x);
+    vec2 towards = pair_towards(pair, turn.pairs, first + sun.x);
+    int apart = size.x + size.y + 64;
+    int hull_at = int(gl_WorkGroupID.y) * ((max(size.x, size.y) + 31) >> 3) * apart + 4 * group;
+    for (int side = 0; side < 2; side++) {
+        bool back = side == 1;
+        Course course = course_towards(back ? -towards : towards, size, spacing_of(size, extent));
+        int line = first_line(course) + 4 * group;
+        bool off = pair >= turn.end || line + min(drifted(course, 0), drifted(course, course.rows - 1)) >= course.across;
+        // The rows on which one of the four lines is on the land.
+        vec2 ends = vec2(0.0, float(course.rows - 1));
+        if (course.drift != 0) {
+            vec2 met = vec2(-line - 4, course.across - line) * (65536.0 / float(course.drift)) + float(course.middle);
+            ends = clamp(vec2(floor(min(met.x, met.y)), ceil(max(met.x, met.y))), 0.0, ends.y);
+        }
+        ivec4 top_word = ivec4(0);
+        ivec4 top_block = ivec4(-1);
+        UP_TO_12(BEYOND)
+        for (int block = off ? -1 : int(ends.y) / BLOCK; block >= int(ends.x) / BLOCK; block--) {
+            int first_row = block * BLOCK;
+            UP_TO_4(SHIFT)
+            UP_TO_8(ENTER)
+            UP_TO_8(CLEAR)
+            UP_TO_12(CLEAR_HULL)
+            UP_TO_8(LOOK_NEAR)
+            EACH_PAIR(LOOK)
+            for (int which = 0; which < 4; which++) follow_hull(which, block, course, line, hull_at, apart, top_word, top_block);
+            int place = turn.apart * ((pair - turn.from) >> 1) + place_of(course, group, back ? course.rows - 1 - first_row : first_row);
+            UP_TO_8(LEAVE)
+        }
+    }
+}
+
+// Sums
+
+// The courses of a turn's pairs, kept by each thread: directions, and drift, axis, sense, first line.
+vec2 ways[8];
+ivec4 courses[8];
+
+Course course_of(int number) {
+    ivec4 kept = courses[number];
+    Course course;
+    course.drift = kept.x;
+    course.along_x = kept.y == 1;
+    course.upwards = kept.z == 1;
+    course.rows = course.along_x ? size.x : size.y;
+    course.across = course.along_x ? size.y : size.x;
+    course.middle = course.upwards ? (course.rows - 1) >> 1 : course.rows >> 1;
+    course.steep = 0.0;
+    return course;
+}
+
+// The rise to the east and to the north, on this pass's own grid.
+vec2 slope_here(ivec2 texel, vec2 metres) {
+    ivec2 low = max(texel - 1, ivec2(0));
+    ivec2 high = min(texel + 1, size - 1);
+    int row = normal == ONE_TRIANGLE ? low.y : texel.y;
+    int column = normal == ONE_TRIANGLE ? high.x : texel.x;
+    vec2 rise = vec2(land_at(ivec2(high.x, row)) - land_at(ivec2(low.x, row)), land_at(ivec2(column, high.y)) - land_at(ivec2(column, low.y)));
+    return relief * rise / (vec2(max(high - low, ivec2(1))) * metres);
+}
+
+#define BEGIN(nth) { \
+    ivec2 texel = ivec2(x, min(y + nth, size.y - 1)); \
+    slope[nth] = slope_here(texel, metres); \
+    total[nth] = turn.from > 0 ? sky[texel.y * size.x + texel.x] : 0.0; \
+    ahead[nth] = keep && turn.from > 0 ? imageLoad(out_ahead, texel) : vec4(0.0); \
+    behind[nth] = keep && turn.from > 0 ? imageLoad(out_behind, texel) : vec4(0.0); }
+#define ADD(nth, lines) { \
+    int along = course.along_x ? x : y + nth; \
+    int row = course.upwards ? along : course.rows - 1 - along; \
+    int line = (course.along_x ? y + nth : x) - drifted(course, row) - line_0; \
+    vec2 tangents = unpackHalf2x16(lines[at + place_of(course, line >> 2, row)][line & 3]); \
+    ahead[nth] = mix(ahead[nth], vec4(tangents.x), channel); \
+    behind[nth] = mix(behind[nth], vec4(tangents.y), channel); \
+    total[nth] += sky_of_sector(tangents.x, slope[nth], towards, shape) + sky_of_sector(tangents.y, slope[nth], -towards, shape); }
+#define ADD_PAIR(number, lines) if (number < turn.end) { \
+    vec2 towards = ways[number - turn.from]; \
+    Course course = course_of(number - turn.from); \
+    int line_0 = courses[number - turn.from].w; \
+    bvec4 channel = equal(ivec4(number), ivec4(0, 1, 2, 3)); \
+    ADD(0, lines) ADD(1, lines) ADD(2, lines) ADD(3, lines) ADD(4, lines) ADD(5, lines) ADD(6, lines) ADD(7, lines) }
+#define STORE(nth) if (y + nth < end) { \
+    ivec2 texel = ivec2(x, y + nth); \
+    float whole = max(total[nth], 0.0) / float(2 * turn.pairs) / sqrt(1.0 + dot(slope[nth], slope[nth])); \
+    sky[texel.y * size.x + texel.x] = turn.end == turn.pairs ? whole : total[nth]; \
+    if (keep && turn.from < 4) imageStore(out_ahead, texel, ahead[nth]); \
+    if (keep && turn.from < 4) imageStore(out_behind, texel, behind[nth]); }
+
+// Each thread has a column of the land's texels, eight rows at a time.
+void sum(Turn turn) {
+    int x = int(gl_GlobalInvocationID.x);
+    int end = x < size.x ? min(int(gl_WorkGroupID.y + 1u) * CHUNK, size.y) : 0;
+    float shape = sector_shape(2 * turn.pairs);
+    vec2 metres = spacing_of(size, extent);
+    for (int k = 0; k < turn.end - turn.from; k++) {
+        ways[k] = pair_towards(turn.from + k, turn.pairs, first + sun.x);
+        Course course = course_towards(ways[k], size, metres);
+        courses[k] = ivec4(course.drift, course.along_x, course.upwards, first_line(course));
+    }
+    for (int y = int(gl_WorkGroupID.y) * CHUNK; y < end; y += 8) {
+        vec2 slope[8];
+        float total[8];
+        vec4 ahead[8], behind[8];
+        UP_TO_8(BEGIN)
+        for (int pair = turn.from; pair < turn.end; pair += 2) {
+            int at = turn.apart * ((pair - turn.from) >> 1);
+            ADD_PAIR(pair, even_lines)
+            ADD_PAIR(pair + 1, odd_lines)
+        }
+        UP_TO_8(STORE)
+    }
+}
+
+// The heights at this pass's texels.
+void lay_land() {
+    int x = int(gl_GlobalInvocationID.x);
+    int end = x < size.x ? min(int(gl_WorkGroupID.y + 1u) * CHUNK, size.y) : 0;
+    ivec2 grid = textureSize(height, 0);
+    for (int y = int(gl_WorkGroupID.y) * CHUNK; y < end; y++) {
+        ivec2 texel = ivec2(x, y);
+        vec2 place = place_on(grid, texel, size);
+        ivec2 low = ivec2(place);
+        vec2 part = place - vec2(low);
+        // On a texel of the heights this is one turn.
+        float total = 0.0;
+        int k = 0;
+        do {
+            vec2 weight = mix(1.0 - part, part, vec2(k & 1, k >> 1));
+            total += weight.x * weight.y * texelFetch(height, min(low + ivec2(k & 1, k >> 1), grid - 1), 0).r;
+            k++;
+        } while (k < (part == vec2(0.0) ? 1 : 4));
+        imageStore(out_land, texel, vec4(total, 0.0, 0.0, 1.0));
+    }
+}
+
+void main() {
+    Turn turn = turn_at((iteration - 1) / 2);
+    if (stage == 0) lay_land();
+    if (stage == 1 && turn.from < turn.end) sweep(turn);
+    if (stage == 2 && turn.from < turn.end) sum(turn);
+}

@@ -1,0 +1,87 @@
+// lighting/horizons/march.glsl -- the horizons around each texel, and the sky over them, by a walk in every direction.
+//
+//   gives    ahead, behind: tangents of the horizons' elevations in four directions and in the
+//            four opposite; sky: K(p), the share of an even sky's light; land: the heights here
+//   needs    lighting/horizons/course.glsl, lighting/horizons/open_sky.glsl, terrain/heightfield.glsl;
+//            the range of the heights
+//   units    tangents are rises over runs, 0 and up, at most 60000; heights without unit
+//   source   Belaiche 2010, section 3.4, after Max 1988, "Horizon Mapping: Shadows for Bump-Mapped
+//            Surfaces"; K(p) by eqs 3.12 to 3.15
+//   tested   tests/glsl/test_horizons.py, against brute force in float64
+//
+// The plain form: from each texel a walk over the whole land, in steps of one row of the finer of
+// two grids, the heights' and this pass's own. It ends where the highest land could not be seen
+// over the horizon found so far. Half a texel beyond the land's edge a walk leaves the land.
+#include "lighting/horizons/course.glsl"
+#include "lighting/horizons/open_sky.glsl"
+#include "terrain/heightfield.glsl"
+#pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f")
+
+uniform sampler2D height;               //! input
+uniform sampler2D range;                //! input
+uniform int directions = 8;             //! slider(2, 64) step(2) Directions around; K is of all of them
+uniform float first = 0.0;              //! angle(-360, 360) unit("°") Azimuth of the first direction; the others follow counterclockwise
+uniform vec2 sun = vec2(0.0, 0.0);      //! direction Its azimuth is added to the first, for horizons that follow the sun
+uniform bool keep = true;               //! Keep the horizons of eight directions; without, only K is found
+uniform int normal = 0;                 //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+
+// The highest tangent on a walk from a place on the grid, in rows and texels of the course.
+float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
+    Course course = course_towards(towards, grid, metres);
+    float aside = float(course.drift) / 65536.0;
+    float ahead_by = course.upwards ? 1.0 : -1.0;
+    vec2 way = course.along_x ? vec2(ahead_by, aside) : vec2(aside, ahead_by);
+    vec2 reach = vec2(grid) - 0.5;
+    vec2 scale = vec2(textureSize(height, 0) - 1) / vec2(max(grid - 1, ivec2(1)));
+    bool on_texels = grid == textureSize(height, 0) && size == grid;
+    ivec2 across = course.along_x ? ivec2(0, 1) : ivec2(1, 0);
+    float most = (highest - foot) * course.steep;
+    float found = 0.0;
+    for (int k = 1; k < course.rows; k++) {
+        float rows = float(k);
+        vec2 at = start + rows * way;
+        if (any(lessThan(at, vec2(-0.5))) || any(greaterThanEqual(at, reach)) || most <= found * rows) break;
+        float land_there = on_texels ? height_on_line(height, at, across) : height_at(height, at * scale);
+        found = max(found, (land_there - foot) * course.steep / rows);
+    }
+    return found;
+}
+
+float land_at(ivec2 texel) {
+    return height_at(height, place_on(textureSize(height, 0), texel, size));
+}
+
+// The rise to the east and to the north, on this pass's own grid.
+vec2 slope_here(ivec2 texel, vec2 metres) {
+    ivec2 low = max(texel - 1, ivec2(0));
+    ivec2 high = min(texel + 1, size - 1);
+    int row = normal == ONE_TRIANGLE ? low.y : texel.y;
+    int column = normal == ONE_TRIANGLE ? high.x : texel.x;
+    vec2 rise = vec2(land_at(ivec2(high.x, row)) - land_at(ivec2(low.x, row)), land_at(ivec2(column, high.y)) - land_at(ivec2(column, low.y)));
+    return relief * rise / (vec2(max(high - low, ivec2(1))) * metres);
+}
+
+void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out float land) {
+    ivec2 heights = textureSize(height, 0);
+    ivec2 grid = max(heights, size);
+    vec2 start = place_on(grid, texel, size);
+    vec2 metres = spacing_of(grid, extent);
+    vec2 slope = slope_here(texel, spacing_of(size, extent));
+    land = land_at(texel);
+    float highest = texelFetch(range, ivec2(0), 0).g;
+    int pairs = pairs_of(directions);
+    float shape = sector_shape(2 * pairs);
+    ahead = vec4(0.0);
+    behind = vec4(0.0);
+    float total = 0.0;
+    for (int pair = 0; pair < pairs; pair++) {
+        vec2 towards = pair_towards(pair, pairs, first + sun.x);
+        float there = min(relief * walked(grid, start, towards, metres, land, highest), 60000.0);
+        float back = min(relief * walked(grid, start, -towards, metres, land, highest), 60000.0);
+        total += sky_of_sector(there, slope, towards, shape) + sky_of_sector(back, slope, -towards, shape);
+        bvec4 here = equal(ivec4(keep ? pair : -1), ivec4(0, 1, 2, 3));
+        ahead = mix(ahead, vec4(there), here);
+        behind = mix(behind, vec4(back), here);
+    }
+    sky = max(total / float(2 * pairs), 0.0) / sqrt(1.0 + dot(slope, slope));
+}

@@ -1,0 +1,29 @@
+// lighting/interreflection/add.glsl -- another method's light, with the sky's light and what the land throws back of both.
+//
+//   gives    light: red, green, blue; alpha as in the light it was given
+//   needs    lighting/horizons/map_reading.glsl; a method's light; f and K
+//   units    light without unit, 1 for white; not cut at 1, that is the view's to do
+//   source   Belaiche 2010, section 5.7, with the approximation of section 3.4, eq. 3.9
+//   tested   tests/glsl/test_sky.py, against float64
+//
+// light = given + sky colour ambient f. Shadows of local methods are pitch black, since they
+// leave out all light that comes by way of the sky and of other land. Asked to, the given light
+// is thrown back as well: land that is seen is taken to be as bright as the place itself, so it
+// grows by 1 / (1 - C (1 - K)) = f / K; that is for lit slopes, and adds nothing in a shadow.
+#include "lighting/horizons/map_reading.glsl"
+#pragma kernel(output = "light:rgba16f")
+
+uniform sampler2D given;               //! input
+uniform sampler2D factor;              //! input
+uniform sampler2D k;                   //! input
+uniform vec3 sky_colour = vec3(0.6, 0.78, 1.0);  //! colour group("Sky") Colour of the sky's light
+uniform float ambient = 0.35;          //! slider(0, 2) step(0.01) group("Sky") Strength of the sky's light on open level ground
+uniform bool both = false;             //! group("Sky") The given light is thrown back too
+
+vec4 kernel(ivec2 texel) {
+    vec4 light = map_at(given, texel, size);
+    vec3 f = map_at(factor, texel, size).rgb;
+    float open = map_at(k, texel, size).r;
+    if (both && open > 1e-4) light.rgb *= f / open;
+    return vec4(light.rgb + sky_colour * (ambient * f), light.a);
+}

@@ -1,0 +1,336 @@
+"""The sun by horizon angles, and sun, sky and land together: eqs 3.3 to 3.8 against float64.
+
+``light`` is rgba16f and angles have 16 bits: comparisons allow for what they cut off.
+"""
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+
+from ..truth.land import Land, cone, real, towards
+
+HALF = 2.0**-10
+ARC = "lighting/horizon_sun/arc.glsl"
+SHARE = 90 / 65535  # [degrees] of a 16-bit share of a quarter circle
+
+
+@pytest.fixture(scope="module")
+def kept(shared_context):
+    """Give one engine for the file: programs are compiled once."""
+    shared_context.__enter__()
+    with Engine(shared_context) as engine:
+        yield engine
+
+
+@pytest.fixture
+def sketch(ctx, tmp_path):
+    """Give ``sketch(land, use, **values)``: one technique of lighting/ on a land, as the pass ``light``."""
+
+    def make(land, use, *, passes="", **values):
+        ny, nx = land.heights.shape
+        low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
+        np.save(tmp_path / "land.npy", ((land.heights - low) / relief).astype(np.float32))
+        setting = "".join(f"{k} = {written(v)}\n" for k, v in values.items())
+        extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+        path = tmp_path / "sketch.toml"
+        path.write_text(
+            f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+            '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+            'set = { elevation = "land.npy", first_row = "south" }\n'
+            f'{passes}[[pass]]\nname = "light"\nuse = "lighting/{use}"\n[pass.set]\n{setting}'
+        )
+        return load(path)
+
+    return make
+
+
+@pytest.fixture
+def read(kept, sketch):
+    """Give ``read(land, use, *outputs, **values)``: a technique's outputs, float64."""
+
+    def make(land, use, *outputs, **values):
+        made = sketch(land, use, **values)
+        found = [kept.read(made, f"light:{output}").astype(np.float64) for output in outputs]
+        assert all(np.isfinite(f).all() for f in found)
+        return found[0] if len(found) == 1 else found
+
+    return make
+
+
+def written(value):
+    if isinstance(value, tuple):
+        return str([float(v) for v in value])
+    return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+def steep(n=49):
+    return Land(real(n).heights * 2, (74.0, 93.0), "steep")
+
+
+def horizons(ahead, behind, land, arc=0.0):
+    """Return effective horizons [degrees] in eight directions from tangents: over the slope, over level."""
+    east, north = land.slopes()
+    tangents = np.concatenate([ahead, behind], axis=-1)
+    way = np.radians(arc - 45.0 * np.arange(8))
+    own = east[..., None] * np.sin(way) + north[..., None] * np.cos(way)
+    return np.degrees(np.arctan(np.maximum(np.maximum(tangents, own), 0)))
+
+
+def visible(elevation, horizon, diameter=0.53):
+    """Eq. 3.8, with the angles of eqs 3.5 and 3.6."""
+    low, high = elevation - diameter / 2, elevation + diameter / 2
+    return np.clip((high - horizon) / (high - low), 0, 1)
+
+
+# The sun's disc and arc
+
+
+def test_visibility_falls_evenly_over_the_disc(on_gpu):
+    horizon = np.linspace(20, 26, 61).astype(np.float32)
+    found = on_gpu(ARC, "disc_seen(23.0, 2.0, horizon)", horizon=horizon)
+    np.testing.assert_allclose(found, visible(23.0, horizon.astype(np.float64), 2.0), atol=1e-5)
+    assert found[0] == 1 and found[-1] == 0 and found[30] == pytest.approx(0.5)
+
+
+def test_it_differs_from_the_discs_area_by_0_058(on_gpu):
+    """The area of a disc over a line at x radii over its middle, by sums over its rows."""
+    x = np.linspace(-1, 1, 401)
+    found = on_gpu(ARC, "disc_seen(0.0, 2.0, horizon)", horizon=x.astype(np.float32))
+    rows = np.linspace(-1, 1, 200_001)
+    width = np.sqrt(np.maximum(1 - rows**2, 0))
+    area = 1 - np.interp(x, rows, np.cumsum(width) / width.sum())
+    difference = np.abs(found - area).max()
+    assert 0.056 < difference < 0.0585
+
+
+def test_a_sun_of_no_width_is_there_or_not(on_gpu):
+    found = on_gpu(ARC, "disc_seen(10.0, 0.0, horizon)", horizon=np.array([9.9, 10.1], np.float32))
+    np.testing.assert_array_equal(found, [1, 0])
+
+
+@pytest.mark.parametrize("arc", [90.0, 135.0, 10.0])
+def test_a_sun_is_put_on_its_arc(on_gpu, arc):
+    azimuth, elevation = (v.ravel() for v in np.meshgrid(np.arange(0, 360, 15.0), [-10.0, 5.0, 40.0, 85.0]))
+    sun = towards(azimuth, elevation)
+    found = on_gpu(ARC, f"on_arc(sun, {arc}, ARC)", sun=sun.astype(np.float32))
+    # The nearest of many places on the arc.
+    turns = np.radians(np.arange(0, 360, 0.05))
+    level = np.array([np.sin(np.radians(arc)), np.cos(np.radians(arc)), 0])
+    circle = np.cos(turns)[:, None] * level + np.sin(turns)[:, None] * np.array([0, 0, 1])
+    nearest = circle[np.argmax(sun @ circle.T, axis=1)]
+    clear = np.linalg.norm(sun @ np.stack([level, [0, 0, 1]], axis=-1), axis=1) > 0.05
+    np.testing.assert_allclose(found[clear], nearest[clear], atol=2e-3)
+    np.testing.assert_allclose(
+        on_gpu(ARC, f"on_arc(sun, {arc}, EIGHT)", sun=sun.astype(np.float32)), sun, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("arc", [0.0, 135.0])
+def test_between_eight_horizons(on_gpu, arc):
+    azimuth = np.arange(0, 360, 9.0)
+    sun = towards(azimuth, 30.0).astype(np.float32)
+    ahead, behind = (
+        on_gpu(ARC, f"weights_of(sun, {arc}, EIGHT).{side}", sun=sun) for side in ("ahead", "behind")
+    )
+    weights = np.concatenate([ahead, behind], axis=-1)
+    np.testing.assert_allclose(weights.sum(axis=-1), 1, atol=1e-5)
+    # A horizon that rises evenly from direction to direction is met everywhere but where it falls back.
+    turn = ((arc - azimuth) / 45) % 8
+    inner = turn <= 7
+    np.testing.assert_allclose((weights @ np.arange(8.0))[inner], turn[inner], atol=1e-4)
+    assert np.isfinite(
+        on_gpu(ARC, "weights_of(vec3(0.0, 0.0, 1.0), 0.0, EIGHT).ahead.x + z", z=np.float32(0))
+    )
+
+
+# Angles
+
+
+def test_angles_are_shares_of_a_quarter_circle_over_the_slope(kept, sketch):
+    land = steep()
+    made = sketch(land, "horizon_sun", arc=20.0)
+    parts = [kept.read(made, f"light.angles:angles_{side}") for side in ("ahead", "behind")]
+    maps = [kept.read(made, f"light:{side}").astype(np.float64) for side in ("ahead", "behind")]
+    found = 90 * np.concatenate(parts, axis=-1).astype(np.float64)
+    np.testing.assert_allclose(found, horizons(*maps, land, 20.0), atol=SHARE + 2e-3)
+    assert found.min() == 0 and found.max() > 25
+
+
+def test_the_table_holds_every_normal(kept, sketch):
+    sun = (200.0, 35.0)
+    made = sketch(steep(17), "horizon_sun", sun=sun, arc=200.0, gain=1.5, sun_colour=(1.0, 0.5, 0.2))
+    table = kept.read(made, "light.table").astype(np.float64)
+    x, y = np.meshgrid(np.arange(256), np.arange(256))
+    level = (np.stack([x, y], axis=-1) - 128) / 127
+    up = np.sqrt(np.maximum(1 - (level**2).sum(axis=-1), 0))
+    received = np.maximum(np.concatenate([level, up[..., None]], axis=-1) @ towards(*sun), 0)
+    truth = 1.5 * received[..., None] * [1.0, 0.5, 0.2]
+    np.testing.assert_allclose(table[..., :3], truth, rtol=2 * HALF, atol=1e-4)
+
+
+# The sun
+
+
+@pytest.mark.parametrize("sun", [(135, 12), (315, 12), (135, 40), (315, 2), (135, 90)], ids=str)
+def test_the_sun_on_its_arc(read, sun):
+    land = steep()
+    values = {"sun": sun, "arc": 135.0, "gain": 1.0, "sun_term": "each texel"}
+    light, seen, ahead, behind = read(land, "horizon_sun", "light", "visibility", "ahead", "behind", **values)
+    channel = 0 if sun[0] == 135 else 4
+    horizon = horizons(ahead, behind, land, 135.0)[..., channel]
+    # What 16 bits of an angle and a half float of a tangent leave open, over the sun's width.
+    np.testing.assert_allclose(seen, visible(sun[1], horizon), atol=0.02)
+    received = np.maximum(land.normals() @ towards(*sun), 0)
+    np.testing.assert_allclose(light[..., 0], seen * received, rtol=2 * HALF, atol=2e-3)
+    np.testing.assert_allclose(light[..., 3], np.where(light[..., 0] > 0, seen, 0), atol=2e-3)
+
+
+@pytest.mark.parametrize("sun", [(250, 8), (250, 20), (45, 15)], ids=str)
+def test_it_is_dark_where_a_cast_ray_is_dark(read, sun):
+    """But for what the sun's width and a texel of the shadow's edge make."""
+    land = steep(65)
+    light = read(land, "horizon_sun", "light", sun=sun, arc=float(sun[0]), gain=1.0)
+    ray = read(land, "ray_cast", "light", sun=sun, gain=1.0)
+    hidden, lit = ray[..., 3] == 0, light[..., 3] > 0.5
+    assert (hidden & lit).mean() < 0.01 and (~hidden & ~lit & (ray[..., 0] > 0.01)).mean() < 0.02
+
+
+def test_a_table_of_normals_is_close(read):
+    land = steep()
+    values = {"sun": (135, 30), "gain": 1.0}
+    table, each = (
+        read(land, "horizon_sun", "light", sun_term=way, **values) for way in ("table", "each texel")
+    )
+    np.testing.assert_allclose(table[..., :3], each[..., :3], atol=0.008)
+    # Alpha is 0 where a surface is turned away: which of two normals of the table that is, is
+    # uncertain where light only grazes it.
+    clear = (each[..., 0] == 0) == (table[..., 0] == 0)
+    assert clear.mean() > 0.99
+    np.testing.assert_allclose(table[clear], each[clear], atol=0.008)
+    flat = Land(np.zeros((9, 9)), (10.0, 10.0))
+    level = read(flat, "horizon_sun", "light", **values)
+    np.testing.assert_allclose(level, np.broadcast_to([0.5, 0.5, 0.5, 1.0], level.shape), rtol=2 * HALF)
+
+
+def test_eight_directions_at_one_of_them_are_the_arc(read):
+    land = steep()
+    for azimuth in (0.0, 45.0, 225.0, 270.0):
+        ways = [
+            read(
+                land, "horizon_sun", "visibility", sun=(azimuth, 14.0), arc=0.0, measured="eight directions"
+            ),
+            read(land, "horizon_sun", "visibility", sun=(azimuth, 14.0), arc=azimuth),
+        ]
+        # Measured from elsewhere, a direction is another pair's, whose lines lie a little beside.
+        assert (np.abs(ways[0] - ways[1]) > 0.1).mean() < 0.01
+
+
+def test_two_directions_are_enough_for_the_arc(read):
+    land = steep()
+    two, eight = (read(land, "horizon_sun", "light", sun=(135, 15), directions=n) for n in (2, 8))
+    np.testing.assert_allclose(two, eight, atol=2e-3)
+
+
+@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
+def test_moving_the_sun_looks_at_no_land(kept, sketch, use):
+    made = sketch(steep(33), use)
+    kept.read(made, "light")
+    for moved in ({"light.sun": (140, 20)}, {"light.sun": (140, 60)}, {"light.sun_colour": (1.0, 0.8, 0.5)}):
+        kept.read(made.with_values(moved), "light")
+        assert sorted(kept.ran) == ["light.light", "light.table"]
+
+
+@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
+@pytest.mark.parametrize("measured", ["on its arc", "eight directions"])
+@pytest.mark.parametrize("sun", [(0, 90), (90, 0), (135, -5), (135, -90), (359.999, 1), (45, 0.0)], ids=str)
+def test_suns_at_the_ends(read, use, measured, sun):
+    for land in (steep(17), Land(np.zeros((8, 5)), (3.0, 4.0))):
+        light, seen = read(land, use, "light", "visibility", sun=sun, measured=measured, ambient=0.0)
+        assert light.min() >= 0 and seen.min() >= 0 and seen.max() <= 1
+        if sun[1] < -1:
+            assert (light == 0).all() and (seen == 0).all()
+        if sun[1] == 90:
+            assert (seen == 1).all()
+
+
+@pytest.mark.parametrize("shape", [(2, 2), (2, 7), (7, 2)], ids=str)
+@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
+def test_tiny_lands(read, use, shape):
+    land = Land(np.random.default_rng(4).random(shape) * 30, (10.0, 10.0))
+    assert read(land, use, "light").min() >= 0
+
+
+def test_needles_and_walls(read):
+    heights = np.zeros((25, 25))
+    heights[:, 12] = 1e5
+    heights[4, 4] = 1e6
+    land = Land(heights, (1.0, 1.0))
+    light, seen = read(land, "analytic", "light", "visibility", sun=(90, 30), gain=1.0)
+    assert seen[20, 5] == 0 and seen[20, 20] == 1 and light.min() >= 0
+
+
+@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
+def test_mirrored_land_under_a_mirrored_sun(read, use):
+    land = steep()
+    mirrored = Land(land.heights[:, ::-1].copy(), land.spacing)
+    straight = read(land, use, "light", sun=(135, 20), arc=135.0)
+    across = read(mirrored, use, "light", sun=(-135, 20), arc=-135.0)[:, ::-1]
+    # The table of normals has no middle between two of them.
+    assert (np.abs(across - straight) > 0.02).mean() < 0.002
+
+
+# Sun, sky and land together
+
+
+def test_analytic_is_the_sum_of_its_parts(read):
+    land = steep()
+    sun = {"sun": (100, 25), "sun_colour": (1.0, 0.9, 0.7), "gain": 1.4}
+    sky = {"sky_colour": (0.4, 0.6, 1.0), "ambient": 0.5}
+    ground = {"ground": (0.3, 0.2, 0.1)}
+    whole, factor = read(land, "analytic", "light", "factor", arc=0.0, **sun, **sky, **ground)
+    alone = read(land, "horizon_sun", "light", arc=0.0, measured="eight directions", **sun)
+    of_sky = read(land, "horizon_sky", "light", **sky, **ground)
+    np.testing.assert_allclose(whole[..., :3], alone[..., :3] + of_sky[..., :3], atol=4e-3)
+    np.testing.assert_allclose(of_sky[..., :3], 0.5 * factor[..., :3] * [0.4, 0.6, 1.0], atol=2e-3)
+    np.testing.assert_array_equal(whole[..., 3], alone[..., 3])
+
+
+def test_clouds_dim_the_sun_and_leave_the_sky(read):
+    land = steep(33)
+    lights = [
+        read(land, "analytic", "light", clouds=c, sun_term=t)[..., :3]
+        for c in (0.0, 0.5, 1.0)
+        for t in ("table",)
+    ]
+    np.testing.assert_allclose(lights[1], (lights[0] + lights[2]) / 2, atol=2e-3)
+    sky = read(land, "analytic", "light", gain=0.0)[..., :3]
+    np.testing.assert_allclose(lights[2], sky, atol=1e-3)
+    each = read(land, "analytic", "light", clouds=0.5, sun_term="each texel")[..., :3]
+    np.testing.assert_allclose(each, lights[1], atol=0.012)
+
+
+def test_flat_land_is_lit_evenly(read):
+    land = Land(np.full((9, 12), 7.0), (10.0, 25.0))
+    light = read(land, "analytic", "light", sun=(77, 30), gain=1.0, ambient=0.25)
+    np.testing.assert_allclose(light[..., :3], 0.75, rtol=2 * HALF)
+
+
+def test_lifting_the_land_changes_nothing(read):
+    land = cone(33)
+    low = land.heights.copy()
+    low[0, 0] -= 500  # all else stands higher over height 0
+    plain, lifted = (read(one, "analytic", "light", sun=(250, 15)) for one in (land, Land(low, land.spacing)))
+    assert (np.abs(plain - lifted)[8:, 8:] > 0.01).mean() < 0.01
+
+
+def test_daylight_takes_the_place_of_sun_and_sky(kept, sketch):
+    """A daylight that is wired says where the sun is, whatever the sun's own parameters."""
+    passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 9.0, latitude = 40.0 }\n'
+    land = steep(33)
+    first, second = (
+        kept.read(sketch(land, "analytic", passes=passes, sun=sun), "light") for sun in ((10, 5), (200, 70))
+    )
+    np.testing.assert_array_equal(first, second)
+    assert first[..., 3].max() == 1

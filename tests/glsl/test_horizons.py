@@ -1,0 +1,362 @@
+"""Horizons: the march against brute force in float64, the sweep (lighting/horizons.comp) against the march.
+
+Horizons are compared as elevations in degrees. They are kept as tangents in half floats, which
+is 0.03 degrees at most. Away from the axes and diagonals of the grid the sweep looks along
+lines that run beside the texels; how far that leads off is bounded here, on real land, on a cone
+and in a valley.
+"""
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+
+from ..truth.horizon import horizon
+from ..truth.land import Land, cone, real, valley
+
+ROUNDING = 0.03  # [degrees] of a half float's tangent, wherever it is cut off
+CROP = """
+#pragma kernel(output = "height:r32f")
+uniform sampler2D file; //! input
+float kernel(ivec2 texel) { return texelFetch(file, texel, 0).r; }
+"""
+CHIEF = np.array([0, -45, -90, -135, 180, 135, 90, 45])
+
+
+@pytest.fixture(scope="module")
+def kept(shared_context):
+    """Give two engines for the file, so that programs are compiled once: one marches, one sweeps."""
+    if shared_context.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    shared_context.__enter__()
+    with (
+        Engine(shared_context, driver="fragment") as march,
+        Engine(shared_context, driver="compute") as sweep,
+    ):
+        yield march, sweep
+
+
+@pytest.fixture
+def engines(ctx, kept):
+    return kept
+
+
+@pytest.fixture
+def marcher(engines):
+    return engines[0]
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Give ``measured(engine, land, **values)``: elevations [degrees] (ny, nx, 8), K, heights [m]."""
+
+    def measure(engine, land, *, size="", base=0.0, **values):
+        sketch = sketch_of(tmp_path, land, size=size, base=base, **values)
+        maps = [engine.read(sketch, f"horizons:{name}") for name in ("ahead", "behind")]
+        tangents = np.concatenate(maps, axis=-1).astype(np.float64)
+        assert np.isfinite(tangents).all() and tangents.min() >= 0 and tangents.max() <= 60000
+        k, heights = engine.read(sketch, "horizons:sky"), engine.read(sketch, "horizons:land")
+        assert np.isfinite(k).all() and k.min() >= 0 and k.max() <= 1
+        return np.degrees(np.arctan(tangents)), k.astype(np.float64), heights
+
+    return measure
+
+
+def sketch_of(folder, land, *, size="", base=0.0, **values):
+    """Write a sketch of a land and its horizons; heights are 0..1 and ``base`` more."""
+    ny, nx = land.heights.shape
+    low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
+    kept = np.pad((land.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
+    np.save(folder / "land.npy", (kept + base).astype(np.float32))
+    (folder / "crop.glsl").write_text(CROP)
+    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    setting = "".join(
+        f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
+    )
+    path = folder / "sketch.toml"
+    path.write_text(
+        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+        f'[[pass]]\nname = "file"\nuse = "generation/heightmap"\nsize = {list(kept.shape[::-1])}\n'
+        'set = { elevation = "land.npy", first_row = "south" }\n'
+        '[[pass]]\nname = "height"\nuse = "./crop"\n'
+        f'[[pass]]\nname = "horizons"\nuse = "lighting/horizons"\n{size}\n[pass.set]\n{setting}'
+    )
+    return load(path)
+
+
+def brute(land, azimuth):
+    """Return the horizon's elevation [degrees], every row looked at, all texels at a time, float64.
+
+    Rays leave the land half a texel beyond its edge, where its heights go on as at the edge.
+    """
+    h = land.heights
+    ny, nx = h.shape
+    y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
+    way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / land.spacing
+    way[np.abs(way) < 1e-9] = 0
+    row = 1 / np.abs(way).max()  # [m]
+    best = np.zeros((ny, nx))
+    for k in range(1, max(nx, ny)):
+        px, py = x + k * row * way[0], y + k * row * way[1]
+        on = (px >= -0.5) & (py >= -0.5) & (px < nx - 0.5) & (py < ny - 0.5)
+        there = land.at(np.clip(px, 0, nx - 1), np.clip(py, 0, ny - 1))
+        best = np.where(on, np.maximum(best, (there - h) / (k * row)), best)
+    return np.degrees(np.arctan(best))
+
+
+def ragged(nx=61, ny=45, seed=3):
+    """Rough land on oblong texels, steep, with walls and needles on it."""
+    rng = np.random.default_rng(seed)
+    land = real(97).heights[:ny, :nx] * 2.0
+    land[:, nx // 2 :] += 200.0
+    land[ny // 3, nx // 4] += 900.0
+    return Land(land + rng.random((ny, nx)), (40.0, 75.0), "ragged")
+
+
+def off(found, wanted, margin=0):
+    difference = np.abs(found - wanted)
+    return difference[margin : difference.shape[0] - margin, margin : difference.shape[1] - margin]
+
+
+def rms(values):
+    return float(np.sqrt((values**2).mean()))
+
+
+# Courses
+
+
+@pytest.mark.parametrize("metres", [(1.0, 1.0), (74.0, 93.0), (10.0, 35.0)], ids=str)
+def test_a_course_keeps_its_direction(on_gpu, metres):
+    azimuth = np.arange(0, 360, 7.5)
+    way = np.stack([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))], axis=-1)
+    call = "course_towards(towards, ivec2(65, 49), metres)"
+    arrays = {"towards": way.astype(np.float32), "metres": tuple(np.float32(metres))}
+    drift = on_gpu("lighting/horizons/course.glsl", f"float({call}.drift)", **arrays) / 65536.0
+    along_x = on_gpu("lighting/horizons/course.glsl", f"int({call}.along_x)", **arrays) == 1
+    up = np.where(on_gpu("lighting/horizons/course.glsl", f"int({call}.upwards)", **arrays) == 1, 1.0, -1.0)
+    steep = on_gpu("lighting/horizons/course.glsl", f"{call}.steep", **arrays)
+    row = np.where(along_x[:, None], np.stack([up, drift], -1), np.stack([drift, up], -1)) * metres
+    length = np.hypot(*row.T)
+    np.testing.assert_allclose(row / length[:, None], way, atol=2e-5)
+    np.testing.assert_allclose(1 / length, steep, rtol=2e-5)
+
+
+def test_opposite_courses_have_the_same_lines(on_gpu):
+    azimuth = np.repeat(np.arange(0, 360, 11.25), 33)
+    way = np.stack([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))], axis=-1).astype(np.float32)
+    row = np.tile(np.arange(33), 32).astype(np.int32)
+    for grid in ("ivec2(33)", "ivec2(33, 33)", "ivec2(40, 36)"):
+        there = f"course_towards(way, {grid}, vec2(20.0, 31.0))"
+        back = f"course_towards(-way, {grid}, vec2(20.0, 31.0))"
+        arrays = {"way": way, "row": row}
+        ahead = on_gpu("lighting/horizons/course.glsl", f"drifted({there}, row)", **arrays)
+        behind = on_gpu("lighting/horizons/course.glsl", f"drifted({back}, {back}.rows - 1 - row)", **arrays)
+        np.testing.assert_array_equal(ahead, behind)
+        beside = on_gpu("lighting/horizons/course.glsl", f"beside_of({there}, row)", **arrays)
+        assert np.abs(beside).max() <= 0.5
+
+
+@pytest.mark.parametrize("directions", [2, 6, 8, 16, 64])
+def test_pairs_are_all_directions_once(on_gpu, directions):
+    pair = np.arange(directions // 2).astype(np.int32)
+    call = f"pair_towards(pair, pairs_of({directions}), 10.0)"
+    way = on_gpu("lighting/horizons/course.glsl", call, pair=pair)
+    azimuth = np.degrees(np.arctan2(way[:, 0], way[:, 1])) - 10
+    both = np.sort(np.concatenate([azimuth, azimuth + 180]) % 360)
+    apart = 360 / directions
+    gaps = np.round(both / apart, 3) % directions
+    np.testing.assert_allclose(np.sort(gaps), np.arange(directions), atol=2e-3)
+    if directions % 8 == 0:
+        np.testing.assert_allclose(azimuth[:4] % 360, [0, 315, 270, 225], atol=1e-3)
+
+
+# The march
+
+
+@pytest.mark.parametrize("land", [ragged(), cone(49), valley(49)], ids=lambda land: land.name)
+def test_the_march_is_brute_force(marcher, measured, land):
+    found, _, heights = measured(marcher, land)
+    low, relief = land.heights.min(), np.ptp(land.heights)
+    seen = Land(heights.astype(np.float64) * relief, land.spacing)
+    np.testing.assert_allclose(seen.heights, land.heights - low, atol=1e-6 * relief)
+    for channel, azimuth in enumerate(CHIEF):
+        assert off(found[..., channel], brute(seen, azimuth)).max() < ROUNDING
+
+
+def test_the_march_is_never_over_the_exact_horizon(marcher, measured):
+    """It looks at whole rows: what stands higher between them, or within the first, it misses."""
+    land = cone(65)
+    found, _, _ = measured(marcher, land)
+    for channel, azimuth in enumerate(CHIEF):
+        exact = np.degrees(np.arctan(np.maximum(horizon(land, float(azimuth)), 0)))
+        over = (found[..., channel] - exact)[2:-2, 2:-2]
+        assert over.max() < ROUNDING and rms(over) < 0.8
+
+
+def test_first_and_sun_turn_the_directions(engines, measured):
+    land = ragged(33, 29)
+    for engine in engines:
+        turned, _, _ = measured(engine, land, first=30.0)
+        by_sun, _, _ = measured(engine, land, first=10.0, sun=[20.0, 50.0])
+        np.testing.assert_allclose(by_sun, turned, atol=0.05)
+        assert rms(off(turned[..., 1], brute(land, -15.0), 5)) < (0.03 if engine is engines[0] else 1.0)
+
+
+# The sweep against the march
+
+
+def test_along_axes_and_diagonals_the_sweep_is_the_march(engines, measured):
+    for land in (real(49), ragged(41, 53)):
+        square = Land(land.heights, (50.0, 50.0), land.name)
+        march, sweep = (measured(engine, square) for engine in engines)
+        for channel in range(8):
+            assert off(sweep[0][..., channel], march[0][..., channel]).max() < ROUNDING
+        np.testing.assert_allclose(sweep[1], march[1], atol=2e-4)
+        np.testing.assert_array_equal(sweep[2], march[2])
+
+
+@pytest.mark.parametrize(
+    ("land", "mean", "most"),
+    [(real(97), 0.4, 5.0), (cone(97), 0.2, 4.0), (valley(97), 0.25, 6.0)],
+    ids=lambda v: v.name if isinstance(v, Land) else "",
+)
+def test_off_the_axes_the_sweep_is_close(engines, measured, land, mean, most):
+    """Within five texels of the edge lines and sight lines leave the land at different rows."""
+    worst = 0.0
+    for first in (11.25, 22.5, 30.0):
+        march, sweep = (measured(engine, land, first=first) for engine in engines)
+        for channel in range(8):
+            error = off(sweep[0][..., channel], march[0][..., channel], margin=5)
+            assert rms(error) < mean, first
+            worst = max(worst, error.max())
+        assert rms(sweep[1] - march[1]) < 0.0015
+        assert np.abs(sweep[1] - march[1])[5:-5, 5:-5].max() < 0.012
+    assert worst < most
+
+
+def test_only_a_few_texels_at_the_edge_differ_much(engines, measured):
+    land = real(97)
+    march, sweep = (measured(engine, land, first=20.0) for engine in engines)
+    assert (np.abs(sweep[0] - march[0]) > 3).mean() < 0.003
+
+
+@pytest.mark.parametrize("directions", [2, 4, 16, 64])
+def test_k_of_more_directions(engines, measured, directions):
+    land = real(49)
+    march, sweep = (measured(engine, land, directions=directions) for engine in engines)
+    assert rms(sweep[1] - march[1]) < 0.0015
+    kept = min(directions // 2, 4)
+    for maps in (march[0], sweep[0]):
+        assert (maps[..., kept:4] == 0).all() and (maps[..., 4 + kept :] == 0).all()
+        assert maps[..., :kept].max() > 1
+
+
+def test_without_the_maps_k_is_the_same(engines, measured):
+    land = real(49)
+    for engine in engines:
+        both, alone = (measured(engine, land, directions=16, keep=keep) for keep in (True, False))
+        np.testing.assert_array_equal(alone[1], both[1])
+        assert both[0].max() > 1 and (alone[0] == 0).all()
+
+
+@pytest.mark.parametrize("shape", [(9, 200), (200, 9), (3, 64), (37, 130)], ids=str)
+def test_long_lands(engines, measured, shape):
+    """A line leaves such a land after a few rows, and the room for lines is used again and again."""
+    rng = np.random.default_rng(1)
+    heights = np.cumsum(rng.standard_normal(shape), axis=int(shape[1] > shape[0])) * 8
+    land = Land(heights, (30.0, 30.0))
+    march, sweep = (measured(engine, land) for engine in engines)
+    for channel in range(8):
+        assert off(sweep[0][..., channel], march[0][..., channel]).max() < ROUNDING
+
+
+@pytest.mark.parametrize(
+    "shape", [(1, 1), (1, 2), (2, 1), (2, 2), (1, 30), (30, 1), (8, 8), (17, 16)], ids=str
+)
+def test_the_smallest_lands(engines, measured, shape):
+    land = Land(np.random.default_rng(2).random(shape) * 50, (20.0, 20.0))
+    march, sweep = (measured(engine, land, directions=16) for engine in engines)
+    np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
+    for channel, azimuth in enumerate(CHIEF):
+        assert off(march[0][..., channel], brute(land, azimuth)).max() < ROUNDING
+
+
+def test_a_wall_without_end_and_a_needle(engines, measured):
+    heights = np.zeros((33, 33))
+    heights[:, 16] = 1e6
+    heights[5, 5] = 1e7
+    for engine in engines:
+        found, k, _ = measured(engine, Land(heights, (1.0, 1.0)))
+        assert found[20, 15, 6] > 89.99 and found[20, 17, 2] > 89.99
+        assert k[20, 15] < 0.6 and k[5, 5] > 0
+
+
+def test_flat_land_has_no_horizon(engines, measured):
+    for engine in engines:
+        found, k, _ = measured(engine, Land(np.zeros((21, 34)), (5.0, 9.0)), directions=16)
+        assert (found == 0).all() and (k == 1).all()
+
+
+def test_a_dome_is_all_hull(engines, measured):
+    """On it no point of a line is covered by another, and nobody sees more than the next."""
+    y, x = np.mgrid[0:65, 0:65] - 32.0
+    land = Land(400 - (x**2 + y**2) / 8, (10.0, 10.0))
+    march, sweep = (measured(engine, land) for engine in engines)
+    np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
+    bowl = Land(-land.heights, land.spacing)
+    march, sweep = (measured(engine, bowl) for engine in engines)
+    np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
+
+
+def test_lifting_the_land_changes_nothing(engines, measured):
+    land = real(49)
+    for engine in engines:
+        plain = measured(engine, land)
+        for base in (3.0, -20.0):
+            lifted = measured(engine, land, base=base)
+            np.testing.assert_allclose(lifted[0], plain[0], atol=0.05)
+            np.testing.assert_allclose(lifted[1], plain[1], atol=1e-3)
+
+
+@pytest.mark.parametrize("spacing", [(60.0, 60.0), (40.0, 75.0)], ids=str)
+def test_turned_and_mirrored_land(engines, measured, spacing):
+    heights = real(49).heights[:41] * 1.5
+    straight = Land(heights, spacing)
+    mirrored = Land(heights[:, ::-1].copy(), spacing)
+    turned = Land(
+        np.rot90(heights).copy(), spacing[::-1]
+    )  # by a quarter, counterclockwise seen from above in an image
+    for engine in engines:
+        plain, across, quarter = (measured(engine, land) for land in (straight, mirrored, turned))
+        # Mirrored, NW is NE: channels count counterclockwise from north.
+        np.testing.assert_allclose(across[0][:, ::-1], plain[0][..., [0, 7, 6, 5, 4, 3, 2, 1]], atol=0.1)
+        np.testing.assert_allclose(across[1][:, ::-1], plain[1], atol=1e-3)
+        back = np.rot90(quarter[0], -1)
+        way = [brute(turned, a) for a in (0, 90)]
+        east = np.rot90(way[1], -1)
+        shift = 2 if rms(east - brute(straight, 0)) < rms(east - brute(straight, 180)) else -2
+        np.testing.assert_allclose(np.roll(back, shift, axis=-1), plain[0], atol=0.1)
+        np.testing.assert_allclose(np.rot90(quarter[1], -1), plain[1], atol=1e-3)
+
+
+def test_a_finer_pass_agrees_where_they_meet(engines, measured):
+    land = real(33)
+    for engine in engines:
+        same = measured(engine, land)
+        fine = measured(engine, land, size='size = ["2 * size.x - 1", "2 * size.y - 1"]')
+        np.testing.assert_allclose(fine[2][::2, ::2], same[2], atol=1e-6)
+        # Looked at twice as closely, horizons are higher, by little; but what rays see beyond the
+        # land's edge, half a texel of it, is less.
+        for channel in range(8):
+            higher = (fine[0][::2, ::2, channel] - same[0][..., channel])[4:-4, 4:-4]
+            assert rms(higher) < 1.0 and (higher < -0.5).mean() < 0.05
+
+
+def test_the_sun_moves_no_horizon(engines, tmp_path):
+    """Nothing of the sun stands in it but the azimuth that is asked for."""
+    sketch = sketch_of(tmp_path, ragged(33, 29))
+    for engine in engines:
+        engine.read(sketch, "horizons:sky")
+        engine.read(sketch, "horizons:ahead")
+        assert engine.ran == []

@@ -1,0 +1,382 @@
+"""The sky over horizons: sectors against quadrature, closed forms, the exact K, patches, ground.
+
+``factor`` and ``light`` are rgba16f: comparisons allow what a half float cuts off, 2^-10.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+
+from ..truth.land import Land, cone, real
+from ..truth.sky import sky_visibility
+
+HALF = 2.0**-10
+OPEN_SKY = "lighting/horizons/open_sky.glsl"
+
+
+@pytest.fixture(scope="module")
+def kept(shared_context):
+    """Give one engine for the file: programs are compiled once."""
+    shared_context.__enter__()
+    with Engine(shared_context) as engine:
+        yield engine
+
+
+@pytest.fixture
+def read(ctx, kept, tmp_path):
+    """Give ``read(land, use, *outputs, **values)``: the outputs of a technique in lighting/, float64."""
+
+    def make(land, use, *outputs, passes="", size="", **values):
+        sketch = sketch_of(tmp_path, land, use, passes=passes, size=size, **values)
+        found = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
+        assert all(np.isfinite(f).all() for f in found)
+        return found[0] if len(found) == 1 else found
+
+    return make
+
+
+def sketch_of(folder, land, use, *, passes="", size="", **values):
+    ny, nx = land.heights.shape
+    low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
+    np.save(folder / "land.npy", ((land.heights - low) / relief).astype(np.float32))
+    setting = "".join(f"{k} = {written(v)}\n" for k, v in values.items())
+    extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    path = folder / "sketch.toml"
+    path.write_text(
+        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+        '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+        'set = { elevation = "land.npy", first_row = "south" }\n'
+        f'{passes}[[pass]]\nname = "under_test"\nuse = "lighting/{use}"\n{size}\n[pass.set]\n{setting}'
+    )
+    return load(path)
+
+
+def written(value):
+    return (
+        str(value).lower()
+        if isinstance(value, bool)
+        else f'"{value}"'
+        if isinstance(value, str)
+        else str(value)
+    )
+
+
+def colour_pass(folder, text, name="colour"):
+    (folder / f"{name}_of.glsl").write_text(f'#pragma kernel(output = "{name}:rgba16f")\n{text}')
+    return f'[[pass]]\nname = "{name}"\nuse = "./{name}_of"\n'
+
+
+def plane(angle, towards=90.0, n=33, spacing=(20.0, 20.0)):
+    """Rise at an angle [degrees] towards an azimuth."""
+    y, x = np.mgrid[0:n, 0:n] * np.array(spacing[::-1])[:, None, None]
+    a = np.radians(towards)
+    return Land((x * np.sin(a) + y * np.cos(a)) * np.tan(np.radians(angle)), spacing, f"plane {angle}")
+
+
+def middle(values):
+    return values[values.shape[0] // 2, values.shape[1] // 2]
+
+
+def rms(values):
+    return float(np.sqrt((values**2).mean()))
+
+
+# A sector
+
+
+@pytest.mark.parametrize("sectors", [8, 16])
+@pytest.mark.parametrize("azimuth", [0.0, 45.0, 200.0])
+@pytest.mark.parametrize("slope", [(0.0, 0.0), (0.4, -0.2), (-0.5, 0.9)], ids=str)
+def test_a_sector_is_the_integral_over_it(on_gpu, sectors, azimuth, slope):
+    """1/pi of N·v over the sector's open part, times n and the length of (-slope, 1)."""
+    towards = (np.float32(np.sin(np.radians(azimuth))), np.float32(np.cos(np.radians(azimuth))))
+    tangents = np.array([0.0, 0.3, 1.0, 4.0, 30.0], np.float32)
+    call = f"sky_of_sector(tangent, slope, towards, sector_shape({sectors}))"
+    found = on_gpu(OPEN_SKY, call, tangent=tangents, slope=tuple(np.float32(slope)), towards=towards)
+    half = np.pi / sectors
+    for tangent, value in zip(tangents, found, strict=True):
+        own = slope[0] * towards[0] + slope[1] * towards[1]
+        lowest = np.arctan(max(tangent, own, 0.0))
+
+        def lit(e, a):
+            across = slope[0] * np.sin(a) + slope[1] * np.cos(a)
+            return (np.sin(e) - across * np.cos(e)) * np.cos(e)
+
+        truth = dblquad(lit, np.radians(azimuth) - half, np.radians(azimuth) + half, lowest, np.pi / 2)[0]
+        assert value == pytest.approx(truth * sectors / np.pi, abs=2e-5)
+
+
+def test_the_total_k_is_below_each_patch(on_gpu):
+    """K = 0.1, 0.3, 0.2 and ground of 0.5: 0.75 in all; with each patch's own K below, 0.977."""
+    k = np.array([0.1, 0.3, 0.2], np.float32)
+    more = on_gpu(OPEN_SKY, "thrown_back(vec3(0.5), k).x", k=np.float32(k.sum()))
+    assert (k * more).sum() == pytest.approx(0.75, abs=1e-6)
+    alone = on_gpu(OPEN_SKY, "thrown_back(vec3(0.5), k).x", k=k)
+    assert (k * alone).sum() == pytest.approx(0.977, abs=1e-3)
+    assert np.isfinite(on_gpu(OPEN_SKY, "thrown_back(vec3(1.0), k).x", k=np.float32(0.0)))
+
+
+@pytest.mark.parametrize("first", [0.0, 30.0])
+def test_the_table_is_the_sectors_integrals(ctx, kept, tmp_path, first):
+    (tmp_path / "s.toml").write_text(
+        'format = 1\nsize = 9\n[[pass]]\nname = "table"\nuse = "lighting/horizon_sky/table"\n'
+        f"size = [256, 8]\nset = {{ first = {first} }}\n"
+    )
+    table = kept.read(load(tmp_path / "s.toml"), "table").astype(np.float64)
+    assert table.shape == (8, 256, 4)
+    for place in (0, 17, 128, 254, 255):
+        low = np.pi / 2 if place == 255 else np.arctan(place / 255 / (1 - place / 255))
+        for row in range(8):
+            a = np.radians(first - 45 * row)
+            steps = np.radians(np.linspace(-22.5, 22.5, 4001)[:-1] + 22.5 / 4000) + a
+            level = (np.pi / 2 - low) / 2 - np.sin(2 * low) / 4  # cos² e from the horizon up
+            truth = [
+                np.sin(steps).mean() * level / 4,
+                np.cos(steps).mean() * level / 4,
+                np.cos(low) ** 2 / 8,
+            ]
+            np.testing.assert_allclose(table[row, place, :3], truth, atol=2e-6)
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize("summed", ["by the table", "by the formula", "over all directions"])
+def test_flat_land_sees_the_whole_sky(read, summed):
+    k, factor = read(Land(np.zeros((17, 23)), (5.0, 8.0)), "horizon_sky", "k", "factor", summed=summed)
+    np.testing.assert_array_equal(k, 1)
+    np.testing.assert_array_equal(factor[..., :3], 1)
+
+
+@pytest.mark.parametrize("summed", ["by the table", "by the formula", "over all directions"])
+@pytest.mark.parametrize("angle", [10.0, 30.0, 45.0])
+@pytest.mark.parametrize("towards", [0.0, 90.0, 22.5, 70.0])
+def test_a_plane_sees_the_sky_above_it(read, summed, angle, towards):
+    k = read(plane(angle, towards), "horizon_sky", "k", summed=summed)
+    np.testing.assert_allclose(k, (1 + np.cos(np.radians(angle))) / 2, atol=0.007)
+
+
+@pytest.mark.parametrize("angle", [20.0, 45.0])
+def test_a_plane_with_many_sectors(read, angle):
+    k = read(plane(angle, 33.0), "horizon_sky", "k", summed="over all directions", directions=64)
+    truth = (1 + np.cos(np.radians(angle))) / 2
+    np.testing.assert_allclose(k, truth, atol=0.01)
+    # Where sight lines leave the land at its edge, nearby lines may see a little more.
+    np.testing.assert_allclose(k[8:-8, 8:-8], truth, atol=3e-4)
+
+
+@pytest.mark.parametrize("spacing", [(10.0, 10.0), (7.0, 20.0)], ids=str)
+@pytest.mark.parametrize(("angle", "bound"), [(20.0, 0.01), (40.0, 0.01)])
+def test_a_valley_without_end(read, angle, bound, spacing):
+    """Slope a, the opposite rim at elevation e: (1 + cos(a + e)) / 2."""
+    nx, ny = 41, 641
+    x = np.abs(np.arange(nx) - 20.0) * spacing[0]
+    land = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), spacing)
+    k = read(land, "horizon_sky", "k", summed="over all directions", directions=64)[ny // 2]
+    rim = 20 * spacing[0]
+    place = np.arange(nx)[3:17]  # on the western wall
+    here = (20 - place) * spacing[0]
+    elevation = np.arctan2((rim - here) * np.tan(np.radians(angle)), here + rim)
+    truth = (1 + np.cos(np.radians(angle) + elevation)) / 2
+    np.testing.assert_allclose(k[3:17], truth, atol=bound)
+
+
+@pytest.mark.parametrize("angle", [20.0, 35.0, 50.0])
+def test_between_walls_without_end(read, angle):
+    """On the foot of a wall, of slope a, the other rises at a: cos² a."""
+    ny, nx = 401, 161
+    x = np.abs(np.arange(nx) - 80.0)
+    land = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), (1.0, 1.0))
+    k = read(land, "horizon_sky", "k", summed="over all directions", directions=64)
+    assert k[ny // 2, 79] == pytest.approx(np.cos(np.radians(angle)) ** 2, abs=0.01)
+
+
+# The exact K
+
+
+@pytest.mark.parametrize("make", [real, cone], ids=["real", "cone"])
+def test_k_is_close_to_the_exact_one(read, make):
+    land = make(49)
+    exact = sky_visibility(land, count=64)
+    for values, mean in (
+        ({"summed": "by the table"}, 0.005),
+        ({"summed": "by the formula"}, 0.005),
+        ({"summed": "over all directions", "directions": 16}, 0.0025),
+        ({"summed": "over all directions", "directions": 64}, 0.0025),
+    ):
+        error = read(land, "horizon_sky", "k", **values) - exact
+        assert rms(error) < mean and abs(error.mean()) < 0.002, values
+
+
+def test_the_table_and_the_formula_agree(read):
+    land = Land(real(49).heights * 3, (74.0, 93.0))
+    table, formula, measured = (
+        read(land, "horizon_sky", "k", summed=way)
+        for way in ("by the table", "by the formula", "over all directions")
+    )
+    np.testing.assert_allclose(table, formula, atol=2e-4)
+    np.testing.assert_allclose(measured, formula, atol=2e-3)
+    assert formula.min() < 0.8
+
+
+def test_mirrored_land_has_a_mirrored_sky(read):
+    """Sectors that began at the measured directions would turn the sky by half a sector."""
+    land = Land(real(49).heights[:41] * 3, (74.0, 93.0))
+    mirrored = Land(land.heights[:, ::-1].copy(), land.spacing)
+    for way in ("by the table", "by the formula"):
+        straight, across = (read(one, "horizon_sky", "k", summed=way) for one in (land, mirrored))
+        np.testing.assert_allclose(across[:, ::-1], straight, atol=1e-3)
+
+
+def test_lifting_the_land_leaves_the_sky(read):
+    land = real(33)
+    plain = read(land, "horizon_sky", "factor")
+    # A needle far below everything lifts all else over height 0.
+    low = land.heights.copy()
+    low[0, 0] -= 3000
+    np.testing.assert_allclose(
+        read(Land(low, land.spacing), "horizon_sky", "factor")[8:, 8:], plain[8:, 8:], atol=3e-3
+    )
+
+
+# Ground
+
+
+def test_f_is_k_with_the_ground_below(read):
+    land = Land(real(33).heights * 4, (74.0, 93.0))
+    k, factor = read(land, "horizon_sky", "k", "factor", ground=[0.2, 0.5, 1.0])
+    for channel, ground in enumerate((0.2, 0.5, 1.0)):
+        np.testing.assert_allclose(factor[..., channel], k / (1 - ground * (1 - k)), rtol=2 * HALF)
+    np.testing.assert_allclose(factor[..., 2], 1, rtol=2 * HALF)
+
+
+def test_the_ground_is_the_mean_colour_under_a_texel(read, tmp_path):
+    """Stripes finer than the light: it sees their mean, not one of them."""
+    stripe = "(texel.x & 1) == 0 ? vec3(0.8, 0.2, 0.0) : vec3(0.0, 0.6, 0.0)"
+    text = f"vec4 kernel(ivec2 texel) {{ return vec4({stripe}, 1.0); }}"
+    passes = colour_pass(tmp_path, text) + 'size = ["8 * size.x", "8 * size.y"]\n'
+    land = Land(real(33).heights * 4, (74.0, 93.0))
+    k, factor = read(land, "horizon_sky", "k", "factor", passes=passes)
+    for channel, ground in enumerate((0.4, 0.4, 0.0)):
+        np.testing.assert_allclose(factor[..., channel], k / (1 - ground * (1 - k)), rtol=0.004)
+
+
+def test_light_is_the_factor_in_the_skys_colour(read):
+    land = real(33)
+    light, factor = read(land, "horizon_sky", "light", "factor", sky_colour=[0.5, 1.0, 2.0], ambient=0.5)
+    np.testing.assert_allclose(light[..., :3], factor[..., :3] * [0.25, 0.5, 1.0], rtol=2 * HALF, atol=1e-3)
+
+
+# Patches
+
+
+def sampled(land, tangents, split, patch):
+    """Return K of one patch by small cells of the sky, each texel's sky cut off sector by sector."""
+    east, north = land.slopes()
+    total = np.zeros(land.heights.shape)
+    azimuths = np.radians(np.arange(0.25, 360, 0.5))
+    for a in azimuths:
+        azimuth = np.degrees(a)
+        sector = int(np.floor((-azimuth) / 45 + 0.5)) % 8
+        centre = np.radians(-45 * sector)
+        own = east * np.sin(centre) + north * np.cos(centre)
+        low = np.arctan(np.maximum(np.maximum(tangents[..., sector], own), 0))
+        quarter = int(np.floor(azimuth / 90 + 0.5)) % 4
+        parting = np.radians(split)
+        across = east * np.sin(a) + north * np.cos(a)
+
+        def up_to(start, end, across=across):
+            """Integrate (sin e - across cos e) cos e."""
+            return (np.sin(end) ** 2 - np.sin(start) ** 2) / 2 - across * (
+                (end - start) / 2 + (np.sin(2 * end) - np.sin(2 * start)) / 4
+            )
+
+        if patch == "overhead":
+            total += up_to(np.maximum(low, parting), np.pi / 2)
+        elif quarter == patch:
+            total += np.where(low < parting, up_to(np.minimum(low, parting), parting), 0)
+    return total * np.radians(0.5) / np.pi / np.sqrt(1 + east**2 + north**2)
+
+
+def test_patches_are_the_parts_of_the_sky(read):
+    land = Land(real(33).heights * 2, (74.0, 93.0))
+    ahead, behind = read(land, "horizon_sky", "ahead", "behind")
+    low, high = read(land, "sky_patches", "low", "high", split=35.0)
+    tangents = np.concatenate([ahead, behind], axis=-1)
+    for quarter in range(4):
+        np.testing.assert_allclose(low[..., quarter], sampled(land, tangents, 35.0, quarter), atol=1.5e-3)
+    np.testing.assert_allclose(high[..., 3], sampled(land, tangents, 35.0, "overhead"), atol=1.5e-3)
+
+
+@pytest.mark.parametrize("split", [10.0, 45.0, 80.0])
+def test_patches_add_up_to_the_sky(read, split):
+    land = Land(real(33).heights * 2, (74.0, 93.0))
+    low, high = read(land, "sky_patches", "low", "high", split=split, ground=[0.5, 0.5, 0.5])
+    k, factor = read(land, "horizon_sky", "k", "factor", summed="by the formula", ground=[0.5, 0.5, 0.5])
+    np.testing.assert_allclose(low.sum(axis=-1) + high[..., 3], k, atol=2e-3)
+    white = [1.0, 1.0, 1.0]
+    colours = dict.fromkeys(("overhead", "north", "east", "south", "west"), white)
+    even = read(land, "sky_patches", "factor", split=split, ground=[0.5, 0.5, 0.5], **colours)
+    np.testing.assert_allclose(even[..., :3], factor[..., :3], atol=3e-3)
+
+
+def test_slopes_see_the_patches_that_they_face(read):
+    black = [0.0, 0.0, 0.0]
+    for quarter, azimuth in (("north", 0.0), ("east", 90.0), ("south", 180.0), ("west", 270.0)):
+        land = plane(40.0, azimuth + 180.0)  # it falls towards the quarter
+        colours = dict.fromkeys(("overhead", "north", "east", "south", "west"), black) | {
+            quarter: [1.0, 1.0, 1.0]
+        }
+        seen = middle(read(land, "sky_patches", "factor", ground=black, **colours))[0]
+        facing_away = middle(read(plane(40.0, azimuth), "sky_patches", "factor", ground=black, **colours))[0]
+        assert seen > 0.25 and facing_away < 0.02
+
+
+# Interreflection
+
+
+def test_shadows_of_a_local_method_are_not_black(read, tmp_path):
+    land = Land(real(49).heights * 2, (74.0, 93.0))
+    passes = '[[pass]]\nname = "light"\nuse = "lighting/ray_cast"\nset = { sun = [250.0, 15.0] }\n'
+    values = {"ambient": 0.4, "sky_colour": [0.5, 1.0, 1.0], "ground": [0.3, 0.3, 0.3]}
+    light, factor, k = read(land, "interreflection", "light", "factor", "k", passes=passes, **values)
+    direct = read(land, "ray_cast", "light", sun=[250.0, 15.0])
+    shadow = direct[..., 0] == 0
+    assert shadow.mean() > 0.1 and light[shadow][:, 1].min() > 0.2
+    sky = factor[..., :3] * [0.2, 0.4, 0.4]
+    np.testing.assert_allclose(light[..., :3], direct[..., :3] + sky, rtol=2 * HALF, atol=1e-3)
+    np.testing.assert_array_equal(light[..., 3], direct[..., 3])
+    both = read(land, "interreflection", "light", passes=passes, both=True, **values)
+    grown = direct[..., :3] / (1 - 0.3 * (1 - k[..., None])) + sky
+    np.testing.assert_allclose(both[..., :3], grown, rtol=4 * HALF, atol=1e-3)
+
+
+def test_another_sun_sums_no_sky_anew(ctx, kept, tmp_path):
+    passes = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n'
+    sketch = sketch_of(tmp_path, real(33), "interreflection", passes=passes)
+    kept.read(sketch, "under_test")
+    kept.read(sketch.with_values({"light.sun": (100, 30), "under_test.ambient": 0.2}), "under_test")
+    assert kept.ran == ["light", "under_test.add"]
+
+
+@pytest.mark.parametrize("use", ["horizon_sky", "sky_patches", "interreflection"])
+@pytest.mark.parametrize("shape", [(2, 2), (2, 9), (9, 2)], ids=str)
+def test_tiny_lands(read, use, shape):
+    land = Land(np.random.default_rng(1).random(shape) * 40, (10.0, 10.0))
+    passes = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n' if use == "interreflection" else ""
+    light = read(land, use, "light", passes=passes)
+    assert light.min() >= 0
+
+
+def test_walls_and_needles_give_numbers(read):
+    heights = np.zeros((25, 25))
+    heights[:, 12] = 1e6
+    heights[4, 4] = 1e7
+    land = Land(heights, (1.0, 1.0))
+    k, factor = read(land, "horizon_sky", "k", "factor", ground=[1.0, 1.0, 1.0])
+    assert 0 <= k.min() and k.max() <= 1 and factor.max() <= 1.01
+    low, high = read(land, "sky_patches", "low", "high")
+    assert low.min() >= 0 and high.min() >= 0
