@@ -28,7 +28,7 @@ vec4 kernel(ivec2 texel) {
     vec2 place = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
     vec2 slope = relief * slope_at(height, place, metres, normal);
-    Sunlight from = sunlight(daylight, sun, sun_colour, sky_colour);
+    Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     float received = gain * sun_on(normal_of_slope(slope), from.direction);
     return vec4(from.sun * received + from.sky * ambient, 1.0);
 }

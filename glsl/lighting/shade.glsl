@@ -51,12 +51,14 @@ vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
     vec2 slope = relief * slope_at(height, place, spacing_of(grid, extent), normal);
-    Sunlight from = sunlight(daylight, sun, sun_colour, sky_colour);
+    Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     vec3 light = from.direction;
     float received = max(0.0, dot(normal_of_slope(slope), light));
     // Where nothing is wired to say so, a sun below the horizon is hidden.
-    if (light.z < 0.0 && textureSize(visibility, 0) == ivec2(1)) received = 0.0;
-    float visible = received > 0.0 ? read_at(visibility, texel).r : 0.0;
-    vec3 sky = from.sky * ambient * read_at(sky_factor, texel);
+    if (light.z < 0.0 && !wired_visibility) received = 0.0;
+    float visible = wired_visibility ? read_at(visibility, texel).r : 1.0;
+    if (received <= 0.0) visible = 0.0;
+    vec3 sky = from.sky * ambient;
+    if (wired_sky_factor) sky *= read_at(sky_factor, texel);
     return vec4(from.sun * (visible * gain * received) + sky, visible);
 }

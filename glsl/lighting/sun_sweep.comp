@@ -21,8 +21,7 @@ uniform float spread = 0.0;            //! slider(0, 20) step(0.01) group("Sweep
 
 void main() {
     ivec2 grid = textureSize(height, 0);
-    vec2 place_of_sun = sun_place(daylight, sun);
-    vec3 light = to_sun(place_of_sun);
+    vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     int thread = int(gl_GlobalInvocationID.x);
     if (size != grid) {
         for (int i = thread; i < size.x * size.y; i += 64 * int(gl_NumWorkGroups.x)) {

@@ -29,8 +29,7 @@ uniform float spread = 0.0;            //! slider(0, 20) step(0.01) group("Sweep
 
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec2 place_of_sun = sun_place(daylight, sun);
-    vec3 light = to_sun(place_of_sun);
+    vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     Lines lines = lines_towards(grid, light, spacing_of(grid, extent));
     if (size != grid) return NO_HORIZON;
     return swept_horizon(height, texel, lines, slopes_around(lines, light, shape, spread), relief);

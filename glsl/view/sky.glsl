@@ -32,7 +32,7 @@ float disc_in(vec3 towards, vec3 sun, float pixel) {
 
 vec3 daylight_in(vec3 towards, float pixel) {
     vec3 seen = sky_towards(daylight, towards);
-    Sunlight from = sunlight(daylight, vec2(0.0), vec3(0.0), vec3(0.0));
+    Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
     vec3 disc = from.sun * min(46750.0, BRIGHTEST / max(lit, 1e-9));
     seen = mix(seen, max(disc, seen), disc_in(towards, from.direction, pixel));

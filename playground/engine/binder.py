@@ -23,6 +23,8 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Kernel, Parameter, Sampling, Value
+from playground.sketch.words import TOWARDS, WIRED
+from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
     import moderngl
@@ -69,13 +71,16 @@ class Binder:
         for parameter in kernel.parameters:
             if parameter.widget.kind != "file":
                 program.set(parameter.name, step.values[parameter.name])
+                if (name := f"{TOWARDS}{parameter.name}") in program:
+                    program.set(name, unit_vector(step.values[parameter.name]))  # type: ignore[arg-type]
             elif parameter.name in program:
                 image = self._file(parameter, step.values[parameter.name])
                 unit = self.texture(program, parameter.name, unit, image, parameter.sampling)
         for declared in kernel.inputs:
+            result, texture, output = inputs.get(declared.name, Wired())
+            program.set(f"{WIRED}{declared.name}", texture is not None)
             if declared.name not in program:
                 continue
-            result, texture, output = inputs.get(declared.name, Wired())
             if texture is None:
                 texture = self.constant(declared.fallback or "black")
             elif declared.sampling.mipmap and (result is None or output not in result.mipmapped):

@@ -80,7 +80,7 @@ class Companions:
         """
         step, stages = job.step, job.step.kernel.stages
         stage = (("stage", stages[iteration]),) if stages else ()
-        program = self.kernels.program(step, COMPUTE, *stage)
+        program = self.kernels.program(job, COMPUTE, *stage)
         if program not in bound:
             self.kernels.binder.bind(program, step, job.given, job.inputs)
             bound.add(program)

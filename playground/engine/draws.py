@@ -53,7 +53,7 @@ class Draws:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
         output = kernel.outputs[0]
-        program = self.kernels.program(step, "draw")
+        program = self.kernels.program(job, "draw")
         array = self._array(program, job)
         surface = self._surface(step.size, output.format, job.samples)
         self._start_from(job, surface)

@@ -22,6 +22,7 @@ from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.wiring import initial_names
+from playground.sketch.words import WIRED
 
 if TYPE_CHECKING:
     import moderngl
@@ -90,7 +91,7 @@ class Kernels:
     def run(self, job: Job, driver: str) -> Result:
         """Run a kernel by a driver; the result is the caller's."""
         step = job.step
-        program = self.program(step, driver)
+        program = self.program(job, driver)
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
@@ -99,19 +100,23 @@ class Kernels:
             return self._in_place(job, program, state)
         return self._by_turns(job, program, driver, state, unit)
 
-    def program(self, step: Step, driver: str, *more: tuple[str, int]) -> Program:
-        """Return the program of a step; where the processor draws, one for each choice of menus.
+    def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
+        """Return the program of a step.
 
+        Where the processor draws there is one for each choice of menus, and of what is wired.
         ``more`` are whole numbers to compile in as well.
         """
+        kernel, values = job.step.kernel, job.step.values
         if not self.software:
-            return self.programs.get(step.kernel, driver)
-        choices = (
-            (p.name, step.values[p.name])
-            for p in step.kernel.parameters
+            return self.programs.get(kernel, driver)
+        choices = [
+            (p.name, int(values[p.name]))  # type: ignore[arg-type]
+            for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
-        )
-        return self.programs.get(step.kernel, driver, (*((n, int(v)) for n, v in choices), *more))  # type: ignore[arg-type]
+        ]
+        for name in (i.name for i in kernel.inputs if kernel.reads(f"{WIRED}{i.name}")):
+            choices.append((f"{WIRED}{name}", int(job.inputs.get(name, Wired()).texture is not None)))
+        return self.programs.get(kernel, driver, (*choices, *more))
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""

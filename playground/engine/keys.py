@@ -21,6 +21,7 @@ from playground.engine.files import content_hash
 from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
 from playground.sketch.flatten import Fed, Source
 from playground.sketch.model import Kernel
+from playground.sketch.words import TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 Form = tuple[Kernel, str]  # which form of a kernel runs, and by which driver
@@ -104,6 +105,7 @@ def _read_text(kernel: Kernel) -> _Text:
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))
     used |= kernel.source.names & {"iterations"}
+    used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
     if kernel.kind == "source":
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":

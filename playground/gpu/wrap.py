@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from playground.errors import ShaderError
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import GIVEN
+from playground.sketch.words import GIVEN, TOWARDS, WIRED
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -140,9 +140,14 @@ def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expec
 
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
-    return [
-        f"uniform {kind} {name};" for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always
+    found = [(kind, name) for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
+    found += [("bool", f"{WIRED}{i.name}") for i in kernel.inputs if kernel.reads(f"{WIRED}{i.name}")]
+    found += [
+        ("vec3", f"{TOWARDS}{p.name}")
+        for p in kernel.parameters
+        if p.widget.kind == "direction" and kernel.reads(f"{TOWARDS}{p.name}")
     ]
+    return [f"uniform {kind} {name};" for kind, name in found]
 
 
 def _wrap_fragment(kernel: Kernel) -> Wrapped:

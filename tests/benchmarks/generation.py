@@ -1,7 +1,7 @@
 """Time the techniques that make land beside what one would take instead, in one run.
 
     pip install ".[bench]"
-    python tests/benchmarks/generation.py [--size 1025 4097] [--rounds 7] [NAME…]
+    python tests/benchmarks/generation.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
 Each figure is the median of several runs, with a new seed each, ours and theirs in turn,
 so that a busy machine slows both. Nothing compiled is timed. Figures wander with the
@@ -10,131 +10,20 @@ machine; ratios less so. The thesis's own methods are compiled from thesis.c wit
 
 from __future__ import annotations
 
-import argparse
 import ctypes
-import itertools
 import os
-import shutil
-import statistics
-import subprocess
-import sys
-import tempfile
-import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
+from side_by_side import SEEDS, Bench, Comparison, Run, run_all
 
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
-from playground.sketch.load import load
-
-HERE = Path(__file__).resolve().parent
-SEEDS = itertools.count(1)
-Run = Callable[[], object]
 
 
-@dataclass
-class Comparison:
-    """Something of ours, and what stands beside it."""
+class Generation(Bench):
+    """The shared bench, with lands of ours and of the thesis."""
 
-    what: str
-    ours: dict[str, Run]  # by driver
-    theirs: dict[str, Run] = field(default_factory=dict)
-    wanted: str = ""
-
-
-def main() -> None:
-    """Run every comparison and print one table a size."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("names", nargs="*", metavar="NAME", help="only these comparisons, as fourier")
-    parser.add_argument("--size", type=int, nargs="+", default=[1025, 4097], help="texels a side")
-    parser.add_argument("--rounds", type=int, default=7, help="runs of each (default 7)")
-    options = parser.parse_args()
-    unknown = [name for name in options.names if name not in COMPARISONS]
-    if unknown:
-        parser.error(f"no comparison '{unknown[0]}'; there are: {', '.join(COMPARISONS)}")
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    with Bench() as bench:
-        console.print(f"{bench.renderer}, {os.cpu_count()} processors", highlight=False)
-        costs: dict[tuple[str, int], float] = {}
-        for size in options.size:
-            table = Table(title=f"{size} x {size}, milliseconds (medians of {options.rounds})")
-            for heading in ("what", "auto", "fragment", "beside it", "ms", "ratio", "wanted"):
-                table.add_column(heading, justify="left" if heading in ("what", "beside it") else "right")
-            for name, make in COMPARISONS.items():
-                if options.names and name not in options.names:
-                    continue
-                for comparison in make(bench, size):
-                    _add(table, comparison, options.rounds, costs, size)
-            console.print(table)
-        _growth(console, costs, options.size)
-
-
-def _add(
-    table: Table, comparison: Comparison, rounds: int, costs: dict[tuple[str, int], float], size: int
-) -> None:
-    runs = comparison.ours | comparison.theirs
-    times = alternated(runs, rounds)
-    if "auto" in times:
-        costs[comparison.what, size] = times["auto"]
-    ours = [f"{times[d]:.1f}" if d in times else "" for d in ("auto", "fragment")]
-    if not comparison.theirs:
-        table.add_row(comparison.what, *ours, "", "", "", comparison.wanted)
-    for index, name in enumerate(comparison.theirs):
-        ratios = " / ".join(f"{times[name] / times[d]:.2f}" for d in comparison.ours)
-        head = (comparison.what, *ours) if index == 0 else ("", "", "")
-        table.add_row(*head, name, f"{times[name]:.1f}", ratios, comparison.wanted if index == 0 else "")
-
-
-def _growth(console: Console, costs: dict[tuple[str, int], float], sizes: list[int]) -> None:
-    if len(sizes) < 2:
-        return
-    low, high = min(sizes), max(sizes)
-    table = Table(title=f"cost per texel at {high}², over that at {low}² (wanted: at most 1.3)")
-    table.add_column("what")
-    table.add_column("ratio", justify="right")
-    for what in dict.fromkeys(name for name, _ in costs):
-        if (what, low) in costs and (what, high) in costs:
-            table.add_row(what, f"{costs[what, high] / costs[what, low] * (low / high) ** 2:.2f}")
-    console.print(table)
-
-
-def alternated(runs: dict[str, Run], rounds: int) -> dict[str, float]:
-    """Return the median milliseconds of each, after one unmeasured run of each; they take turns."""
-    times: dict[str, list[float]] = {name: [] for name in runs}
-    for turn in range(rounds + 1):
-        for name, run in runs.items():
-            start = time.perf_counter()
-            run()
-            if turn:
-                times[name].append((time.perf_counter() - start) * 1e3)
-    return {name: statistics.median(found) for name, found in times.items()}
-
-
-class Bench:
-    """Engines of both drivers, a folder for sketches, and the thesis's methods in C."""
-
-    def __init__(self) -> None:
-        self.ctx = open_context()
-        self.folder = Path(tempfile.mkdtemp(prefix="playground-bench-"))
-        self.engines = {driver: Engine(self.ctx, driver=driver) for driver in ("auto", "fragment")}
-        self.renderer = self.engines["auto"].info.renderer
-        self.thesis = _compiled(self.folder)
-
-    def __enter__(self) -> Bench:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        for engine in self.engines.values():
-            engine.release()
-        self.ctx.release()
-        shutil.rmtree(self.folder)
+    source = "thesis.c"
 
     def ours(
         self,
@@ -147,9 +36,9 @@ class Bench:
         **values: object,
     ) -> dict[str, Run]:
         """Return runs of a technique, a new seed each, up to the texture ``ref`` inside it ("": its last)."""
-        path = self.folder / f"{next(SEEDS)}.toml"
-        path.write_text(f'format = 1\nsize = {size}\n[[pass]]\nname = "a"\nuse = "{use}"\n')
-        sketch = load(path).with_values({f"a.{name}": value for name, value in values.items()})
+        sketch = self.sketch(f'size = {size}\n[[pass]]\nname = "a"\nuse = "{use}"\n').with_values(
+            {f"a.{name}": value for name, value in values.items()}
+        )
         wanted = f"a.{ref}" if ref else "a"
 
         def run(engine: Engine) -> None:
@@ -170,17 +59,6 @@ class Bench:
             called(out.ctypes.data_as(ctypes.c_void_p), size, *given, ctypes.c_uint(next(SEEDS)))
 
         return {"the thesis's C": run}
-
-
-def _compiled(folder: Path) -> ctypes.CDLL | None:
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        print("no C compiler: the thesis's own methods are left out", file=sys.stderr)
-        return None
-    library = folder / "thesis.so"
-    options = ["-O2", "-shared", "-fPIC", "-o", str(library), str(HERE / "thesis.c"), "-lm"]
-    subprocess.run([compiler, *options], check=True)
-    return ctypes.CDLL(str(library))
 
 
 # ── what others take ─────────────────────────────────────────────────────────
@@ -290,7 +168,7 @@ def numpy_faults(size: int, faults: int) -> dict[str, Run]:
 # ── what is compared ─────────────────────────────────────────────────────────
 
 
-def layered_noise(bench: Bench, size: int) -> Iterator[Comparison]:
+def layered_noise(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare the thesis's layers: as noise with libraries, as a whole with its own C."""
     theirs = fast_noise_lite(size, "Value", 2, 4.0, 0.2) | open_simplex(size, 2, 4.0, 0.2)
     yield Comparison(
@@ -306,7 +184,7 @@ def layered_noise(bench: Bench, size: int) -> Iterator[Comparison]:
     )
 
 
-def gradient_noise(bench: Bench, size: int) -> Iterator[Comparison]:
+def gradient_noise(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare six octaves of gradient noise with libraries."""
     theirs = fast_noise_lite(size, "Perlin", 6, 2.0, 0.5) | open_simplex(size, 6, 2.0, 0.5)
     yield Comparison(
@@ -318,7 +196,7 @@ def gradient_noise(bench: Bench, size: int) -> Iterator[Comparison]:
     yield Comparison("gradient_noise", bench.ours("generation/gradient_noise", "", size))
 
 
-def fourier(bench: Bench, size: int) -> Iterator[Comparison]:
+def fourier(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare the spectral land with scipy.fft, at the power of two below."""
     even = size - size % 2
     yield Comparison(
@@ -326,14 +204,14 @@ def fourier(bench: Bench, size: int) -> Iterator[Comparison]:
     )
 
 
-def diamond_square(bench: Bench, size: int) -> Iterator[Comparison]:
+def diamond_square(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare diamond-square, normalised, with the thesis's C and with NumPy."""
     theirs = bench.c("diamond_square", size, 0.2) | numpy_diamond_square(size, 0.2)
     ours = bench.ours("generation/diamond_square", "", size, normalise="max")
     yield Comparison("diamond_square, normalised", ours, theirs, "≥ 5 auto, ≥ 0.4 fragment")
 
 
-def fault_formation(bench: Bench, size: int) -> Iterator[Comparison]:
+def fault_formation(bench: Generation, size: int) -> Iterator[Comparison]:
     """Time 200 faults: alone, and with their smoothing and normalisation."""
     theirs = numpy_faults(size, 200)
     for what, ref, wanted in (
@@ -344,7 +222,7 @@ def fault_formation(bench: Bench, size: int) -> Iterator[Comparison]:
         yield Comparison(what, ours, theirs, wanted)
 
 
-def models(bench: Bench, size: int) -> Iterator[Comparison]:
+def models(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare the thesis's own models with its Perlin: its claims, as ratios."""
     base = bench.ours("generation/layered_noise", "", size, drivers="auto")["auto"]
     shape = bench.ours("generation/diamond_square", "", size, drivers="auto")["auto"]
@@ -355,7 +233,7 @@ def models(bench: Bench, size: int) -> Iterator[Comparison]:
         yield Comparison(name, ours, theirs, "report")
 
 
-def others(bench: Bench, size: int) -> Iterator[Comparison]:
+def others(bench: Generation, size: int) -> Iterator[Comparison]:
     """Time the rest."""
     for name in (
         "fbm",
@@ -368,7 +246,7 @@ def others(bench: Bench, size: int) -> Iterator[Comparison]:
         yield Comparison(name, bench.ours(f"generation/{name}", "", size))
 
 
-COMPARISONS: dict[str, Callable[[Bench, int], Iterator[Comparison]]] = {
+COMPARISONS: dict[str, Callable[[Generation, int], Iterator[Comparison]]] = {
     found.__name__: found
     for found in (layered_noise, gradient_noise, fourier, diamond_square, fault_formation, models, others)
 }
@@ -376,4 +254,4 @@ COMPARISONS: dict[str, Callable[[Bench, int], Iterator[Comparison]]] = {
 
 
 if __name__ == "__main__":
-    main()
+    run_all(__doc__ or "", Generation, COMPARISONS)

@@ -247,12 +247,14 @@ TAKE = """
 uniform sampler2D daylight;  //! input("black")
 uniform vec2 sun = vec2(200.0, 33.0);  //! direction
 vec4 kernel(ivec2 texel) {
-    Sunlight from = sunlight(daylight, sun, vec3(0.5, 0.25, 0.125), vec3(0.0625, 0.125, 0.75));
+    vec3 own = vec3(0.5, 0.25, 0.125);
+    Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, own, vec3(0.0625, 0.125, 0.75));
     if (texel.x == 0) return vec4(from.direction, is_daylight(daylight) ? 1.0 : 0.0);
     if (texel.x == 1) return vec4(from.place, 0.0, 0.0);
     if (texel.x == 2) return vec4(from.sun, 0.0);
     if (texel.x == 3) return vec4(from.sky, 0.0);
-    return vec4(sun_place(daylight, sun), 0.0, 0.0);
+    vec3 direction = sun_direction(wired_daylight, daylight, towards_sun);
+    return vec4(direction, sun_elevation(wired_daylight, daylight, sun));
 }
 """
 
@@ -262,7 +264,7 @@ def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sket
     plain = engine.read(make_sketch(taken, take=TAKE), "taken")[0]
     here = on_gpu("lighting/sun.glsl", "to_sun(vec2(200.0, 33.0))")[0]
     np.testing.assert_allclose(plain[0, :3], here, atol=1e-6)
-    np.testing.assert_array_equal(plain[4, :2], [200, 33])
+    np.testing.assert_array_equal(plain[4], [*plain[0, :3], 33])
     assert plain[0, 3] == 0
     np.testing.assert_array_equal(plain[1:4, :3], [[200, 33, 0], [0.5, 0.25, 0.125], [0.0625, 0.125, 0.75]])
     # A pass of that name, or an output of it, is taken without being wired.
@@ -270,7 +272,7 @@ def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sket
     sketch = make_sketch(text + taken, take=TAKE)
     found, row = engine.read(sketch, "taken")[0], engine.read(sketch, "hours")[0]
     np.testing.assert_array_equal(found[0, :3], row[0, :3])
-    np.testing.assert_array_equal(found[4, :2], [row[1, 3], row[0, 3]])
+    np.testing.assert_array_equal(found[4], row[0])
     assert found[0, 3] == 1
     np.testing.assert_array_equal(found[1, :2], [row[1, 3], row[0, 3]])
     np.testing.assert_array_equal(found[2:4, :3], row[1:3, :3])

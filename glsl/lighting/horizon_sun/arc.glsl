@@ -1,6 +1,6 @@
 // lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, which horizons count, and how much of its disc is over them.
 //
-//   gives    ARC, EIGHT, on_arc, Weights, weights_of, elevation_of, disc_seen
+//   gives    ARC, EIGHT, on_arc, Weights, weights_of, elevation_of, in_diameters, disc_seen
 //   needs    maths/angle.glsl
 //   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
 //   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
@@ -30,31 +30,29 @@ vec3 on_arc(vec3 to_sun, float arc, int measured) {
     return measured == ARC ? vec3(held.x * level, held.y) : to_sun;
 }
 
-// How much each of the measured horizons counts: those ahead, and the opposite ones.
+// How much each of the measured horizons counts: of the first, its opposite, and the two square
+// to them; of the four between these.
 struct Weights {
-    vec4 ahead;
-    vec4 behind;
+    vec4 upright;
+    vec4 slanting;
 };
 
 // For a sun on its arc it is the first or the one opposite; else the two that are nearest of
 // eight, 45 degrees apart counterclockwise from the arc's.
 Weights weights_of(vec3 to_sun, float arc, int measured) {
-    Weights weights;
     if (measured == ARC) {
         bool far = dot(to_sun.xy, cos_sin_degrees(arc).yx) < 0.0;
-        weights.ahead = vec4(far ? 0.0 : 1.0, 0.0, 0.0, 0.0);
-        weights.behind = vec4(far ? 1.0 : 0.0, 0.0, 0.0, 0.0);
-        return weights;
+        return Weights(vec4(far ? 0.0 : 1.0, far ? 1.0 : 0.0, 0.0, 0.0), vec4(0.0));
     }
     // Straight up, no azimuth is the sun's.
     vec2 level = dot(to_sun.xy, to_sun.xy) < 1e-12 ? vec2(0.0, 1.0) : to_sun.xy;
     float turn = (arc - degrees(atan(level.x, level.y))) / 45.0;
-    vec4 number = vec4(0.0, 1.0, 2.0, 3.0);
-    vec4 ahead = turn - number;
-    vec4 behind = ahead - 4.0;
-    weights.ahead = max(1.0 - abs(ahead - 8.0 * floor(ahead / 8.0 + 0.5)), 0.0);
-    weights.behind = max(1.0 - abs(behind - 8.0 * floor(behind / 8.0 + 0.5)), 0.0);
-    return weights;
+    vec4 upright = turn - vec4(0.0, 4.0, 2.0, 6.0);
+    vec4 slanting = upright - 1.0;
+    return Weights(
+        max(1.0 - abs(upright - 8.0 * floor(upright / 8.0 + 0.5)), 0.0),
+        max(1.0 - abs(slanting - 8.0 * floor(slanting / 8.0 + 0.5)), 0.0)
+    );
 }
 
 // The elevation of a unit vector.
@@ -62,9 +60,14 @@ float elevation_of(vec3 to_sun) {
     return degrees(atan(to_sun.z, length(to_sun.xy)));
 }
 
-// Eq. 3.8: how much of the sun's diameter is over the horizon. The part of the disc's area
-// differs from this by up to 0.058.
-float disc_seen(float elevation, float diameter, float horizon) {
-    return clamp((elevation + 0.5 * diameter - horizon) / max(diameter, 1e-6), 0.0, 1.0);
+// An angle in diameters of the sun. A sun without width is seen whole or not at all.
+float in_diameters(float angle, float diameter) {
+    return angle / max(diameter, 1e-6);
+}
+
+// Eq. 3.8: how much of the sun's diameter is over the horizon, from the elevation of its upper edge
+// and the horizon's, both in diameters. The part of the disc's area differs from this by up to 0.058.
+float disc_seen(float edge, float horizon) {
+    return clamp(edge - horizon, 0.0, 1.0);
 }
 #endif

@@ -3,13 +3,13 @@
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is
 //            turned away from it; visibility: the part of the sun that is over the horizon
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl,
-//            lighting/horizons/map_reading.glsl, terrain/heightfield.glsl; angles, normals and
-//            the table of sunlight
+//            lighting/horizons/map_reading.glsl, terrain/heightfield.glsl; angles, normals,
+//            the table of sunlight, and where the sun stands
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
 //   tested   tests/glsl/test_analytic.py, against float64
 //
-// All that is done when the sun moves: four fetches a texel, and no look at the land. Eq. 3.3
+// All that is done when the sun moves: a few fetches a texel, and no look at the land. Eq. 3.3
 // has no 1/pi: its sunlight is already divided by it. The thesis looks up no texel whose light
 // stays the same; here all are looked up at once.
 #include "lighting/daylight_reading.glsl"
@@ -19,39 +19,38 @@
 #pragma kernel(output = "light:rgba16f, visibility:r32f")
 
 uniform sampler2D height;                //! input
-uniform sampler2D angles_ahead;          //! input
-uniform sampler2D angles_behind;         //! input
+uniform sampler2D upright;               //! input
+uniform sampler2D slanting;              //! input
 uniform sampler2D facing;                //! input
 uniform sampler2D table;                 //! input
+uniform sampler2D stand;                 //! input
 uniform sampler2D sky_factor;            //! input("white")
 uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
 uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
 uniform float clouds = 0.0;              //! slider(0, 1) step(0.01) group("Sun") How much of the sun's light clouds keep back
-uniform float diameter = 0.53;           //! slider(0, 20) step(0.01) group("Sun") unit("°") How wide the sun is
 uniform int measured = 0;                //! menu("on its arc", "eight directions") group("Sun") A sun that keeps to its arc needs two horizons; with eight it may stand anywhere
 uniform float arc = 135.0;               //! angle(-360, 360) unit("°") group("Sun") Azimuth of the first horizon, and of the sun's arc, which goes on through the zenith
 uniform int sun_term = 0;                //! menu("table", "each texel") group("Sun") Sunlight from a table of normals, or worked out for each texel
-uniform vec3 sky_colour = vec3(1.0);     //! colour group("Sky") Colour of the sky's light
-uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky") Strength of the sky's light
 uniform int normal = 0;                  //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
 
-vec4 received_at(ivec2 texel, Sunlight given, vec3 to_sun) {
+vec4 received_at(ivec2 texel) {
     if (sun_term == 0) return texelFetch(table, ivec2(texelFetch(facing, texel, 0).rg * 255.0 + 0.5), 0);
+    Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, vec3(0.0));
     ivec2 grid = textureSize(height, 0);
     vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
-    float received = max(dot(normal_of_slope(slope), to_sun), 0.0);
+    float received = max(dot(normal_of_slope(slope), on_arc(given.direction, arc, measured)), 0.0);
     return vec4(given.sun * (gain * (1.0 - clouds) * received), received > 0.0 ? 1.0 : 0.0);
 }
 
 void kernel(ivec2 texel, out vec4 light, out float visibility) {
-    Sunlight given = sunlight(daylight, sun, sun_colour, sky_colour);
-    vec3 to_sun = on_arc(given.direction, arc, measured);
-    Weights weights = weights_of(to_sun, arc, measured);
-    float horizon = 90.0 * (dot(texelFetch(angles_ahead, texel, 0), weights.ahead) + dot(texelFetch(angles_behind, texel, 0), weights.behind));
-    visibility = disc_seen(elevation_of(to_sun), diameter, horizon);
-    vec4 received = received_at(texel, given, to_sun);
-    vec3 sky = given.sky * ambient * map_at(sky_factor, texel, size).rgb;
+    float horizon = dot(texelFetch(upright, texel, 0), texelFetch(stand, ivec2(0), 0));
+    if (measured == EIGHT) horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
+    vec4 over = texelFetch(stand, ivec2(2, 0), 0);
+    visibility = disc_seen(over.a, horizon);
+    vec4 received = received_at(texel);
+    vec3 sky = over.rgb;
+    if (wired_sky_factor) sky *= map_at(sky_factor, texel, size).rgb;
     light = vec4(received.rgb * visibility + sky, received.a * visibility);
 }

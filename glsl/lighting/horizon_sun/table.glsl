@@ -22,7 +22,7 @@ uniform float arc = 135.0;               //! angle(-360, 360) unit("°") group("
 vec4 kernel(ivec2 texel) {
     vec2 level = (vec2(texel) - 128.0) / 127.0;
     vec3 normal = vec3(level, sqrt(max(1.0 - dot(level, level), 0.0)));
-    Sunlight given = sunlight(daylight, sun, sun_colour, vec3(0.0));
+    Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, vec3(0.0));
     float received = max(dot(normal, on_arc(given.direction, arc, measured)), 0.0);
     return vec4(given.sun * (gain * (1.0 - clouds) * received), received > 0.0 ? 1.0 : 0.0);
 }

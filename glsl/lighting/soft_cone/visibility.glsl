@@ -58,8 +58,7 @@ float seen(Walk walk, int count, float part, float grows, bool on_lines) {
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
-    vec2 place_of_sun = sun_place(daylight, sun);
-    vec3 light = to_sun(place_of_sun);
+    vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
     if (form == 1) return free_part(light.z - texelFetch(horizon, texel, 0).r * length(light.xy), delta_r);
     vec2 place = place_on(grid, texel, size);

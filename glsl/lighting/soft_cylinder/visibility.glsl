@@ -43,8 +43,7 @@ float seen(Walk walk, int count, float wide, bool on_lines) {
 
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec2 place_of_sun = sun_place(daylight, sun);
-    vec3 light = to_sun(place_of_sun);
+    vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
     vec2 place = place_on(grid, texel, size);
     float wide = radius / 255.0 * relief;

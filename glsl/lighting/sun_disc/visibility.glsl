@@ -46,20 +46,20 @@ float horizon_over(Walk walk, int count, float run, float least, float most, boo
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
-    vec2 place_of_sun = sun_place(daylight, sun);
-    vec3 light = to_sun(place_of_sun);
+    vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
+    float elevation = sun_elevation(wired_daylight, daylight, sun);
     float level = length(light.xy);
-    if (form == 1) return disc_over(max(texelFetch(horizon, texel, 0).r, 0.0), place_of_sun.y, diameter);
+    if (form == 1) return disc_over(max(texelFetch(horizon, texel, 0).r, 0.0), elevation, diameter);
     vec2 place = place_on(grid, texel, size);
     Walk walk = walk_from(place, height_at(height, place) * relief, light, grid, metres, stride, size == grid);
     float run = walk.path * level;
     // Horizons below the disc and above it need not be told apart.
-    float least = max(tangent_of(place_of_sun.y - 0.5 * diameter), 0.0);
-    float most = tangent_of(place_of_sun.y + 0.5 * diameter);
+    float least = max(tangent_of(elevation - 0.5 * diameter), 0.0);
+    float most = tangent_of(elevation + 0.5 * diameter);
     int count = steps_below(walk, least * run, texelFetch(range, ivec2(0), 0).g * relief);
     // Two loops, of which one has no steps: software renderers take both ways of an if inside one.
     float tangent = walk.on_lines
         ? horizon_over(walk, walk.on_lines ? count : 0, run, least, most, true)
         : horizon_over(walk, walk.on_lines ? 0 : count, run, least, most, false);
-    return disc_over(tangent, place_of_sun.y, diameter);
+    return disc_over(tangent, elevation, diameter);
 }

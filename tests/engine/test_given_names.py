@@ -1,0 +1,55 @@
+"""What is given for an input and for a direction: whether it is wired, and the unit vector towards it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.errors import ShaderError
+
+ASKS = """#pragma kernel(output = "told:rgba32f")
+uniform sampler2D wind;  //! input("black")
+uniform vec2 sun = vec2(30.0, 60.0);  //! direction
+vec4 kernel(ivec2 texel) { return vec4(towards_sun, wired_wind ? 1.0 : 0.0); }
+"""
+WIND = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
+PASS = '[[pass]]\nname = "asked"\nuse = "./asks"\n'
+
+
+@pytest.fixture
+def asked(folder):
+    folder.write("asks.glsl", ASKS)
+    folder.write("blows.glsl", WIND)
+    return folder.sketch(PASS)
+
+
+def truth(azimuth, elevation):
+    a, e = np.radians([azimuth, elevation])
+    return [np.sin(a) * np.cos(e), np.cos(a) * np.cos(e), np.sin(e)]
+
+
+@pytest.mark.parametrize("sun", [(30, 60), (-250, -20), (0, 90), (450, 0), (180, -90), (720, 3)], ids=str)
+def test_the_vector_towards_a_direction(any_engine, asked, sun):
+    told = any_engine.read(asked.with_values({"asked.sun": sun}), "asked")[3, 5]
+    np.testing.assert_allclose(told[:3], truth(*sun), atol=1e-7)
+    if sun[0] % 90 == 0 and sun[1] % 90 == 0:
+        assert sorted(np.abs(told[:3])) == [0, 0, 1]
+
+
+def test_moving_the_direction_is_seen_though_only_its_vector_is_read(any_engine, asked):
+    before = any_engine.read(asked, "asked")
+    assert (before != any_engine.read(asked.with_values({"asked.sun": (31, 60)}), "asked")).any()
+
+
+def test_whether_an_input_is_wired(any_engine, asked, folder):
+    assert any_engine.read(asked, "asked")[0, 0, 3] == 0
+    blown = folder.sketch('[[pass]]\nname = "wind"\nuse = "./blows"\n' + PASS)
+    assert any_engine.read(blown, "asked")[0, 0, 3] == 1
+    assert any_engine.read(asked, "asked")[0, 0, 3] == 0
+
+
+@pytest.mark.parametrize("name", ["wired_wind", "towards_sun", "wired_", "towards_anything"])
+def test_their_names_are_taken(folder, name):
+    body = f"uniform float {name} = 1.0;\nfloat kernel(ivec2 texel) {{ return {name}; }}\n"
+    with pytest.raises(ShaderError, match=f"'{name}' is given to every kernel"):
+        folder.one('#pragma kernel(output = "a:r32f")\n' + body)
