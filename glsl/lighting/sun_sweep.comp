@@ -11,7 +11,7 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "maths/land.glsl"
-#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", overwrites = "horizon")
+#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4")
 
 uniform sampler2D height;              //! input
 uniform sampler2D daylight;              //! input("black")
@@ -25,7 +25,7 @@ void main() {
     int thread = int(gl_GlobalInvocationID.x);
     if (size != grid) {
         for (int i = thread; i < size.x * size.y; i += 64 * int(gl_NumWorkGroups.x)) {
-            imageStore(out_horizon, ivec2(i % size.x, i / size.x), vec4(NO_HORIZON, 0.0, 0.0, 1.0));
+            horizon[i] = NO_HORIZON;
         }
     }
     Lines lines = lines_towards(grid, light, spacing_of(grid, extent));
@@ -36,6 +36,7 @@ void main() {
         enter_row(band, height, lines, row, climb, relief);
         int across = texel_of(band);
         float tangent = horizon_of(band, lines);
-        if (across >= 0 && across <= lines.last) imageStore(out_horizon, texel_on(lines, row, across), vec4(tangent, 0.0, 0.0, 1.0));
+        ivec2 texel = texel_on(lines, row, across);
+        if (across >= 0 && across <= lines.last) horizon[texel.y * size.x + texel.x] = tangent;
     }
 }
