@@ -13,6 +13,7 @@
 
     theme.py      fonts, colours, margins
     window.py     GLFW, an OpenGL context, Dear ImGui: the one place that knows of screens
+    dividers.py   the lines that part a picture, moved by the mouse
     gesture.py    the mouse over the picture → a camera
     keys.py       the table of keys, which the key map shows as well
 

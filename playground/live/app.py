@@ -21,6 +21,7 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
+from playground.live.dividers import divider_at, moved
 from playground.live.gesture import Gesture, steered
 from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
@@ -114,6 +115,7 @@ class Live:
         self._last = time.perf_counter()
         self._followed: object = None
         self._reloads = session.last_reload
+        self._divider = ""  # the line of the picture that the hand holds
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -201,11 +203,13 @@ class Live:
         self.status.write(actions)
 
     def _steer(self, area: Area) -> None:
-        """Move the camera, or with Ctrl the sun, as the mouse says, unless the mouse is the panel's."""
+        """Move the camera, a divider, or with Ctrl the sun, unless the mouse is the panel's."""
         io, session = imgui.get_io(), self.session
         if io.want_capture_mouse or session.plan is None or session.sketch is None:
             return
         left, right = _dragged(0), _dragged(1)
+        if not io.key_ctrl and self._divide(io.mouse_pos.x - area[0], area[2]):
+            return
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
                 session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
@@ -224,6 +228,20 @@ class Live:
             gone, density = imgui.get_mouse_drag_delta(0, 0.0), self.window.density
             x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
             session.point((x, y, x - gone.x * density, y + gone.y * density))
+
+    def _divide(self, across: float, width: float) -> bool:
+        """Move the line that is held, or take hold of the one under the mouse; say whether there is one."""
+        session = self.session
+        if session.map is not None or session.sketch is None:
+            return False
+        if not imgui.is_mouse_down(0) or imgui.is_mouse_clicked(0):
+            self._divider = divider_at(session.sketch, across, width)
+        if not self._divider:
+            return False
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        if imgui.is_mouse_down(0) and not imgui.is_mouse_clicked(0) and imgui.get_io().mouse_delta.x:
+            session.set(self._divider, moved(across, width))
+        return True
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""

@@ -282,6 +282,7 @@ CONTROLS: dict[str, Draw] = {
     "slider": _slider,
     "log_slider": _slider,
     "angle": _slider,
+    "divider": _slider,
     "direction": _direction,
     "colour": _colour,
     "menu": _menu,

@@ -34,6 +34,12 @@ WIDGETS: dict[str, Kind] = {
     "slider": Kind(_NUMBERS, "range"),
     "log_slider": Kind(("float", "int", "uint"), "range"),
     "angle": Kind(("float",), "range or nothing", range=(-360.0, 360.0), unit="°"),
+    "divider": Kind(
+        ("float",),
+        range=(0.0, 1.0),
+        expects="a share of the picture's width, from 0 to 1",
+        listed="0 to 1",
+    ),
     "direction": Kind(
         ("vec2",),
         expects="azimuth and elevation in degrees, as 135,25",

@@ -274,6 +274,38 @@ def test_the_mouse_and_the_keys(app: App) -> None:
     assert app.ended() == 0, app.complaint()
 
 
+PARTED = """// parted.glsl -- black on the left of a line, white on its right
+#pragma kernel(output = "frame:rgba8")
+uniform float line = 0.5;  //! divider Where it stands
+vec4 kernel(ivec2 texel) { return vec4(vec3(float(texel.x) + 0.5 < line * float(size.x) ? 0.0 : 1.0), 1.0); }
+"""
+
+
+def test_a_line_in_the_picture_is_dragged_and_nothing_else_is(app: App) -> None:
+    screen, wide = app.screen, WIDTH - PANEL
+    (app.sketch / "parted.glsl").write_text(PARTED, encoding="utf-8")
+    before = app.now()["picture"]
+    sketch = SKETCH[: SKETCH.index("[view]")] + '[view]\nuse = "./parted"\n'
+    save_in_place(app.sketch / "sketch.toml", sketch)
+    shown = app.wait(lambda now: now["picture"] not in ("", before))["picture"]
+
+    def lit_from() -> int:
+        """Return the first bright pixel from the picture's left."""
+        return int(np.argmax(screen.pixels()[150, PANEL:, 0] > 128))
+
+    assert soon(lambda: abs(lit_from() - wide / 2) <= 1)
+    middle = PANEL + wide // 2
+    screen.do("mousemove", middle + 60, 150, "mousedown", 1, "mousemove", middle + 90, 150, "mouseup", 1)
+    time.sleep(0.3)
+    assert app.now()["picture"] == shown, "taken hold of beside the line"
+    for words in (("mousemove", middle + 2, 150), ("mousedown", 1), ("mousemove", middle + 50, 160)):
+        screen.do(*words)
+        time.sleep(0.15)
+    screen.do("mousemove", middle + 100, 160, "mouseup", 1)
+    app.wait(lambda now: now["picture"] != shown)
+    assert soon(lambda: abs(lit_from() - (wide // 2 + 100)) <= 3)
+
+
 def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     time.sleep(1.5)
     before, used = app.now()["draws"], cpu_seconds(app.process.pid)

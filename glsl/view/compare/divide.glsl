@@ -10,7 +10,7 @@
 uniform sampler2D left;        //! input
 uniform sampler2D right;       //! input
 uniform int mode = 0;          //! menu("side by side", "difference") group("Compare") label("Compare") One on each side of a line, or how far they are apart
-uniform float divider = 0.5;   //! slider(0, 1) step(0.005) group("Compare") Where the line stands, from the left
+uniform float divider = 0.5;   //! divider step(0.005) group("Compare") Where the line stands, from the left
 uniform float amplified = 4.0; //! log_slider(1, 64) group("Compare") The difference is multiplied by it; grey where there is none
 
 vec4 kernel(ivec2 texel) {

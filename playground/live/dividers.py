@@ -1,0 +1,35 @@
+"""Move the lines that part a picture with the mouse: parameters whose widget is a divider."""
+
+from __future__ import annotations
+
+from playground.sketch.assign import shown_parameters, value_of, values_of
+from playground.sketch.model import Sketch
+
+REACH = 6.0
+"""How far beside a line it can be taken hold of, in the screen's units."""
+
+
+def dividers_of(sketch: Sketch) -> dict[str, float]:
+    """Return where the lines stand that the view shows, in shares of its width from the left, by path."""
+    leaves = values_of(sketch)
+    found = {
+        shown.path: value_of(sketch, shown.path, leaves)
+        for shown in shown_parameters(sketch)
+        if shown.exported and shown.parameter.widget.kind == "divider"
+    }
+    return {path: float(value) for path, value in found.items() if isinstance(value, int | float)}
+
+
+def divider_at(sketch: Sketch, across: float, width: float) -> str:
+    """Return the path of the line nearest to a place ``across`` a picture ``width`` wide, in the same units.
+
+    "" where none is in reach.
+    """
+    away = {path: abs(share * width - across) for path, share in dividers_of(sketch).items()}
+    nearest = min(away, key=away.__getitem__, default="")
+    return nearest if nearest and away[nearest] <= REACH else ""
+
+
+def moved(across: float, width: float) -> float:
+    """Return where a line stands when it is held at a place across the picture."""
+    return round(min(max(across / width, 0.0), 1.0), 4)
