@@ -13,9 +13,9 @@ from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.assign import LAND, Shown, shown_parameters, value_of, values_of
 from playground.sketch.find import is_part, shipped_names, shipped_sketches
-from playground.sketch.load import load
+from playground.sketch.load import load, load_with
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
-from playground.sketch.techniques import read_technique
+from playground.sketch.techniques import Techniques, read_technique
 from playground.sketch.values import write
 from playground.sketch.widgets import WIDGETS
 from playground.sketch.wiring import input_names, output_names
@@ -100,9 +100,10 @@ class Entry:
 def sketches() -> list[Entry]:
     """List the sketches that ship."""
     found = []
+    read = Techniques()  # most are in several sketches
     for name in shipped_sketches():
         try:
-            found.append(_of_sketch(name, load(name)))
+            found.append(_of_sketch(name, load_with(read, name)))
         except PlaygroundError as error:
             found.append(Entry(name, "sketch", file=str(SKETCHES / f"{name}.toml"), error=str(error)))
     return found
@@ -114,13 +115,14 @@ def techniques(within: str = "") -> list[Entry]:
     The parts of a technique are listed only where its own folder is asked for.
     """
     found = []
+    read = Techniques()
     for name in shipped_names():
         if is_part(name) and not (within and is_part(f"{within}/x")):
             continue
         if within and not name.startswith(f"{within.rstrip('/')}/"):
             continue
         try:
-            found.append(_of_technique(name, read_technique(name, GLSL, GLSL)))
+            found.append(_of_technique(name, read.read(name, GLSL, GLSL)))
         except PlaygroundError as error:
             if "is a library file" not in str(error):
                 found.append(Entry(name, "technique", error=str(error)))

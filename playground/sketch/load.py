@@ -38,6 +38,11 @@ def load(name: str | Path = "") -> Sketch:
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
     """
+    return load_with(Techniques(), name)
+
+
+def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
+    """Load a sketch as ``load`` does, but take what these techniques have read already as still the same."""
     if not isinstance(name, str | Path):
         raise SketchError(f"a sketch is loaded by its name or its path, not by {name!r}")
     path = find(name or DEFAULT_SKETCH).resolve()
@@ -45,7 +50,6 @@ def load(name: str | Path = "") -> Sketch:
         if path.suffix in SHADERS:
             return _shader_alone(path)
         file = TomlFile(path, path.parent)
-        techniques = Techniques()
         if _holds_technique(file):
             return _staged(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
         sketch = read_sketch(file, techniques.read)
