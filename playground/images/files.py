@@ -39,12 +39,14 @@ from playground.paths import shown
 
 if TYPE_CHECKING:
     import PIL.Image
+    from PIL.PngImagePlugin import PngInfo
 
     _Picture = PIL.Image.Image
 
 MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
 
 _PNG_START = b"\x89PNG\r\n\x1a\n"
+_PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
 
 
@@ -261,11 +263,18 @@ def encode_png(array: NDArray[np.uint8], text: Mapping[str, str] = _NO_TEXT) -> 
         DataError: another dtype or shape, or a key that PNG cannot hold.
     """
     import PIL.Image
-    from PIL.PngImagePlugin import PngInfo
 
     array = np.asarray(array)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
         raise DataError(f"a picture is a uint8 array (rows, cols, 3 or 4); found {array.dtype} {array.shape}")
+    stream = io.BytesIO()
+    PIL.Image.fromarray(np.ascontiguousarray(array)).save(stream, "PNG", pnginfo=_texts(text))
+    return stream.getvalue()
+
+
+def _texts(text: Mapping[str, str]) -> PngInfo:
+    from PIL.PngImagePlugin import PngInfo
+
     chunks = PngInfo()
     for key, value in text.items():
         if not re.fullmatch(r"[!-~¡-ÿ](?:[ -~¡-ÿ]{0,77}[!-~¡-ÿ])?", key) or "  " in key:
@@ -273,9 +282,32 @@ def encode_png(array: NDArray[np.uint8], text: Mapping[str, str] = _NO_TEXT) -> 
         if "\0" in value:
             raise DataError(f"the text {key!r} has a zero character in it, which PNG cannot hold")
         chunks.add_text(key, value)
-    stream = io.BytesIO()
-    PIL.Image.fromarray(np.ascontiguousarray(array)).save(stream, "PNG", pnginfo=chunks)
-    return stream.getvalue()
+    return chunks
+
+
+def encode_samples(
+    samples: NDArray[np.uint8] | NDArray[np.uint16], text: Mapping[str, str] = _NO_TEXT
+) -> bytes:
+    """Return the bytes of a PNG that stores numbers as they are, as `read_samples` gives them.
+
+    `samples` is uint8 or uint16, (rows, cols) or (rows, cols, 1, 3 or 4), top row first;
+    `text` as in `encode_png`.
+    """
+    if samples.ndim == 2:
+        samples = samples[..., None]
+    rows, cols, channels = samples.shape
+    depth = 8 * samples.dtype.itemsize
+    stored = samples.astype(samples.dtype.newbyteorder(">")).reshape(rows, -1).view(np.uint8)
+    # Filter 2, "Up": each byte less the one above it; smooth land packs well that way.
+    lines = np.empty((rows, stored.shape[1] + 1), dtype=np.uint8)
+    lines[:, 0] = 2
+    lines[0, 1:] = stored[0]
+    np.subtract(stored[1:], stored[:-1], out=lines[1:, 1:])
+    header = struct.pack(">IIBBBBB", cols, rows, depth, _PNG_KINDS[channels], 0, 0, 0)
+    body = zlib.compress(lines.tobytes(), 6)
+    texts = [_chunk(kind, data) for kind, data, *_ in _texts(text).chunks]
+    chunks = [_chunk(b"IHDR", header), *texts, _chunk(b"IDAT", body), _chunk(b"IEND", b"")]
+    return _PNG_START + b"".join(chunks)
 
 
 def write_png(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, str] = _NO_TEXT) -> None:
@@ -339,9 +371,8 @@ def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
 
 
 def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
-    kinds = {1: 0, 3: 2, 4: 6}
     channels = 1 if image.ndim == 2 else image.shape[2]
-    if channels not in kinds:
+    if channels not in _PNG_KINDS:
         raise DataError(
             f"a PNG holds 1, 3 or 4 channels; found {channels}, which .npy and .tif can hold", file=path
         )
@@ -358,17 +389,7 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
         said = f"{outside} of {image.size} values lay outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
     with np.errstate(all="ignore"):
         scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
-    rows, cols = image.shape[:2]
-    stored = scaled.astype(">u2").reshape(rows, -1).view(np.uint8)
-    # Filter 2, "Up": each byte less the one above it; smooth land packs well that way.
-    lines = np.empty((rows, stored.shape[1] + 1), dtype=np.uint8)
-    lines[:, 0] = 2
-    lines[0, 1:] = stored[0]
-    np.subtract(stored[1:], stored[:-1], out=lines[1:, 1:])
-    header = struct.pack(">IIBBBBB", cols, rows, 16, kinds[channels], 0, 0, 0)
-    body = zlib.compress(lines.tobytes(), 6)
-    chunks = [_chunk(b"IHDR", header), _chunk(b"IDAT", body), _chunk(b"IEND", b"")]
-    return _PNG_START + b"".join(chunks), said
+    return encode_samples(scaled.astype(np.uint16)), said
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:

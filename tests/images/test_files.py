@@ -16,6 +16,7 @@ from PIL import Image as PillowImage
 from playground.errors import DataError
 from playground.images.files import (
     encode_png,
+    encode_samples,
     new_name,
     read_image,
     read_png,
@@ -431,3 +432,18 @@ def test_the_slow_codec_of_these_tests_agrees_with_pillow():
     array = RNG.integers(0, 256, (12, 9, 3), dtype=np.uint8)
     assert np.array_equal(np.array(PillowImage.open(io.BytesIO(slow_png(array)))), array)
     assert np.array_equal(slow_unpng(slow_png(array)), array)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize("shape", [(4, 7), (4, 7, 1), (3, 5, 3), (6, 1, 4)])
+def test_samples_are_stored_as_they_are_with_texts(dtype, shape, tmp_path):
+    samples = RNG.integers(0, np.iinfo(dtype).max, shape, dtype=dtype, endpoint=True)
+    path = tmp_path / "a.png"
+    path.write_bytes(encode_samples(samples, {"scale_m": "0.25", "Title": "Grès"}))
+    found = read_samples(path)
+    assert found.dtype == dtype
+    np.testing.assert_array_equal(found, samples.reshape(found.shape))
+    with PillowImage.open(path) as picture:
+        assert picture.text == {"scale_m": "0.25", "Title": "Grès"}
+    with pytest.raises(DataError, match="cannot name a text"):
+        encode_samples(samples, {"": "x"})
