@@ -168,7 +168,8 @@ def _finish(found: Found, path: Path, first_row: Edge) -> Elevation:
         short = values == _SHORT_VOID
         void = short if void is None else void | short
     with np.errstate(all="ignore"):
-        scaled = values if found.scale == 1.0 else values.astype(np.float64) * found.scale
+        plain = (found.scale, found.offset) == (1.0, 0.0)
+        scaled = values if plain else values.astype(np.float64) * found.scale + found.offset
         heights = np.array(scaled, dtype=np.float32)
     if void is not None:
         heights[void] = np.nan

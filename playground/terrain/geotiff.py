@@ -1,13 +1,14 @@
 """Read elevations from TIFF files, with what GeoTIFF's tags say of metres and gaps.
 
 Reads the first picture only, and does not reproject. Sources: OGC GeoTIFF 1.1 (OGC
-19-008r4, 2019) for tags and keys; GDAL's raster driver documentation for tag 42113.
+19-008r4, 2019) for tags and keys; GDAL's raster driver documentation for tags 42112 and 42113.
 """
 
 from __future__ import annotations
 
 import logging
 import math
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -56,6 +57,7 @@ def read_tiff(path: Path, packing: Packing) -> Found:
             values = np.moveaxis(values, 0, -1)
         geo = _geography(page, rows_cols, path)
         void = _tiff_void(page, values)
+        packed = _packing(page, path)
         notes = geo.notes
         if len(pages) > 1 and not getattr(pages[1], "is_reduced", True):
             notes += (f"the first of {len(pages)} pictures was read",)
@@ -69,14 +71,17 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         raise DataError("packed heights need three channels of 8 bits; found one", file=path)
     else:
         code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(values.dtype.str[1:])
-    in_metres = geo.in_metres and code_range in (None, SIXTEEN_BIT)
+    in_metres = geo.in_metres and (packed is not None or code_range in (None, SIXTEEN_BIT))
+    scale, offset = packed if packed is not None and in_metres else (1.0, 0.0)
+    unit = geo.height_unit if in_metres else 1.0
     return Found(
         values,
         geo.spacing,
         in_metres=in_metres,
         code_range=None if in_metres else code_range,
         void=void,
-        scale=geo.height_unit if in_metres else 1.0,
+        scale=scale * unit,
+        offset=offset * unit,
         notes=notes,
     )
 
@@ -132,6 +137,25 @@ def _tiff_void(page: tifffile.TiffPage, values: NDArray[Any]) -> NDArray[np.bool
     if abs(value) > 1e30:  # the lowest float, which programs round in several ways before printing
         return np.asarray(np.abs(values) > 1e30)
     return np.asarray(values == values.dtype.type(value))
+
+
+def _packing(page: tifffile.TiffPage, path: Path) -> tuple[float, float] | None:
+    """Return what a whole number is multiplied by and what is added, where GDAL's metadata say so."""
+    text = str(page.tags.valueof(42112) or "")  # XML, of which two items of the first channel count
+    found = {}
+    for attributes, value in re.findall(r"<Item\b([^>]*)>([^<]*)</Item>", text):
+        role = re.search(r'\brole="(scale|offset)"', attributes)
+        if role and not re.search(r'\bsample="(?!0")', attributes):
+            try:
+                found[role[1]] = float(value)
+            except ValueError:
+                found[role[1]] = math.nan
+    if not found:
+        return None
+    scale, offset = found.get("scale", 1.0), found.get("offset", 0.0)
+    if not (math.isfinite(scale) and math.isfinite(offset) and scale):
+        raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
+    return scale, offset
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ class Found:
     code_range: tuple[float, float] | None = None
     void: NDArray[np.bool_] | None = None  # where there is no data, NaN apart
     scale: float = 1.0  # metres in the file's unit of height
+    offset: float = 0.0  # [m] height of the file's 0
     notes: tuple[str, ...] = ()
 
 

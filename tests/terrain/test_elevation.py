@@ -172,6 +172,7 @@ def geotiff(
     tie: tuple[float, ...] = (0, 0, 0, 0, 0, 0),
     no_data: str | None = None,
     matrix: tuple[float, ...] | None = None,
+    metadata: str | None = None,
 ) -> Path:
     directory = [1, 1, 0, len(keys)]
     for key, value in sorted(keys.items()):
@@ -185,6 +186,8 @@ def geotiff(
         tags += [(34735, "H", len(directory), directory, True)]
     if no_data is not None:
         tags += [(42113, "s", 0, no_data, True)]
+    if metadata is not None:
+        tags += [(42112, "s", 0, metadata, True)]
     tifffile.imwrite(path, land, extratags=tags, metadata=None, photometric="minisblack")
     return path
 
@@ -201,6 +204,31 @@ def test_a_projected_geotiff_tells_metres(tmp_path):
 def test_16_bits_without_a_sign_are_metres_in_a_geotiff_only(tmp_path):
     found = read_elevation(geotiff(tmp_path / "a.tif", LAND.astype(np.uint16), {1024: 1, 3076: 9001}))
     assert found.in_metres and found.code_range is None
+
+
+def gdal(*items: str) -> str:
+    return f'<GDALMetadata>\n  <Item name="AREA">7</Item>{"".join(items)}</GDALMetadata>'
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int16, np.float32])
+def test_whole_numbers_that_gdal_s_metadata_scale_become_metres(tmp_path, dtype):
+    scale, offset = (
+        f'<Item name="{r.upper()}" sample="0" role="{r}">{v}</Item>'
+        for r, v in (("scale", 0.5), ("offset", -40))
+    )
+    other = '<Item name="SCALE" sample="1" role="scale">9</Item>'
+    keys, land = {1024: 1, 3076: 9001, 4099: 9002}, (LAND % 200).astype(dtype)
+    path = geotiff(tmp_path / "a.tif", land, keys, metadata=gdal(offset, scale, other))
+    found = read_elevation(path)
+    assert found.in_metres and found.code_range is None
+    np.testing.assert_allclose(found.heights[::-1], (land * 0.5 - 40.0) * 0.3048, rtol=1e-6)
+    # Without a spacing in metres nothing says that the scaled numbers are metres.
+    path = geotiff(tmp_path / "b.tif", land, {}, metadata=gdal(offset, scale))
+    assert_land(read_elevation(path), land)
+    refused(
+        geotiff(tmp_path / "c.tif", land, keys, metadata=gdal(scale.replace("0.5", "much"))),
+        "a scale or an offset that is no number",
+    )
 
 
 @pytest.mark.parametrize(("unit", "metres"), [(9002, 0.3048), (9003, 1200 / 3937)])
