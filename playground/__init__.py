@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.api import headless as headless
     from playground.api import parameters as parameters
     from playground.api import render as render
+    from playground.capture.export import export as export
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
     from playground.errors import ContextError as ContextError
@@ -49,6 +50,7 @@ _HOMES = {
     "headless": "playground.api",
     "render": "playground.api",
     "parameters": "playground.api",
+    "export": "playground.capture.export",
     "Engine": "playground.engine.engine",
     "Frame": "playground.engine.frame",
     "load": "playground.sketch.load",

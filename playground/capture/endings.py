@@ -1,0 +1,42 @@
+"""Say what each kind of exported file holds, and in how many bits."""
+
+from __future__ import annotations
+
+HEIGHT, COLOUR, NUMBERS = "height", "colour", "numbers"
+KINDS = (HEIGHT, COLOUR, NUMBERS)
+"""Metres above sea level; linear light, encoded as sRGB where a format expects that; numbers as they are."""
+
+VALUES: dict[str, dict[str, tuple[int, ...]]] = {
+    ".png": {HEIGHT: (16,), COLOUR: (8, 16), NUMBERS: (16, 8)},
+    ".tif": {HEIGHT: (32, 16), COLOUR: (32,), NUMBERS: (32, 16)},
+    ".tiff": {HEIGHT: (32, 16), COLOUR: (32,), NUMBERS: (32, 16)},
+    ".exr": {HEIGHT: (32,), COLOUR: (32, 16), NUMBERS: (32, 16)},
+    ".npy": {HEIGHT: (32,), COLOUR: (32,), NUMBERS: (32,)},
+    ".r16": {HEIGHT: (16,), NUMBERS: (16,)},
+    ".raw": {HEIGHT: (16,), NUMBERS: (16,)},
+    ".r32": {HEIGHT: (32,), NUMBERS: (32,)},
+    ".webp": {COLOUR: (8,)},
+    ".jpg": {COLOUR: (8,)},
+    ".jpeg": {COLOUR: (8,)},
+}
+"""Ending → kind → bits a number may have, the usual first. 8 and 16 are whole numbers, but
+that 16 in an EXR, like 32 everywhere, are floats."""
+
+RAW = (".r16", ".raw", ".r32")
+"""Numbers and nothing else: a JSON beside the file tells what they are."""
+
+PICTURES = (".webp", ".jpg", ".jpeg")
+"""Colours and nothing else."""
+
+MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
+"""Ending → vertices that the longer side of a mesh may have; OBJ is text, six times as long."""
+
+USUAL_GRID = 513
+"""Vertices of the longer side where nobody asks for another number."""
+
+ENDINGS = (*VALUES, *MESHES)
+
+
+def whole_numbers(ending: str, bits: int) -> bool:
+    """Say whether numbers of so many bits are whole ones in a file of that ending."""
+    return bits < 32 and ending != ".exr"

@@ -1,0 +1,255 @@
+"""Export heights, textures and the land as a mesh: choose what is written, and in what form.
+
+An ending and a texture tell what a file holds: heights become metres above sea level,
+colours and light are encoded as sRGB where a format expects it, other numbers stay as they
+are; the land itself becomes a mesh with its texture. Everything is refused that can be
+before a texel is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.api import headless
+from playground.capture.endings import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
+from playground.capture.find import height_of, kind_of, seen
+from playground.capture.form import Form, besides, bits_for, check
+from playground.capture.gltf import encode_glb
+from playground.capture.mesh import grid_of, land_mesh, sampled
+from playground.capture.obj import encode_mtl, encode_obj
+from playground.capture.pictures import encode_picture
+from playground.capture.together import write_together
+from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
+from playground.engine.engine import Engine, opened
+from playground.engine.plan import Plan
+from playground.errors import DataError, SketchError
+from playground.images.files import encode_samples
+from playground.sketch.model import DEFAULT_PICTURE, Sketch
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written."""
+
+    path: Path
+    said: str  # one line on what the file holds
+    beside: tuple[Path, ...] = ()  # further files that belong to it
+    warnings: tuple[str, ...] = ()  # what was lost
+
+
+@dataclass(frozen=True)
+class Job:
+    """An export that nothing speaks against, so far as can be told before a texel is made."""
+
+    sketch: Sketch
+    path: Path
+    form: Form
+    plan: Plan
+    texture: str  # of the values, or draped over the mesh; "" for a mesh without one
+    kind: str
+    height: str = ""  # of a mesh
+    light: str = ""  # to bake in
+
+    @property
+    def ending(self) -> str:
+        """Return the ending of the file, in small letters."""
+        return self.path.suffix.lower()
+
+
+def export(
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    *,
+    texture: str = "",
+    kind: str = "",
+    bits: int = 0,
+    span: tuple[float, float] | None = None,
+    grid: int = 0,
+    light: bool = False,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    engine: Engine | None = None,
+) -> Exported:
+    """Write a sketch's heights, one of its textures, or its land as a mesh, by the path's ending.
+
+    ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
+    the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the land with its
+    texture. Rows come from the north. The other arguments are those of ``Form``; ``time``, in
+    seconds, and ``steps`` are as in ``Engine.render``. A file of that name is replaced, whole
+    or not at all. Without an ``engine`` one is opened.
+
+    Raises ``PlaygroundError`` for any mistake in what is asked, or a file that cannot be written.
+    """
+    form, found = Form(texture, kind, bits, span, grid, light), opened(sketch)
+    check(Path(path), form)
+    if engine is not None:
+        return run(engine, prepare(engine, found, Path(path), form, time=time, steps=steps))
+    with headless() as own:
+        return run(own, prepare(own, found, Path(path), form, time=time, steps=steps))
+
+
+def prepare(
+    engine: Engine,
+    sketch: Sketch,
+    path: Path,
+    form: Form,
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+) -> Job:
+    """Find the textures that an export needs; raise ``PlaygroundError`` where there are none."""
+    check(path, form)
+    plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
+    if path.suffix.lower() in MESHES:
+        return _prepare_mesh(sketch, path, form, plan)
+    texture, kind = form.texture, form.kind
+    if texture:
+        plan.flat.ref(texture, sketch.name)
+        kind = kind or kind_of(plan, texture)
+    else:
+        texture, kind = height_of(plan), kind or HEIGHT
+    return Job(sketch, path, replace(form, bits=bits_for(path, kind, form)), plan, texture, kind)
+
+
+def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> Job:
+    height, texture, kind = height_of(plan), form.texture, form.kind or COLOUR
+    if texture:
+        plan.flat.ref(texture, sketch.name)
+        kind = form.kind or kind_of(plan, texture)
+        kind = NUMBERS if kind == HEIGHT else kind  # 0 to 1 may be seen; metres would be all white
+    else:
+        texture = seen(plan, "colour")
+    light = seen(plan, "light") if form.light else ""
+    if form.light and not light:
+        raise SketchError(f"sketch {sketch.name} has no light to bake in")
+    return Job(sketch, path, form, plan, texture, kind, height, light)
+
+
+def run(engine: Engine, job: Job) -> Exported:
+    """Make the textures that a job needs and write its files, all of them or none."""
+    return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)
+
+
+def _read(engine: Engine, job: Job, texture: str, kind: str) -> NDArray[np.float32]:
+    """Return a texture with its north row first, heights in metres, colours without their alpha."""
+    values = engine.read(job.sketch, texture, time=job.plan.time, steps=job.plan.steps)[::-1]
+    channels = 1 if values.ndim == 2 else values.shape[2]
+    if kind == HEIGHT:
+        if channels != 1:
+            raise SketchError(f"texture '{texture}' has {channels} channels; heights have one")
+        relief, base = job.plan.land.relief, job.plan.land.base_elevation
+        assert relief is not None and base is not None  # a plan's land is known
+        metres: NDArray[np.float32] = (values.astype(np.float64) * relief + base).astype(np.float32)
+        return metres
+    if kind == COLOUR:
+        if channels == 2:
+            raise SketchError(f"texture '{texture}' has 2 channels; colours have one or three")
+        return values[..., :3] if channels > 3 else values
+    return values
+
+
+def _write_values(engine: Engine, job: Job) -> Exported:
+    values = _read(engine, job, job.texture, job.kind)
+    channels = 1 if values.ndim == 2 else values.shape[2]
+    if job.ending in RAW and channels != 1:
+        raise DataError(f"a raw file holds one number a texel; '{job.texture}' has {channels}", file=job.path)
+    if job.ending == ".png" and channels == 2:
+        raise DataError(
+            f"a PNG holds 1, 3 or 4 channels; '{job.texture}' has 2, as .tif, .exr and .npy can",
+            file=job.path,
+        )
+    rows, cols = values.shape[:2]
+    spacing = _spacing(job, (cols, rows))
+    try:
+        if job.ending in PICTURES:
+            made = encode_picture(values, job.ending)
+        else:
+            made = encode(Layer(values, job.kind, spacing, job.form.bits, job.form.span), job.ending)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=job.path) from error
+    files = {job.path: made.data}
+    beside = tuple(besides(job.path)) if made.beside else ()
+    files |= dict.fromkeys(beside, made.beside)
+    write_together(files)
+    said = [f"{cols} x {rows}", *made.said, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
+    return Exported(job.path, "; ".join(said), beside, tuple(filter(None, [made.warning])))
+
+
+def _spacing(job: Job, size: tuple[int, int]) -> tuple[float, float]:
+    extent = job.plan.land.extent
+    assert extent is not None  # a plan's land is known
+    return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
+
+
+def _write_mesh(engine: Engine, job: Job) -> Exported:
+    heights = _read(engine, job, job.height, HEIGHT)
+    wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
+    size = grid_of((heights.shape[1], heights.shape[0]), wanted)
+    baked, texels, warning = _texture(engine, job)
+    extent = job.plan.land.extent
+    assert extent is not None  # a plan's land is known
+    try:
+        mesh = land_mesh(sampled(heights, size), extent, texels or (2, 2))
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=job.path) from error
+    name = job.sketch.name
+    beside: list[Path] = []
+    if job.ending == ".glb":
+        glb = encode_glb(mesh, name, texture=baked, unlit=bool(job.light), software=SOFTWARE)
+        files = {job.path: glb}
+    else:
+        library, picture = besides(job.path)
+        beside = [library, picture] if baked else [library]
+        named = picture.name if baked else ""
+        files = {path: baked for path in beside[1:]}
+        files[library] = encode_mtl(texture=named, unlit=bool(job.light), software=SOFTWARE)
+        files[job.path] = encode_obj(mesh, name, library=library.name, software=SOFTWARE)
+    write_together(files)
+    low, high = float(mesh.positions[:, 1].min()), float(mesh.positions[:, 1].max())
+    said = [
+        f"{size[0]} x {size[1]} vertices, {len(mesh.triangles)} triangles",
+        f"{extent[0]:.7g} x {extent[1]:.7g} m, {low:.5g} to {high:.5g} m high",
+        f"texture {texels[0]} x {texels[1]}" if texels else "no texture: the sketch has no colour",
+    ]
+    notes = [warning]
+    if job.form.grid > max(size):
+        notes.append(f"the land has {max(size)} texels on its longer side, so the mesh has no more vertices")
+    return Exported(job.path, "; ".join(said), tuple(beside), tuple(filter(None, notes)))
+
+
+def _texture(engine: Engine, job: Job) -> tuple[bytes, tuple[int, int] | None, str]:
+    """Return the PNG that is draped over the mesh, its size, and a sentence on what was clamped."""
+    layers = []
+    if job.texture:
+        layers.append(_three(_read(engine, job, job.texture, job.kind)))
+    if job.light:
+        layers.append(_three(_read(engine, job, job.light, COLOUR)))
+    if not layers:
+        return b"", None, ""
+    size = max(v.shape[1] for v in layers), max(v.shape[0] for v in layers)
+    colours = sampled(layers[0], size)
+    for other in layers[1:]:
+        colours = colours * sampled(other, size)
+    text = {"Software": SOFTWARE}
+    try:
+        if job.kind != COLOUR and not job.light:
+            made: Encoded = encode(Layer(colours, NUMBERS, (1.0, 1.0), 8), ".png")
+            return made.data, size, made.warning
+        samples, warning = colour_samples(colours)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=job.path) from error
+    return encode_samples(samples, text), size, warning
+
+
+def _three(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return three channels: grey is repeated, a missing blue is 0, alpha is left out."""
+    if values.ndim == 2:
+        return np.repeat(values[..., None], 3, axis=2)
+    if values.shape[2] == 2:
+        return np.concatenate([values, np.zeros_like(values[..., :1])], axis=2)
+    return values[..., :3]

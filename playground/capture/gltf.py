@@ -1,0 +1,123 @@
+"""Write glTF 2.0 in one binary file (.glb): the land's mesh, its texture inside.
+
+Source: Khronos Group 2021, "glTF 2.0 Specification" (revision 2.0.1), sections 3 and 4, and
+the extension KHR_materials_unlit. A node, a mesh, a material, at most one image.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.capture.mesh import LandMesh
+from playground.errors import DataError
+
+_MAGIC, _VERSION, _JSON, _BIN = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
+_VERTICES, _INDICES = 34962, 34963  # what a buffer view is for
+_USHORT, _UINT, _FLOAT = 5123, 5125, 5126
+_LINEAR, _LINEAR_MIPMAP_LINEAR, _CLAMP = 9729, 9987, 33071
+_SHORTEST = 65535  # vertices: index 65535 itself begins a new strip
+_LARGEST = 2**32 - 1  # bytes of a file, whose length is 32 bits
+
+
+def encode_glb(
+    mesh: LandMesh, name: str, *, texture: bytes = b"", unlit: bool = False, software: str = ""
+) -> bytes:
+    """Return the bytes of a .glb.
+
+    ``texture`` is a PNG, sRGB; without one the land is white. ``unlit`` says that light is in
+    the texture already, so that a program adds none. Indices have 16 bits where they can.
+
+    Raises:
+        DataError: more bytes than the format can count.
+    """
+    narrow = len(mesh.positions) <= _SHORTEST
+    indices = mesh.triangles.ravel().astype("<u2" if narrow else "<u4")
+    parts: list[tuple[bytes, int]] = [
+        (_bytes(mesh.positions), _VERTICES),
+        (_bytes(mesh.normals), _VERTICES),
+        (_bytes(mesh.uv), _VERTICES),
+        (indices.tobytes(), _INDICES),
+    ]
+    if texture:
+        parts.append((texture, 0))
+    count = len(mesh.positions)
+    positions = {
+        "min": [float(v) for v in mesh.positions.min(axis=0)],
+        "max": [float(v) for v in mesh.positions.max(axis=0)],
+    }
+    look: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
+    material: dict[str, Any] = {"name": name, "pbrMetallicRoughness": look}
+    document: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": software},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": name}],
+        "meshes": [
+            {
+                "name": name,
+                "primitives": [
+                    {
+                        "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2},
+                        "indices": 3,
+                        "material": 0,
+                    }
+                ],
+            }
+        ],
+        "materials": [material],
+        "accessors": [
+            {"bufferView": 0, "componentType": _FLOAT, "count": count, "type": "VEC3", **positions},
+            {"bufferView": 1, "componentType": _FLOAT, "count": count, "type": "VEC3"},
+            {"bufferView": 2, "componentType": _FLOAT, "count": count, "type": "VEC2"},
+            {
+                "bufferView": 3,
+                "componentType": _USHORT if narrow else _UINT,
+                "count": indices.size,
+                "type": "SCALAR",
+            },
+        ],
+    }
+    if texture:
+        look["baseColorTexture"] = {"index": 0}
+        document["textures"] = [{"source": 0, "sampler": 0}]
+        document["images"] = [{"bufferView": 4, "mimeType": "image/png", "name": name}]
+        document["samplers"] = [
+            {"magFilter": _LINEAR, "minFilter": _LINEAR_MIPMAP_LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
+        ]
+    if unlit:
+        material["extensions"] = {"KHR_materials_unlit": {}}
+        document["extensionsUsed"] = ["KHR_materials_unlit"]
+    return _packed(document, parts)
+
+
+def _bytes(values: NDArray[np.float32]) -> bytes:
+    return values.astype("<f4").tobytes()
+
+
+def _packed(document: dict[str, Any], parts: list[tuple[bytes, int]]) -> bytes:
+    views, blobs, start = [], [], 0
+    for data, target in parts:
+        view = {"buffer": 0, "byteOffset": start, "byteLength": len(data)}
+        views.append(view | ({"target": target} if target else {}))
+        padded = _padded(data, b"\0")
+        blobs.append(padded)
+        start += len(padded)
+    document["bufferViews"] = views
+    document["buffers"] = [{"byteLength": start}]
+    text = _padded(json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode(), b" ")
+    length = 12 + 8 + len(text) + 8 + start
+    if length > _LARGEST:
+        raise DataError(f"{length} bytes are more than a .glb can count; choose a smaller texture or grid")
+    head = struct.pack("<III", _MAGIC, _VERSION, length)
+    return b"".join(
+        [head, struct.pack("<II", len(text), _JSON), text, struct.pack("<II", start, _BIN), *blobs]
+    )
+
+
+def _padded(data: bytes, fill: bytes) -> bytes:
+    return data + fill * (-len(data) % 4)

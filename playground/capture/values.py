@@ -1,0 +1,255 @@
+"""Turn a texture into the bytes of a file of heights or of other numbers.
+
+What whole numbers stand for is written where the format has a place for it (PNG's texts,
+GDAL's scale and offset in TIFF) and beside the file where it has none (raw). TIFF carries
+GeoTIFF's tags: texels are points, the land's south-west corner is (0, 0), metres.
+
+Sources: OGC GeoTIFF 1.1 (OGC 19-008r4, 2019) for tags and keys; GDAL's raster driver
+documentation for tag 42112.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground._version import __version__
+from playground.capture.endings import COLOUR, HEIGHT, whole_numbers
+from playground.capture.exr import encode_exr
+from playground.errors import DataError
+from playground.images.files import encode_samples
+from playground.sketch.colour import linear_to_srgb
+
+SOFTWARE = f"terrain shader playground {__version__}"
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """A texture to write, and how."""
+
+    values: NDArray[np.float32]  # (rows, cols) or (rows, cols, 1 to 4), north row first
+    kind: str  # height: [m] above sea level; colour: linear; numbers
+    spacing: tuple[float, float]  # [m] a texel, east and north
+    bits: int
+    span: tuple[float, float] | None = None  # what 0 and the largest whole number stand for
+
+    @property
+    def unit(self) -> str:
+        """Return " m" for heights, else nothing."""
+        return " m" if self.kind == HEIGHT else ""
+
+
+@dataclass(frozen=True)
+class Encoded:
+    """The bytes of a file, and what there is to say of them."""
+
+    data: bytes
+    said: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers stand for
+    warning: str = ""  # what was lost
+    beside: bytes = b""  # of a JSON file that goes beside it
+
+
+def encode(layer: Layer, ending: str) -> Encoded:
+    """Return the bytes of a file with that ending.
+
+    Raises:
+        DataError: values that the format cannot hold.
+    """
+    if not whole_numbers(ending, layer.bits):
+        return _floats(layer, ending)
+    if layer.kind == COLOUR:
+        samples, warning = colour_samples(layer.values, layer.bits)
+        return Encoded(encode_samples(samples, _text(layer)), (f"sRGB in {layer.bits} bits",), warning)
+    span = layer.span or usual_span(layer)
+    samples, warning = _quantised(layer, span, ending)
+    top = 2**layer.bits - 1
+    said = (f"{layer.bits} bits", f"0 is {span[0]:.7g}{layer.unit} and {top} is {span[1]:.7g}{layer.unit}")
+    if ending == ".png":
+        return Encoded(encode_samples(samples, _text(layer, span)), said, warning)
+    if ending in (".tif", ".tiff"):
+        return Encoded(_tiff(samples, layer, span), said, warning)
+    beside = _description(layer, "unsigned integer", span)
+    return Encoded(samples.astype("<u2").tobytes(), said, warning, beside)
+
+
+def usual_span(layer: Layer) -> tuple[float, float]:
+    """Return what 0 and the largest number stand for unless told: of heights, the lowest and highest."""
+    if layer.kind != HEIGHT:
+        return 0.0, 1.0
+    _check_finite(layer.values, "whole numbers")
+    low, high = float(layer.values.min()), float(layer.values.max())
+    return low, high if high > low else low + 1.0  # flat land: any metre will do, but a metre
+
+
+def scale_of(span: tuple[float, float], bits: int) -> float:
+    """Return what one step of the whole numbers stands for."""
+    return (span[1] - span[0]) / float(2**bits - 1)
+
+
+def colour_samples(
+    values: NDArray[np.float32], bits: int = 8
+) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], str]:
+    """Return linear colours encoded as sRGB, in whole numbers, and a sentence on what was clamped."""
+    _check_finite(values, "a picture")
+    outside = int(np.count_nonzero((values < 0.0) | (values > 1.0)))
+    warning = ""
+    if outside:
+        warning = (
+            f"{outside} of {values.size} values lay outside 0 to 1 "
+            f"(from {values.min():.4g} to {values.max():.4g}) and were clamped"
+        )
+    top = 2**bits - 1
+    encoded = np.rint(linear_to_srgb(np.clip(values, 0.0, 1.0)) * top)
+    return encoded.astype(np.uint8 if bits == 8 else np.uint16), warning
+
+
+def _quantised(
+    layer: Layer, span: tuple[float, float], ending: str
+) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], str]:
+    values = layer.values
+    _check_finite(values, f"{layer.bits} bits of {ending}")
+    low, high = span
+    outside = int(np.count_nonzero((values < np.float32(low)) | (values > np.float32(high))))
+    warning = ""
+    if outside:
+        warning = (
+            f"{outside} of {values.size} values lay outside {low:.7g} to {high:.7g}{layer.unit} "
+            f"(from {values.min():.7g} to {values.max():.7g}) and were clamped"
+        )
+    share = np.clip((values.astype(np.float64) - low) / (high - low), 0.0, 1.0)
+    whole = np.rint(share * (2**layer.bits - 1))
+    return whole.astype(np.uint8 if layer.bits == 8 else np.uint16), warning
+
+
+def _check_finite(values: NDArray[np.float32], where: str) -> None:
+    bad = int(np.count_nonzero(~np.isfinite(values)))
+    if bad:
+        raise DataError(
+            f"{bad} of {values.size} values are not finite, which {where} cannot hold; floats can, "
+            "as in .npy, .exr or .tif"
+        )
+
+
+def _floats(layer: Layer, ending: str) -> Encoded:
+    said = f"float{layer.bits}"
+    if layer.kind == COLOUR:
+        said += ", linear"
+    elif layer.kind == HEIGHT:
+        said += ", metres above sea level"
+    values = layer.values
+    if ending == ".npy":
+        stream = io.BytesIO()
+        np.lib.format.write_array(stream, np.ascontiguousarray(values), allow_pickle=False)
+        return Encoded(stream.getvalue(), (said,))
+    if ending == ".exr":
+        return _exr(layer, said)
+    if ending == ".r32":
+        return Encoded(values.astype("<f4").tobytes(), (said,), beside=_description(layer, "float"))
+    return Encoded(_tiff(values, layer), (said,))
+
+
+def _exr(layer: Layer, said: str) -> Encoded:
+    comments = f"{_what(layer)}; {_spacing(layer)} m a texel; made by {SOFTWARE}"
+    values: NDArray[Any] = layer.values
+    warning = ""
+    if layer.bits == 16:
+        limit = float(np.finfo(np.float16).max)
+        with np.errstate(invalid="ignore"):  # comparing what is not a number
+            outside = int(np.count_nonzero(np.abs(values) > limit))
+        if outside:
+            warning = f"{outside} of {values.size} values lay beyond {limit:.0f}, where halves end; clamped"
+        with np.errstate(all="ignore"):
+            values = np.clip(values, -limit, limit).astype(np.float16)
+    return Encoded(encode_exr(values, comments), (said,), warning)
+
+
+def _what(layer: Layer) -> str:
+    return {HEIGHT: "heights in metres above sea level", COLOUR: "linear sRGB primaries"}.get(
+        layer.kind, "numbers"
+    )
+
+
+def _spacing(layer: Layer) -> str:
+    return f"{layer.spacing[0]:.9g} {layer.spacing[1]:.9g}"
+
+
+def _text(layer: Layer, span: tuple[float, float] | None = None) -> dict[str, str]:
+    """Return what a PNG says of itself: number * scale + offset is what it stands for."""
+    text = {"Software": SOFTWARE, "spacing_m": _spacing(layer)}
+    if span is not None:
+        unit = "_m" if layer.kind == HEIGHT else ""
+        text |= {f"offset{unit}": repr(span[0]), f"scale{unit}": repr(scale_of(span, layer.bits))}
+    return text
+
+
+def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = None) -> bytes:
+    """Return the JSON that goes beside a raw file, which itself cannot even say how wide it is."""
+    rows, cols = layer.values.shape[:2]
+    told: dict[str, object] = {
+        "software": SOFTWARE,
+        "width": cols,
+        "height": rows,
+        "bits": layer.bits,
+        "numbers": numbers,
+        "byte_order": "little",
+        "first_row": "north",
+        "unit": layer.unit.strip(),
+        "spacing_m": list(layer.spacing),
+    }
+    if span is not None:
+        told |= {"offset": span[0], "scale": scale_of(span, layer.bits)}
+    return (json.dumps(told, indent=2) + "\n").encode()
+
+
+_PIXEL_SCALE, _TIE_POINT, _GEO_KEYS, _GEO_WORDS = 33550, 33922, 34735, 34737
+_GDAL_METADATA = 42112
+_ASCII, _SHORT, _DOUBLE = 2, 3, 12
+
+
+def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None = None) -> bytes:
+    import tifffile
+
+    (dx, dy), rows = layer.spacing, samples.shape[0]
+    citation = "metres from the south-west corner of the land|"
+    # Key, where its value is (0: here), how many, value.
+    keys = [
+        (1024, 0, 1, 1),  # GTModelType: projected
+        (1025, 0, 1, 2),  # GTRasterType: pixel is point
+        (1026, _GEO_WORDS, len(citation), 0),  # GTCitation
+        (3072, 0, 1, 32767),  # ProjectedCRS: of its own
+        (3076, 0, 1, 9001),  # ProjLinearUnits: metre
+    ]
+    if layer.kind == HEIGHT:
+        keys.append((4099, 0, 1, 9001))  # VerticalUnits: metre
+    directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
+    tags: list[tuple[int, int, int, Any, bool]] = [
+        (_PIXEL_SCALE, _DOUBLE, 3, (dx, dy, 0.0), True),
+        (_TIE_POINT, _DOUBLE, 6, (0.0, 0.0, 0.0, 0.0, (rows - 1) * dy, 0.0), True),
+        (_GEO_KEYS, _SHORT, len(directory), tuple(directory), True),
+        (_GEO_WORDS, _ASCII, 0, citation, True),
+    ]
+    if span is not None:
+        items = (("OFFSET", "offset", span[0]), ("SCALE", "scale", scale_of(span, layer.bits)))
+        metadata = "".join(
+            f'<Item name="{name}" sample="{channel}" role="{role}">{value!r}</Item>'
+            for channel in range(samples[0, 0].size)
+            for name, role, value in items
+        )
+        tags.append((_GDAL_METADATA, _ASCII, 0, f"<GDALMetadata>{metadata}</GDALMetadata>", True))
+    stream = io.BytesIO()
+    colours = layer.kind == COLOUR and samples.ndim == 3
+    tifffile.imwrite(
+        stream,
+        np.ascontiguousarray(samples),
+        photometric="rgb" if colours else "minisblack",
+        planarconfig="contig" if samples.ndim == 3 else None,
+        metadata=None,
+        software=SOFTWARE,
+        extratags=tags,
+    )
+    return stream.getvalue()

@@ -1,0 +1,205 @@
+"""`playground export` as a user meets it: what it prints where, its exit status, its sentences."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground import cli
+from playground.capture.endings import ENDINGS
+from playground.commands.export import HELP
+
+ROOT = Path(__file__).resolve().parents[2]
+
+HEIGHT = """// rise.glsl -- a slope that rises to the north.
+#pragma kernel(output = "height:r32f")
+uniform float rise = 1.0;  //! slider(0, 4) How high the northern edge is
+float kernel(ivec2 texel) { return rise * float(texel.y) / float(size.y - 1); }
+"""
+WAVE = """// wave.glsl -- colours, and no height.
+#pragma kernel(output = "colour:rgba16f")
+vec4 kernel(ivec2 texel) { return vec4(0.5); }
+"""
+SKETCH = """format = 1
+size = 17
+extent = 320.0
+relief = 100.0
+[[pass]]
+name = "height"
+use = "./rise"
+[[pass]]
+name = "colour"
+use = "./wave"
+[view]
+use = "view/terrain"
+[[preset]]
+name = "half"
+set = { "height.rise" = 0.5 }
+[[shot]]
+name = "quarter"
+set = { "height.rise" = 0.25 }
+"""
+LIT = SKETCH.replace("[view]", '[[pass]]\nname = "light"\nuse = "./wave"\n[view]', 1).replace(
+    '"half"', '"evening"'
+)
+FLAT = """format = 1
+size = 9
+[[pass]]
+name = "colour"
+use = "./wave"
+[view]
+use = "view/map"
+inputs = { shown = "colour" }
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    made = tmp_path / "rise"
+    made.mkdir()
+    texts = {"rise.glsl": HEIGHT, "wave.glsl": WAVE}
+    for name, text in (texts | {"sketch.toml": SKETCH, "lit.toml": LIT, "flat.toml": FLAT}).items():
+        (made / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir() if path.name != "rise")
+
+
+def said(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
+    out, error = capsys.readouterr()
+    return out, error
+
+
+def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(folder: Path):
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "export", "rise", "--to", "a.r16", "--to", "a.glb"],
+        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "a.r16\na.r16.json\na.glb\n"
+    assert done.stderr.splitlines() == [
+        "a.r16: 17 x 17; 16 bits; 0 is 0 m and 65535 is 100 m; 20 x 20 m a texel",
+        "a.glb: 17 x 17 vertices, 512 triangles; 320 x 320 m, 0 to 100 m high; texture 17 x 17",
+    ]
+    assert names(folder) == ["a.glb", "a.r16", "a.r16.json"]
+
+
+def test_without_a_name_a_new_one_is_taken(folder: Path, capsys: pytest.CaptureFixture[str]):
+    assert [cli.main(["export", "rise"]) for _ in range(2)] == [0, 0]
+    assert said(capsys)[0] == "rise.glb\nrise-2.glb\n"
+    assert (folder / "rise.glb").read_bytes() == (folder / "rise-2.glb").read_bytes()
+
+
+def test_the_land_is_that_of_the_settings_the_preset_the_shot(folder: Path):
+    for options, highest in (
+        ([], 100.0),
+        (["--set", "height.rise=2"], 200.0),
+        (["--preset", "half"], 50.0),
+        (["--shot", "quarter"], 25.0),
+        (["--shot", "quarter", "--set", "relief=10"], 2.5),
+        (["--as", "numbers"], 1.0),
+    ):
+        assert cli.main(["export", "rise", "--to", "a.npy", *options]) == 0
+        found = np.load(folder / "a.npy")
+        assert found[0].max() == found.max() == highest and found[-1].max() == 0.0
+
+
+def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.CaptureFixture[str]):
+    command = ["export", "rise", "--driver", "fragment", "--bits", "16", "--range", "-50,605.35"]
+    assert cli.main([*command, "--to", "a.tif"]) == 0
+    assert "0 is -50 m and 65535 is 605.35 m" in said(capsys)[1]
+    assert cli.main(["export", "rise", "--grid", "5", "-o", "a.obj"]) == 0
+    assert "5 x 5 vertices, 32 triangles" in said(capsys)[1]
+    assert cli.main(["export", "rise", "--range", "10,20", "-o", "a.png"]) == 0
+    assert re.search(
+        r"^warning: a\.png: \d+ of 289 values lay outside 10 to 20 m", said(capsys)[1], re.MULTILINE
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--to", "land.gltf"], "land.gltf: nothing is exported as '.gltf'; did you mean '.glb'?"),
+        (["--to", "land.tif16"], "land.tif16: nothing is exported as '.tif16'; did you mean '.tif'?"),
+        (["--to", "land.blend"], f"nothing is exported as '.blend'; expected one of {', '.join(ENDINGS)}"),
+        (["--to", "land"], "land: the name has no ending; expected one of .png"),
+        (["--to", "no/land.png"], "no/land.png: there is no folder 'no' to write into"),
+        (["--to", "rise"], "rise: is a folder; expected the name of a file to write"),
+        (["--to", "a.png", "--to", "no/b.png"], "no/b.png: there is no folder 'no' to write into"),
+        (["--to", "a.png", "--to", "a.png"], "--to a.png: a.png would be written twice"),
+        (["--to", "a.obj", "--to", "a-texture.png"], "a-texture.png would be written twice"),
+        (["--to", "a.jpg"], "a.jpg: .jpg does not hold heights; .png"),
+        (["--to", "a.png", "--texture", "colr"], "no pass 'colr' in sketch rise; did you mean 'colour'?"),
+        (["--to", "a.png", "--texture", "height:water"], "pass 'height' has no output 'water'"),
+        (["--to", "a.r16", "--texture", "colour"], "a.r16: .r16 does not hold colours"),
+        (["--to", "a.png", "--as", "heights"], "a texture is not 'heights'; expected height, colour"),
+        (["--to", "a.npy", "--bits", "16"], "a.npy: .npy has 32 bits for these, not 16"),
+        (["--to", "a.png", "--bits", "many"], "--bits many: expected a whole number above 0"),
+        (["--to", "a.png", "--range", "5"], "--range 5: expected two numbers, as 0,2500"),
+        (["--to", "a.png", "--range", "5,5"], "a range from 5 to 5; expected two numbers, the lower first"),
+        (["--to", "a.png", "--range", "nan,5"], "expected two numbers, the lower first"),
+        (["--to", "a.npy", "--range", "0,5"], "a.npy: a range is for heights and numbers in whole numbers"),
+        (["--to", "a.glb", "--range", "0,5"], "a.glb: a mesh has no bits and no range to choose"),
+        (["--to", "a.glb", "--grid", "1"], "a grid of 1 vertices a side: .glb takes 2 to 2049"),
+        (["--to", "a.obj", "--grid", "1026"], "a grid of 1026 vertices a side: .obj takes 2 to 1025"),
+        (["--to", "a.glb", "--grid", "-3"], "--grid -3: expected a whole number above 0"),
+        (["--to", "a.png", "--grid", "9"], "a.png: a grid is for a mesh: .glb or .obj"),
+        (["--to", "a.png", "--light"], "a.png: light baked in is for a mesh: .glb or .obj"),
+        (["--to", "a.glb", "--light"], "sketch rise has no light to bake in"),
+        (["--bits", "16"], "rise.glb: a mesh has no bits"),
+        (["--to", "a.png", "--shot", "third"], "no shot 'third' in sketch rise"),
+        (["--to", "a.png", "--preset", "third"], "no preset 'third'"),
+        (["--to", "a.png", "--set", "height.ryse=1"], "no parameter 'height.ryse' in sketch rise"),
+        (["--to", "a.png", "--steps", "height=1"], "no repeated pass 'height' in sketch rise"),
+        (["--to", "a.png", "--time", "noon"], "--time noon: expected a number of seconds"),
+        (["--to", "a.png", "--driver", "metal"], "--driver metal: expected auto, fragment or compute"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)  # fmt: skip
+def test_a_mistake_is_one_sentence_and_status_2(
+    arguments: list[str], words: str, folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert cli.main(["export", "rise", *arguments]) == 2
+    out, error = said(capsys)
+    assert out == ""
+    assert error.startswith("error: ") and words in error and len(error.splitlines()) == 1
+    assert names(folder) == []
+
+
+@pytest.mark.parametrize("ending", ["glb", "png", "obj"])
+def test_a_sketch_without_height_says_so(ending: str, folder: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["export", "rise/flat.toml", "--to", f"a.{ending}"]) == 2
+    assert said(capsys)[1] == "error: sketch flat has no height to export; its textures are colour\n"
+    assert names(folder) == []
+    assert cli.main(["export", "rise/flat.toml", "--texture", "colour", "--to", "a.png"]) == 0
+
+
+def test_what_was_there_stays_when_an_export_fails(folder: Path, capsys: pytest.CaptureFixture[str]):
+    (folder / "a.png").write_bytes(b"before")
+    assert cli.main(["export", "rise", "--to", "a.png", "--set", "height.rise=0", "--texture", "x"]) == 2
+    assert (folder / "a.png").read_bytes() == b"before"
+    assert cli.main(["export", "rise", "--to", "a.png"]) == 0
+    assert (folder / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixture[str]):
+    """On a small sketch in the place of those that ship, which take longer."""
+    examples = re.findall(r"^  playground (export .*)$", HELP, re.MULTILINE)
+    assert len(examples) > 4
+    for line in examples:
+        line = re.sub("jacksboro|diamond_square", "rise/lit.toml", line).replace("size=1025", "size=33")
+        assert cli.main(line.split()) == 0, said(capsys)[1]
+    written = set(said(capsys)[0].split())
+    assert written == set(names(folder)) == {
+        "lit.glb", "land.png", "land.tif", "land.r16", "land.r16.json", "ground.webp", "land.glb",
+        "land.obj", "land.mtl", "land-texture.png",
+    }  # fmt: skip
