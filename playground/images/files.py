@@ -129,6 +129,17 @@ def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
         return _png_samples(handle, path)
 
 
+def read_texts(path: str | Path) -> dict[str, str]:
+    """Read the texts that a PNG carries before its pixels; its pixels are not decoded.
+
+    Raises:
+        DataError: missing, not a PNG, damaged or too large.
+    """
+    path = checked_file(path)
+    with _reading(path) as handle:
+        return {str(k): v for k, v in _open(handle, path).info.items() if isinstance(v, str)}
+
+
 def checked_file(path: str | Path) -> Path:
     """Return the path if a file that is not empty lies there.
 

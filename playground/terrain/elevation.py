@@ -11,10 +11,11 @@ the sketch's choice.
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Literal
@@ -22,7 +23,7 @@ from typing import Literal
 import numpy as np
 
 from playground.errors import DataError, nearest
-from playground.images.files import checked_file, read_samples, reason
+from playground.images.files import checked_file, read_samples, read_texts, reason
 from playground.terrain.arrays import read_npy, read_npz
 from playground.terrain.geotiff import read_tiff
 from playground.terrain.grid import Found, Heights, Packing, check_grid, from_channels
@@ -44,7 +45,8 @@ class Elevation:
     spacing: tuple[float, float] | None = None  # [m] a texel, east and north; None: the file is silent
     in_metres: bool = False  # heights are metres; else raw numbers, or the file is silent
     code_range: tuple[float, float] | None = None  # what raw numbers can be: (0, 255), (0, 65535),
-    # (0, 16777215) when packed; None for metres and floats
+    # (0, 16777215) when packed, or the metres that these stand for where a PNG's texts say so;
+    # None for other metres and for floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
     path: Path | None = None  # where it was read from
 
@@ -87,7 +89,9 @@ def read_elevation(
 ) -> Elevation:
     """Read an elevation file; the name's ending tells the format.
 
-    * `.png`: 8 or 16 bits, grey, raw numbers. Fully transparent texels have no data.
+    * `.png`: 8 or 16 bits, grey, raw numbers, or metres if its texts `scale_m` and `offset_m`
+      say which, as `playground export` writes them, with the spacing in `spacing_m`. Fully
+      transparent texels have no data.
     * `.tif`, `.tiff`: integers or floats. Tags of GeoTIFF give the spacing (degrees
       become metres at the middle latitude), the height's unit and what is no data.
     * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions; scalars
@@ -129,6 +133,7 @@ def read_elevation(
     with _damage_explained(path):
         if ending == ".png":
             found = from_channels(read_samples(path), packing, path)
+            found = _as_told(found, read_texts(path)) if packing == "grey" else found
         elif ending in (".tif", ".tiff"):
             found = read_tiff(path, packing)
         elif ending == ".npy":
@@ -140,6 +145,32 @@ def read_elevation(
         else:
             found = read_raw(path, raw_size)
     return _finish(found, path, first_row)
+
+
+def _as_told(found: Found, text: Mapping[str, str]) -> Found:
+    """Return what was found in metres, where a PNG's texts say what its numbers stand for."""
+    scale, offset = (_numbers(text.get(name, ""), 1) for name in ("scale_m", "offset_m"))
+    if not scale or not offset or scale[0] <= 0.0 or found.code_range is None:
+        return found
+    low, high = (offset[0] + scale[0] * code for code in found.code_range)
+    spacing = _numbers(text.get("spacing_m", ""), 2)
+    return replace(
+        found,
+        in_metres=True,
+        scale=scale[0],
+        offset=offset[0],
+        code_range=(low, high),
+        spacing=(spacing[0], spacing[1]) if spacing and min(spacing) > 0.0 else None,
+    )
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    """Return so many finite numbers of a text, or none: a text may be anybody's."""
+    try:
+        found = [float(word) for word in text.split()]
+    except ValueError:
+        return []
+    return found if len(found) == count and all(map(math.isfinite, found)) else []
 
 
 @contextmanager

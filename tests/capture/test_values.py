@@ -97,7 +97,12 @@ def test_flat_land_has_a_scale(any_engine: Engine, lop: Sketch, tmp_path: Path):
 def test_the_land_comes_back_by_the_playground_s_own_reader(
     any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path
 ):
-    for name, bits, spacing in (("a.tif", 32, True), ("b.tif", 16, True), ("c.npy", 32, False)):
+    for name, bits, spacing in (
+        ("a.tif", 32, True),
+        ("b.tif", 16, True),
+        ("c.npy", 32, False),
+        ("d.png", 16, True),
+    ):
         playground.export(lop, tmp_path / name, bits=bits, engine=any_engine)
         found = read_elevation(tmp_path / name)
         np.testing.assert_allclose(found.heights[::-1], land, atol=1e-4 if bits == 32 else 0.51 * STEP + 1e-4)
@@ -111,21 +116,32 @@ def test_an_exported_land_renders_like_the_one_it_came_from(
     """By `generation/heightmap`; what a format does not know is set as the README says."""
     path = tmp_path / f"land.{ending}"
     playground.export(lop, path, engine=any_engine)
-    values: dict[str, object] = {"height.elevation": str(path), "size": "9x5"}
-    if ending != "tif":
+    values: dict[str, object] = {"height.elevation": str(path)}
+    if ending not in ("tif", "png"):
         values |= {"extent": "800x300", "height.metres": (LOW, HIGH)}
     if ending == "r16":
         values["height.raw_size"] = (9, 5)
-    again = playground.load("generation/heightmap")
-    name = again.graph.passes[0].name
-    again = again.with_values({k.replace("height.", f"{name}."): v for k, v in values.items()})
+    again = playground.load("generation/heightmap").with_values(values)
     plan = any_engine.plan_for(again, (64, 36))
+    assert plan.land.size == (9, 5)
     assert plan.land.extent == pytest.approx((800.0, 300.0))
     assert (plan.land.base_elevation, plan.land.relief) == pytest.approx((LOW, HIGH - LOW))
-    share = any_engine.read(again, name).astype(np.float64)
+    share = any_engine.read(again, "height").astype(np.float64)
     back = LOW + share * (HIGH - LOW)
     original = any_engine.read(lop, "height").astype(np.float64) * 1000.0 + 50.0
     np.testing.assert_allclose(back, original, atol=0.51 * STEP + 1e-3)
+
+
+def test_metres_that_are_asked_for_win_over_those_that_a_file_tells(
+    any_engine: Engine, lop: Sketch, tmp_path: Path
+):
+    """Black and white of the file are 0 and 2000 m; if they are 1000 and 2000 m, land is half as high."""
+    path = tmp_path / "land.png"
+    playground.export(lop, path, span=(0.0, 2000.0), engine=any_engine)
+    values = {"height.elevation": str(path), "height.metres": (1000.0, 2000.0)}
+    plan = any_engine.plan_for(playground.load("generation/heightmap").with_values(values), (64, 36))
+    assert plan.land.relief == pytest.approx((HIGH - LOW) / 2, abs=0.05)
+    assert plan.land.base_elevation == pytest.approx(1000.0 + LOW / 2, abs=0.05)
 
 
 def test_geotiff_tells_metres_and_points(any_engine: Engine, lop: Sketch, tmp_path: Path):

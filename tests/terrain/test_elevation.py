@@ -14,7 +14,7 @@ import tifffile
 from PIL import Image as PillowImage
 
 from playground.errors import DataError
-from playground.images.files import write_values
+from playground.images.files import encode_samples, write_values
 from playground.terrain.elevation import Elevation, read_elevation
 from playground.terrain.geodesy import degree_lengths
 
@@ -46,6 +46,32 @@ def test_grey_png(tmp_path, bits):
     assert found.code_range == (0, 2**bits - 1)
     assert found.spacing is None and found.extent is None and not found.in_metres
     assert (found.lowest, found.highest) == (land.min(), land.max())
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_a_png_that_says_what_its_numbers_stand_for_is_metres(tmp_path, dtype):
+    path, land = tmp_path / "a.png", (LAND % 200).astype(dtype)
+    path.write_bytes(encode_samples(land, {"scale_m": "0.5", "offset_m": "-40.0", "spacing_m": "30 20"}))
+    found = read_elevation(path)
+    assert_land(found, land * 0.5 - 40.0)
+    assert found.in_metres and found.spacing == (30.0, 20.0)
+    assert found.code_range == (-40.0, np.iinfo(dtype).max * 0.5 - 40.0)
+
+
+@pytest.mark.parametrize(
+    "told", [("much", "0", "1 1"), ("0", "0", "1 1"), ("inf", "0", "1 1"), ("1", "", "1 1")]
+)
+def test_what_a_png_says_and_nobody_understands_is_left(tmp_path, told):
+    path = tmp_path / "a.png"
+    texts = dict(zip(("scale_m", "offset_m", "spacing_m"), told, strict=True))
+    path.write_bytes(encode_samples(LAND.astype(np.uint16), texts))
+    found = read_elevation(path)
+    assert_land(found, LAND)
+    assert not found.in_metres and found.spacing is None and found.code_range == (0, 65535)
+    path.write_bytes(
+        encode_samples(LAND.astype(np.uint16), {"scale_m": "2", "offset_m": "3", "spacing_m": "-1 5"})
+    )
+    assert read_elevation(path).in_metres and read_elevation(path).spacing is None
 
 
 def test_what_write_values_wrote_comes_back(tmp_path):
