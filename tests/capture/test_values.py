@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 
@@ -14,7 +15,9 @@ import tifffile
 import playground
 from playground import Sketch
 from playground.capture.export import Exported
+from playground.capture.pictures import encode_picture
 from playground.engine.engine import Engine
+from playground.images.files import read_samples
 from playground.terrain.elevation import read_elevation
 
 LOW, HIGH = 50.0 + 1000.0 * 0.125, 50.0 + 1000.0 * 0.875  # the south-western corner; the north-western
@@ -236,3 +239,20 @@ def test_what_is_no_number_is_for_floats(any_engine: Engine, lop: Sketch, tmp_pa
     found = tifffile.imread(tmp_path / "a.tif")
     assert np.argwhere(np.isnan(found)).tolist() == [[2, 4]]
     assert read_elevation(tmp_path / "a.tif").missing == 1
+
+
+def test_colours_may_have_sixteen_bits(any_engine: Engine, lop: Sketch, tmp_path: Path):
+    done = playground.export(lop, tmp_path / "a.png", texture="colour", bits=16, engine=any_engine)
+    np.testing.assert_array_equal(read_samples(done.path), np.rint(65535 * srgb(tint())))
+
+
+def test_a_picture_that_its_format_cannot_take_is_a_sentence(monkeypatch: pytest.MonkeyPatch):
+    wide = np.zeros((1, 16384), np.float32)
+    with pytest.raises(playground.DataError, match=r"16384 x 1 texels are too many for \.webp"):
+        encode_picture(wide, ".webp")
+    with PIL.Image.open(io.BytesIO(encode_picture(wide, ".jpg").data)) as picture:
+        assert (picture.mode, picture.size) == ("L", (16384, 1))
+    PIL.Image.init()
+    monkeypatch.delitem(PIL.Image.SAVE, "WEBP")
+    with pytest.raises(playground.DataError, match=r"this Pillow cannot write \.webp; \.png can be written"):
+        encode_picture(wide[:, :9], ".webp")
