@@ -1,14 +1,12 @@
 // lighting/daylight_reading.glsl -- sun and sky from lighting/daylight where it is wired, else from parameters.
 //
 //   gives    Sunlight, sunlight, sun_direction, sun_elevation, is_daylight
-//   needs    lighting/sun.glsl; the output of lighting/daylight, or one black texel, and whether it is wired
+//   needs    the output of lighting/daylight, or one black texel, and whether it is wired
 //   units    azimuth and elevation in degrees; light without unit, 1 that of the sun outside the air
 //   source   none: the order of texels in lighting/daylight/light
 //   tested   tests/glsl/test_daylight.py, wired and not
 #ifndef LIGHTING_DAYLIGHT_READING
 #define LIGHTING_DAYLIGHT_READING
-#include "lighting/sun.glsl"
-
 struct Sunlight {
     vec3 direction;  // towards the sun
     vec2 place;      // its azimuth and elevation

@@ -201,6 +201,42 @@ def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, obj
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A sketch as it was asked for: its values, when, how many turns, and how large where a shot says so."""
+
+    sketch: Sketch
+    time: float
+    steps: dict[str, int]
+    size: tuple[int, int] | None
+
+
+def moment_of(
+    sketch: Sketch,
+    *,
+    shot: str = "",
+    preset: str = "",
+    values: dict[str, object] | None = None,
+    steps: dict[str, int] | None = None,
+    time: float | None = None,
+) -> Moment:
+    """Begin with a shot, where one is named, then a preset, then single values; later words count.
+
+    Raises ``SketchError`` or ``ParameterError`` for what the sketch does not have.
+    """
+    promised = sketch.shot(shot) if shot else None
+    if promised is not None:
+        sketch = sketch.for_shot(promised)
+    if preset:
+        sketch = sketch.with_preset(preset)
+    if values:
+        sketch = sketch.with_values(with_whole_paths(sketch, values))
+    usual = promised.time if promised is not None else 0.0
+    turns = dict(promised.steps) if promised is not None else {}
+    size = promised.size if promised is not None else None
+    return Moment(sketch, usual if time is None else time, turns | (steps or {}), size)
+
+
 def quoted(text: str) -> str:
     """Return a word as the shell takes it."""
     if sys.platform == "win32":

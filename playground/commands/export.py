@@ -18,11 +18,11 @@ from playground.commands.arguments import (
     SoftwareOption,
     either,
     help_text,
+    moment_of,
     read_driver,
     read_seconds,
     read_steps,
     read_values,
-    with_whole_paths,
 )
 from playground.errors import ParameterError
 from playground.terminal import busy, complain, note
@@ -147,17 +147,11 @@ def export(
 
     form = Form(texture, kind, _whole("--bits", bits), _span(span), _whole("--grid", grid), light)
     values, turns, seconds = read_values(settings), read_steps(steps), read_seconds(time)
-    found, runs_by = load(sketch), read_driver(driver)
-    if shot:
-        promised = found.shot(shot)
-        found = found.for_shot(promised)
-        turns = dict(promised.steps) | turns
-        seconds = promised.time if seconds is None else seconds
-    if preset:
-        found = found.with_preset(preset)
-    if values:
-        found = found.with_values(with_whole_paths(found, values))
-    _write(found, to or [], form, seconds or 0.0, turns, runs_by, ctx.obj.or_else(software, device))
+    runs_by = read_driver(driver)
+    moment = moment_of(load(sketch), shot=shot, preset=preset, values=values, steps=turns, time=seconds)
+    _write(
+        moment.sketch, to or [], form, moment.time, moment.steps, runs_by, ctx.obj.or_else(software, device)
+    )
 
 
 def _write(

@@ -20,12 +20,12 @@ from playground.commands.arguments import (
     SoftwareOption,
     either,
     help_text,
+    moment_of,
     read_driver,
     read_pixels,
     read_seconds,
     read_steps,
     read_values,
-    with_whole_paths,
 )
 from playground.errors import DataError, ParameterError
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS
@@ -140,19 +140,16 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     """Render what was asked for to its file, and print the file's path."""
     from playground.sketch.load import load
 
-    sketch = load(picture.sketch)
-    size, time, steps = DEFAULT_PICTURE, 0.0, {}
-    if picture.shot:
-        shot = sketch.shot(picture.shot)
-        sketch = sketch.for_shot(shot)
-        size, time, steps = shot.size, shot.time, dict(shot.steps)
-    if picture.preset:
-        sketch = sketch.with_preset(picture.preset)
-    if picture.values:
-        sketch = sketch.with_values(with_whole_paths(sketch, picture.values))
-    steps |= picture.steps or {}
-    size = picture.size or size
-    time = time if picture.time is None else picture.time
+    moment = moment_of(
+        load(picture.sketch),
+        shot=picture.shot,
+        preset=picture.preset,
+        values=picture.values,
+        steps=picture.steps,
+        time=picture.time,
+    )
+    sketch, time, steps = moment.sketch, moment.time, moment.steps
+    size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
 

@@ -53,9 +53,9 @@ class Companions:
                 buffers.append(self._buffer(job, declared, names))
                 buffers[-1].bind_to_storage_buffer(unit)
             self.kernels.images(result, read=True)
-            bound: set[Program] = set()
+            program: Program | None = None
             for iteration in range(repeat):
-                program = self._program(job, iteration, bound)
+                program = self._program(job, iteration, program)
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
@@ -72,8 +72,8 @@ class Companions:
             self._keep(buffers)
         return result
 
-    def _program(self, job: Job, iteration: int, bound: set[Program]) -> Program:
-        """Return the program of a turn with all that it reads, which is set once for a run.
+    def _program(self, job: Job, iteration: int, bound: Program | None) -> Program:
+        """Return the program of a turn with all that it reads, if it is not the one that is ``bound``.
 
         Where the processor draws, there is one for each stage: what the others do would
         be gone through as well, and thrown away.
@@ -81,9 +81,8 @@ class Companions:
         step, stages = job.step, job.step.kernel.stages
         stage = (("stage", stages[iteration]),) if stages else ()
         program = self.kernels.program(job, COMPUTE, *stage)
-        if program not in bound:
+        if program is not bound:  # a program that was bound before may find other textures on its units
             self.kernels.binder.bind(program, step, job.given, job.inputs)
-            bound.add(program)
         for name, number in stage:
             program.set(name, number)
         return program

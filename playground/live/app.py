@@ -116,6 +116,7 @@ class Live:
         self._followed: object = None
         self._reloads = session.last_reload
         self._divider = ""  # the line of the picture that the hand holds
+        self._on_divider = False  # the mouse is on one
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -209,7 +210,7 @@ class Live:
             return
         left, right = _dragged(0), _dragged(1)
         if not io.key_ctrl and self._divide(io.mouse_pos.x - area[0], area[2]):
-            return
+            left = False
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
                 session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
@@ -230,18 +231,22 @@ class Live:
             session.point((x, y, x - gone.x * density, y + gone.y * density))
 
     def _divide(self, across: float, width: float) -> bool:
-        """Move the line that is held, or take hold of the one under the mouse; say whether there is one."""
+        """Move the line that is held, or take hold of the one under the mouse; say whether one is held."""
         session = self.session
         if session.map is not None or session.sketch is None:
             return False
-        if not imgui.is_mouse_down(0) or imgui.is_mouse_clicked(0):
+        if imgui.is_mouse_clicked(0):
             self._divider = divider_at(session.sketch, across, width)
-        if not self._divider:
-            return False
-        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-        if imgui.is_mouse_down(0) and not imgui.is_mouse_clicked(0) and imgui.get_io().mouse_delta.x:
+        elif not imgui.is_mouse_down(0) and not imgui.is_mouse_released(0):
+            self._divider = ""
+        motion = imgui.get_io().mouse_delta
+        if self._divider and motion.x:
             session.set(self._divider, moved(across, width))
-        return True
+        if motion.x or motion.y:
+            self._on_divider = bool(self._divider or divider_at(session.sketch, across, width))
+        if self._on_divider:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        return bool(self._divider)
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""

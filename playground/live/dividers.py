@@ -10,7 +10,7 @@ REACH = 6.0
 
 
 def dividers_of(sketch: Sketch) -> dict[str, float]:
-    """Return where the lines stand that the view shows, in shares of its width from the left, by path."""
+    """Return where the lines stand, in shares of the picture's width from its left, by path."""
     leaves = values_of(sketch)
     found = {
         shown.path: value_of(sketch, shown.path, leaves)

@@ -3,11 +3,12 @@
     pip install ".[bench]"
     python tests/benchmarks/lighting.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
-Each figure is the median of several runs, each under another sun, ours and theirs in turn, so
-that a busy machine slows both. Nothing compiled is timed, nor is land made, but where the table
-says so. Figures wander with the machine; ratios less so. The thesis's own methods are compiled
-from thesis_light.c with cc -O2. topocalc is not in the extra, for it must be built
-without isolation; it is left out where it is not installed:
+Each figure is the median of several runs, each under another sun (horizons: in slightly other
+directions; edits: on another land), ours and theirs in turn, so that a busy machine slows both.
+Nothing compiled is timed, nor is land made, but where the table says so. Figures wander with the
+machine; ratios less so. The thesis's own methods are compiled from thesis_light.c with cc -O2.
+topocalc is not in the extra, for it must be built without isolation; it is left out where it is
+not installed:
 
     pip install cython setuptools_scm numpy && pip install --no-build-isolation topocalc
 

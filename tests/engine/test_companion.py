@@ -298,6 +298,38 @@ def test_stages_say_what_each_turn_does(any_engine, folder):
     assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
 
 
+def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    constant = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+    folder.write("one.glsl", constant.format("1.0"))
+    folder.write("hundred.glsl", constant.format("100.0"))
+    inputs = "uniform sampler2D one; //! input\nuniform sampler2D hundred; //! input\n"
+    folder.write(
+        "added.glsl",
+        f'#pragma kernel(output = "sum:r32f")\n{inputs}'
+        "float of(sampler2D field, ivec2 texel) { return texelFetch(field, texel, 0).r; }\n"
+        "float kernel(ivec2 texel) { return 2.0 * of(one, texel) + of(hundred, texel); }\n",
+    )
+    folder.write(
+        "added.comp",
+        '#pragma compute(stages = "0, 1, 0", groups = "size.x, size.y", local = "1, 1")\n'
+        f"{inputs}"
+        """void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    float more = 0.0;
+    if (stage == 0) more = texelFetch(one, texel, 0).r;
+    if (stage == 1) more = texelFetch(hundred, texel, 0).r;
+    imageStore(out_sum, texel, imageLoad(out_sum, texel) + vec4(more));
+}
+""",
+    )
+    passes = [("one", "./one"), ("hundred", "./hundred"), ("added", "./added")]
+    body = "".join(f'[[pass]]\nname = "{name}"\nuse = "{use}"\n' for name, use in passes)
+    sketch = folder.sketch(body, size="size = 8")
+    np.testing.assert_array_equal(any_engine.read(sketch, "added"), 102.0)
+
+
 def test_stages_take_the_place_of_repeat(folder):
     folder.write("fill.glsl", PLAIN_FILL)
     wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers parted by commas"))

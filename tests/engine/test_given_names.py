@@ -16,6 +16,31 @@ WIND = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) { retur
 PASS = '[[pass]]\nname = "asked"\nuse = "./asks"\n'
 
 
+DRAWN = """#pragma draw(mesh = "sheet", output = "told:rgba32f")
+uniform sampler2D wind;  //! input("black")
+uniform vec2 sun = vec2(30.0, 60.0);  //! direction
+vec4 vertex(vec3 corner, out float blown) {
+    blown = wired_wind ? 1.0 : 0.0;
+    return vec4(corner.xy * 2.0 - 1.0, 0.0, 1.0);
+}
+vec4 fragment(float blown) { return vec4(towards_sun, wired_wind ? blown : 0.0); }
+"""
+SWEPT = """#pragma compute(groups = "size.x, size.y", local = "1, 1")
+uniform sampler2D wind;  //! input("black")
+uniform vec2 sun = vec2(30.0, 60.0);  //! direction
+void main() {
+    imageStore(out_told, ivec2(gl_GlobalInvocationID.xy), vec4(towards_sun, wired_wind ? 1.0 : 0.0));
+}
+"""
+
+
+@pytest.fixture(params=["compiled in", "set as uniforms"])
+def each_engine(request, any_engine):
+    """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
+    any_engine.runner.kernels.software = request.param == "compiled in"
+    return any_engine
+
+
 @pytest.fixture
 def asked(folder):
     folder.write("asks.glsl", ASKS)
@@ -46,6 +71,25 @@ def test_whether_an_input_is_wired(any_engine, asked, folder):
     blown = folder.sketch('[[pass]]\nname = "wind"\nuse = "./blows"\n' + PASS)
     assert any_engine.read(blown, "asked")[0, 0, 3] == 1
     assert any_engine.read(asked, "asked")[0, 0, 3] == 0
+
+
+@pytest.mark.parametrize("form", ["kernel", "draw", "companion"])
+def test_kernels_draws_and_companions_are_told(each_engine, folder, form):
+    if form == "companion" and not each_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("asks.glsl", DRAWN if form == "draw" else ASKS)
+    if form == "companion":
+        folder.write("asks.comp", SWEPT)
+    folder.write("blows.glsl", WIND)
+    alone = folder.sketch(PASS)
+    for sketch, wired in (
+        (alone, 0),
+        (folder.sketch('[[pass]]\nname = "wind"\nuse = "./blows"\n' + PASS), 1),
+    ):
+        for sun in ((30, 60), (200, 5)):
+            told = each_engine.read(sketch.with_values({"asked.sun": sun}), "asked")
+            np.testing.assert_allclose(told[..., :3], np.broadcast_to(truth(*sun), (17, 17, 3)), atol=1e-7)
+            assert (told[..., 3] == wired).all()
 
 
 @pytest.mark.parametrize("name", ["wired_wind", "towards_sun", "wired_", "towards_anything"])

@@ -61,5 +61,5 @@ void kernel(ivec2 texel, out vec4 factor, out float k) {
         k = k_of_eight(map_at(ahead, texel, size), map_at(behind, texel, size), slope);
     }
     k = clamp(k, 0.0, 1.0);
-    factor = vec4(k * thrown_back(ground_under(colour, texel, size, ground), k), 1.0);
+    factor = vec4(k * thrown_back(ground_under(wired_colour, colour, texel, size, ground), k), 1.0);
 }

@@ -10,13 +10,13 @@
 #include "maths/drape.glsl"
 #include "maths/land.glsl"
 
-// The level of detail whose texels are as large as the light's; `unwired` where there is no
-// colour but the one texel that stands for it.
-vec3 ground_under(sampler2D colour, ivec2 texel, ivec2 light, vec3 unwired) {
+// By the level of detail whose texels are as large as the light's; `unwired` where no colour is wired.
+vec3 ground_under(bool wired, sampler2D colour, ivec2 texel, ivec2 light, vec3 unwired) {
+    if (!wired) return clamp(unwired, 0.0, 1.0);
     ivec2 texels = textureSize(colour, 0);
     vec2 each = vec2(texels) / vec2(light);
     float level = log2(max(max(each.x, each.y), 1.0));
     vec3 mean = textureLod(colour, drape_uv(share_of_texel(texel, light), texels), level).rgb;
-    return clamp(texels == ivec2(1) ? unwired : mean, 0.0, 1.0);
+    return clamp(mean, 0.0, 1.0);
 }
 #endif

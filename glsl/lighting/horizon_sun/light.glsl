@@ -3,7 +3,7 @@
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is
 //            turned away from it; visibility: the part of the sun that is over the horizon
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl,
-//            lighting/horizons/map_reading.glsl, terrain/heightfield.glsl; angles, normals,
+//            lighting/horizons/map_reading.glsl, lighting/sun.glsl, terrain/heightfield.glsl; angles, normals,
 //            the table of sunlight, and where the sun stands
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
@@ -15,6 +15,7 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/horizon_sun/arc.glsl"
 #include "lighting/horizons/map_reading.glsl"
+#include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f, visibility:r32f")
 

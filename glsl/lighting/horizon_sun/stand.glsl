@@ -1,10 +1,10 @@
 // lighting/horizon_sun/stand.glsl -- where the sun stands among the horizons: what is the same for all texels, worked out once.
 //
-//   gives    stand: texel 0 and 1 how much each horizon counts, in the order of the two textures
-//            of angles; texel 2 the sky's light on open level ground, and in alpha the elevation of the disc's
-//            upper edge
+//   gives    stand: texels 0 and 1, by what the two textures of angles are multiplied and summed to
+//            give the horizon; texel 2, the sky's light on open level ground, and in alpha the
+//            elevation of the disc's upper edge
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl
-//   units    elevations in diameters of the sun, and so are what angles, times their weights, sum to
+//   units    horizon and edge in diameters of the sun; the angles are shares of 90 degrees
 //   source   Belaiche 2010, section 3.4, eq. 3.8
 //   tested   tests/glsl/test_analytic.py, against float64
 #include "lighting/daylight_reading.glsl"

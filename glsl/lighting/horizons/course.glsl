@@ -61,9 +61,10 @@ ivec2 texel_of(Course course, int row, int at) {
     return course.along_x ? ivec2(along, at) : ivec2(at, along);
 }
 
-// Pairs of opposite directions among so many directions.
+// Pairs of opposite directions among so many: one, or a multiple of four. Other numbers of
+// directions count as the next of these below, so that the eight chief ones are always among them.
 int pairs_of(int directions) {
-    return max(directions >> 1, 1);
+    return max((directions >> 3) << 2, 1);
 }
 
 // The level direction of a pair, from `first` counterclockwise; the other of the pair is opposite.

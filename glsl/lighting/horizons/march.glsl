@@ -11,17 +11,17 @@
 //
 // The plain form: from each texel a walk over the whole land, in steps of one row of the finer of
 // two grids, the heights' and this pass's own. It ends where the highest land could not be seen
-// over the horizon found so far. Half a texel beyond the land's edge a walk leaves the land.
+// over the horizon found so far. A turn walks two opposite directions: no single draw lasts so
+// long that a graphics driver would give it up. Half a texel beyond the land's edge a walk leaves the land.
 #include "lighting/horizons/course.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f")
+#pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f", repeat = "max(directions // 8 * 4, 1)")
 
 uniform sampler2D height;               //! input
 uniform sampler2D range;                //! input
-uniform int directions = 8;             //! slider(2, 64) step(2) Directions around; K is of all of them
+uniform int directions = 8;             //! slider(2, 64) step(2) Directions around, a multiple of eight; below eight, two opposite ones, each for half of the sky. K is of all of them
 uniform float first = 0.0;              //! angle(-360, 360) unit("°") Azimuth of the first direction; the others follow counterclockwise
-uniform vec2 sun = vec2(0.0, 0.0);      //! direction Its azimuth is added to the first, for horizons that follow the sun
 uniform bool keep = true;               //! Keep the horizons of eight directions; without, only K is found
 uniform int normal = 0;                 //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
 
@@ -69,19 +69,15 @@ void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out flo
     vec2 slope = slope_here(texel, spacing_of(size, extent));
     land = land_at(texel);
     float highest = texelFetch(range, ivec2(0), 0).g;
-    int pairs = pairs_of(directions);
-    float shape = sector_shape(2 * pairs);
-    ahead = vec4(0.0);
-    behind = vec4(0.0);
-    float total = 0.0;
-    for (int pair = 0; pair < pairs; pair++) {
-        vec2 towards = pair_towards(pair, pairs, first + sun.x);
-        float there = min(relief * walked(grid, start, towards, metres, land, highest), 60000.0);
-        float back = min(relief * walked(grid, start, -towards, metres, land, highest), 60000.0);
-        total += sky_of_sector(there, slope, towards, shape) + sky_of_sector(back, slope, -towards, shape);
-        bvec4 here = equal(ivec4(keep ? pair : -1), ivec4(0, 1, 2, 3));
-        ahead = mix(ahead, vec4(there), here);
-        behind = mix(behind, vec4(back), here);
-    }
-    sky = max(total / float(2 * pairs), 0.0) / sqrt(1.0 + dot(slope, slope));
+    float shape = sector_shape(2 * iterations);
+    vec2 towards = pair_towards(iteration, iterations, first);
+    float there = min(relief * walked(grid, start, towards, metres, land, highest), 60000.0);
+    float back = min(relief * walked(grid, start, -towards, metres, land, highest), 60000.0);
+    // A single pair stands in all channels.
+    bvec4 here = equal(ivec4(keep ? iteration : -1), iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));
+    ahead = mix(previous_ahead(texel), vec4(there), here);
+    behind = mix(previous_behind(texel), vec4(back), here);
+    float both = sky_of_sector(there, slope, towards, shape) + sky_of_sector(back, slope, -towards, shape);
+    sky = previous_sky(texel) + both / (float(2 * iterations) * sqrt(1.0 + dot(slope, slope)));
+    if (iteration == iterations - 1) sky = max(sky, 0.0);
 }

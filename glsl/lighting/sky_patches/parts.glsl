@@ -3,7 +3,7 @@
 //   gives    low: K of the patches in the north, east, south and west; high: 1 / (1 - C (1 - K)) in
 //            red, green, blue, and K of the patch overhead
 //   needs    lighting/horizon_sky/ground.glsl, lighting/horizons/map_reading.glsl,
-//            lighting/horizons/open_sky.glsl, lighting/sun.glsl, terrain/heightfield.glsl; eight horizons, the first in the north
+//            lighting/horizons/open_sky.glsl, maths/angle.glsl, terrain/heightfield.glsl; eight horizons, the first in the north
 //   units    shares of what an open, even sky gives
 //   source   Belaiche 2010, section 3.4, the patches and eq. 3.13
 //   tested   tests/glsl/test_sky.py, against quadrature
@@ -13,7 +13,7 @@
 #include "lighting/horizon_sky/ground.glsl"
 #include "lighting/horizons/map_reading.glsl"
 #include "lighting/horizons/open_sky.glsl"
-#include "lighting/sun.glsl"
+#include "maths/angle.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "low:rgba16f, high:rgba16f")
 
@@ -58,5 +58,5 @@ void kernel(ivec2 texel, out vec4 low, out vec4 high) {
     low = max(low * scale, 0.0);
     overhead = max(overhead * scale, 0.0);
     float k = min(overhead + dot(low, vec4(1.0)), 1.0);
-    high = vec4(thrown_back(ground_under(colour, texel, size, ground), k), overhead);
+    high = vec4(thrown_back(ground_under(wired_colour, colour, texel, size, ground), k), overhead);
 }
