@@ -54,7 +54,7 @@ class Clock:
     processor: bool  # processor time over processors, the least of the rounds; else the wall's, the median
 
     def times(self, comparison: Comparison) -> dict[str, float]:
-        """Return the milliseconds of each, in turns; an unmeasured run goes before, but for those run ``once``."""
+        """Return the milliseconds of each; they take turns, after one unmeasured turn."""
         runs = comparison.ours | comparison.theirs
         found: dict[str, list[float]] = {name: [] for name in runs}
         for turn in range(self.rounds + 1):
