@@ -3,13 +3,19 @@
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
 //   units    the image stands `repeats` times side by side from west to east
-//   source   Belaiche 2010, section 2.3.1, without the second reading
-//   tested   tests/glsl/test_height_blend.py: so many repeats, and the image's mean where they are too fine
+//   source   Belaiche 2010, section 2.3.3, without the second reading; less detail: section 5.5
+//   tested   tests/glsl/test_height_blend.py: so many repeats, the image's mean where they are
+//            too fine, and less contrast about the same mean where less detail is wanted
 //
 // The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
 // many times over the land, whatever the size of either, and is read at the level of
 // detail where its texels are as large as this texture's: read at level 0, a fine image
 // in a small texture is a few texels picked at random.
+//
+// Section 5.5 finds that details of a texture are taken for the land's, and takes a texture of
+// less detail for figures 5.10 and 5.11. Here that is the same image with less contrast about
+// its mean, which the last level of detail holds: so it works for a user's image too, and the
+// land keeps its colours.
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
 #include "maths/land.glsl"
@@ -19,6 +25,7 @@ uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
 uniform float repeats = 24.0;      //! slider(1, 256) step(1) How often the images stand side by side from west to east
 uniform float variety = 0.5;       //! slider(0, 1) step(0.01) How much of each image is read a second time, larger and turned, so that its repeats do not show
+uniform float detail = 1.0;        //! slider(0, 1) step(0.01) How much of each image's contrast is left. 0: its mean colour
 
 // 31 degrees: no whole turns bring it back onto the tiles.
 const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
@@ -32,5 +39,8 @@ vec4 kernel(ivec2 texel) {
     // A whole level: a blend of two would cost twice the reads and only blur.
     vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
     vec3 again = textureLod(colour, TURNED * tile * LARGER, max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
-    return vec4(mix(once, again, 0.5 * variety), 1.0);
+    vec3 shown = mix(once, again, 0.5 * variety);
+    // The level after the last is the last: one texel, the mean.
+    if (detail < 1.0) shown = mix(textureLod(colour, vec2(0.5), 99.0).rgb, shown, detail);
+    return vec4(shown, 1.0);
 }

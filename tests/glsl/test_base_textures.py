@@ -1,4 +1,4 @@
-"""texturing/grass, rock and snow: seamless, of the colour they are named for, as many as there are seeds."""
+"""texturing/grass, mud, path, rock, sand, snow: seamless, of their colours, as many as there are seeds."""
 
 from __future__ import annotations
 
@@ -10,6 +10,18 @@ COARSE = {
     "grass": "blades = 8, clumps = 2",
     "rock": "blocks = 2",
     "snow": "drifts = 2",
+    "sand": "ripples = 4, grain = 0.1",
+    "mud": "clods = 2",
+    "path": "stones = 4",
+}
+# Linear light of a mean green, lowest and highest, and which channels follow one another downwards.
+PROMISED = {
+    "grass": (0.03, 0.2, "grb"),
+    "rock": (0.1, 0.4, "rgb"),
+    "snow": (0.6, 0.9, "bgr"),
+    "sand": (0.25, 0.45, "rgb"),
+    "mud": (0.04, 0.12, "rgb"),
+    "path": (0.1, 0.25, "rgb"),
 }
 NAMES = sorted(COARSE)
 
@@ -41,16 +53,14 @@ def test_the_mean_is_the_colour_that_the_name_promises(any_engine, tile, name):
     assert colour.min() > 0
     assert colour.max() <= 1
     red, green, blue = colour[..., :3].mean(axis=(0, 1))
-    if name == "grass":
-        assert green > red > blue
-        assert 0.03 < green < 0.2
-    elif name == "rock":
-        assert red >= green >= blue
-        assert red < 1.6 * blue
-        assert 0.1 < green < 0.4
-    else:
-        assert blue > red
-        assert 0.6 < red < 0.9
+    lowest, highest, order = PROMISED[name]
+    assert lowest < green < highest
+    channels = [{"r": red, "g": green, "b": blue}[letter] for letter in order]
+    assert channels == sorted(channels, reverse=True)
+    if name == "rock":
+        assert red < 1.6 * blue, "grey rather than brown"
+    if name == "sand":
+        assert red > 2 * blue, "yellow rather than grey"
 
 
 @pytest.mark.parametrize("name", NAMES)

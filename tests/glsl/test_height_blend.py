@@ -140,3 +140,21 @@ def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
     assert grass.sum() < rock.sum() < snow.sum()
     inside = ("grass_tile", "grass", "rock_tile", "rock", "snow_tile", "snow", "ragged", "mix")
     assert any_engine.ran == ["height", *(f"colour.{name}" for name in inside)]
+
+
+def test_less_detail_is_less_contrast_about_the_same_mean(engine, make_sketch):
+    """Each channel's deviation from the image's own mean shrinks by the share that is asked for."""
+    files = {
+        **IMAGES,
+        "meadow": IMAGE.format("0.1 + 0.8 * float(texel.x < 3), 0.3, 0.02 * float(texel.y), 1.0"),
+    }
+    text = PASSES.replace("size = 4", "size = [8, 4]")
+    found = {}
+    for detail in (1.0, 0.4, 0.0):
+        given = text.format(f"set = {{ repeats = 4, detail = {detail} }}")
+        sketch = make_sketch(given, size=[97, 97], ramp=RAMP.format("0.0"), **files)
+        found[detail] = engine.read(sketch, "colour").astype(float)[..., :3]
+    mean = np.array([0.1 + 0.8 * 3 / 8, 0.3, 0.02 * 1.5])
+    np.testing.assert_allclose(found[0.0], np.broadcast_to(mean, (97, 97, 3)), atol=5e-4)
+    np.testing.assert_allclose(found[0.4] - mean, 0.4 * (found[1.0] - mean), atol=1e-3)
+    assert found[1.0].std(axis=(0, 1)).max() > 0.2
