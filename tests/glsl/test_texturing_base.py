@@ -34,3 +34,25 @@ def test_a_swatch_shows_the_whole_image_as_often_as_asked(any_engine, make_sketc
     use += "set = { count = 1, tiles = 2 }\n"
     row = any_engine.read(make_sketch(text + use, size=64, red=stripes), "p")[30, :, 0].astype(float)
     np.testing.assert_array_equal(row.round(), (np.arange(64) % 32 < 16).astype(float))
+
+
+def test_one_of_gives_the_colour_that_is_chosen_and_white_for_none(engine, make_sketch):
+    use = (
+        '[[pass]]\nname = "colour"\nuse = "texturing/one_of"\n'
+        'inputs = { first = "red", second = "green", third = "blue" }\n'
+    )
+    sketch = make_sketch(SWATCHES + use, size=9, **FILES)
+    for chosen, wanted in enumerate([*np.eye(3), np.ones(3)]):
+        colour = engine.read(sketch.with_values({"colour.chosen": chosen}), "colour")[..., :3]
+        np.testing.assert_array_equal(colour, np.broadcast_to(wanted, (9, 9, 3)))
+
+
+def test_one_of_keeps_a_colour_of_its_own_size_and_interpolates_a_coarser_one(engine, make_sketch):
+    eastward = PLAIN.format("vec3(float(texel.x) / float(size.x - 1))")
+    passes = '[[pass]]\nname = "fine"\nuse = "./red"\n[[pass]]\nname = "coarse"\nuse = "./red"\nsize = 3\n'
+    use = '[[pass]]\nname = "c"\nuse = "texturing/one_of"\ninputs = { first = "fine", second = "coarse" }\n'
+    sketch = make_sketch(passes + use, size=17, red=eastward)
+    fine = engine.read(sketch, "fine")
+    np.testing.assert_array_equal(engine.read(sketch, "c"), fine)
+    coarse = engine.read(sketch.with_values({"c.chosen": 1}), "c")
+    np.testing.assert_allclose(coarse.astype(float), fine.astype(float), atol=5e-3)
