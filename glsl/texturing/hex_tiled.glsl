@@ -1,9 +1,10 @@
 // texturing/hex_tiled.glsl -- an image laid over the whole land in hexagons, each from another place of it: nothing repeats.
 //
 //   gives    colour, linear light
-//   needs    maths/angle.glsl, maths/land.glsl, texturing/hex_tiling.glsl; an image that repeats
+//   needs    maths/angle.glsl, maths/land.glsl, texturing/hex_tiling.glsl,
+//            texturing/kept_contrast.glsl; an image that repeats
 //   units    the image is as large as if it stood `repeats` times side by side from west to east
-//   source   see texturing/hex_tiling.glsl
+//   source   see texturing/hex_tiling.glsl and texturing/kept_contrast.glsl
 //   tested   tests/glsl/test_texturing_hex.py: the correlation one tile away, mean and contrast
 //
 // It stands in the place of texturing/tiled, for one reading more. Where hexagons meet, two
@@ -11,6 +12,7 @@
 #include "maths/angle.glsl"
 #include "maths/land.glsl"
 #include "texturing/hex_tiling.glsl"
+#include "texturing/kept_contrast.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
@@ -41,7 +43,7 @@ vec4 kernel(ivec2 texel) {
     float level = max(floor(log2(float(textureSize(colour, 0).x) / texels) + 0.5), 0.0);
     HexCopies copies = hex_copies(tile, cells);
     vec3 mean = textureLod(colour, vec2(0.5), 99.0).rgb;
-    vec3 shown = hex_mixed(
+    vec3 shown = mixed_with_contrast(
         hex_sharpened(copies.weights, sharpness),
         piece(copies.corner[0], tile, level), piece(copies.corner[1], tile, level), piece(copies.corner[2], tile, level),
         mean

@@ -1,14 +1,12 @@
-// texturing/hex_tiling.glsl -- which three copies of an image meet at a place, and how they are mixed.
+// texturing/hex_tiling.glsl -- which three copies of an image meet at a place, and with what weights.
 //
-//   gives    HexCopies, hex_copies, hex_sharpened, hex_mixed
+//   gives    HexCopies, hex_copies, hex_sharpened
 //   needs    noise/hash.glsl
 //   units    places in tiles of the image; weights sum to 1
 //   source   Heitz and Neyret 2018, "High-Performance By-Example Noise using a
-//            Histogram-Preserving Blending Operator" (Proc. ACM CGIT 1(2)), sections 3 and 4.2:
-//            the triangle grid, and the blend that keeps the variance; sharper weights after
-//            Mikkelsen 2022, "Practical Real-Time Hex-Tiling" (JCGT 11(3)); no Gaussian
-//            histograms
-//   tested   tests/glsl/test_texturing_hex.py: weights, continuity, mean, variance, repeats
+//            Histogram-Preserving Blending Operator" (Proc. ACM CGIT 1(2)): the triangle grid;
+//            sharper weights after Mikkelsen 2022, "Practical Real-Time Hex-Tiling" (JCGT 11(3))
+//   tested   tests/glsl/test_texturing_hex.py, against the distances to a triangle's sides
 //
 // A grid of triangles lies over the land. Each of its corners shows the image from a place of
 // its own, chosen by chance, in a hexagon around it; at a place the three corners of its
@@ -44,12 +42,5 @@ HexCopies hex_copies(vec2 tile, float cells) {
 vec3 hex_sharpened(vec3 weights, float power) {
     vec3 raised = pow(max(weights, vec3(1e-6)), vec3(power));
     return raised / (raised.x + raised.y + raised.z);
-}
-
-// A mean of three that share nothing has less variance than each: their deviations from the
-// mean are made up for it.
-vec3 hex_mixed(vec3 weights, vec3 first, vec3 second, vec3 third, vec3 mean) {
-    vec3 deviation = weights.x * (first - mean) + weights.y * (second - mean) + weights.z * (third - mean);
-    return max(mean + deviation / length(weights), vec3(0.0));
 }
 #endif

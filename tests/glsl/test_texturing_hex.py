@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 LIBRARY = "texturing/hex_tiling.glsl"
+MIXING = "texturing/kept_contrast.glsl"
 REPEATS, SIZE = 8, 513
 PERIOD = (SIZE - 1) // REPEATS
 
@@ -51,7 +52,7 @@ def test_a_mixture_of_three_that_share_nothing_has_the_mean_and_the_variance_of_
     a, b, c = images
     mean = np.full((60000, 3), 0.5)
     given = "vec3({}, {}, {})".format(*weights)
-    found = on_gpu(LIBRARY, f"hex_mixed({given}, a, b, c, m)", a=a, b=b, c=c, m=mean).astype(float)
+    found = on_gpu(MIXING, f"mixed_with_contrast({given}, a, b, c, m)", a=a, b=b, c=c, m=mean).astype(float)
     np.testing.assert_allclose(found.mean(axis=0), 0.5, atol=2e-3)
     np.testing.assert_allclose(found.std(axis=0), 0.08, rtol=0.02)
 
