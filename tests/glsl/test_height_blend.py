@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from PIL import Image
 
 # Terrain_RemplitPerc as a table: heights where a weight begins or ends to change.
 BYTES = [0, 60, 130, 180, 220, 255]
@@ -128,6 +129,30 @@ def test_far_more_repeats_than_texels_give_the_image_s_mean(any_engine, make_ske
     sketch = make_sketch(text, size=[65, 65], ramp=RAMP.format("0.0"), **files)
     colour = any_engine.read(sketch, "colour").astype(float)[..., 0]
     np.testing.assert_allclose(colour, 0.25, atol=0.02)
+
+
+def test_texels_of_the_image_are_taken_modulo_its_size(any_engine, make_sketch):
+    """As section 2.3.3 has it, but that a texel of the land stands where four of the image meet."""
+    noise = '#include "noise/hash.glsl"\n' + IMAGE.format("random(texel, 3u), random(texel, 4u), 0.5, 1.0")
+    text = PASSES.replace("size = 4", "size = 8").format("set = { repeats = 8, variety = 0 }")
+    sketch = make_sketch(text, size=[65, 65], ramp=RAMP.format("0.0"), **{**IMAGES, "meadow": noise})
+    colour = any_engine.read(sketch, "colour").astype(float)[..., :3]
+    image = any_engine.read(sketch, "meadow").astype(float)[..., :3]
+    wanted = np.empty_like(colour)
+    for i in range(65):
+        for j in range(65):
+            wanted[i, j] = sum(image[(i - a) % 8, (j - b) % 8] for a in (0, 1) for b in (0, 1)) / 4
+    np.testing.assert_allclose(colour, wanted, atol=5e-3)
+
+
+def test_a_user_s_image_stands_in_for_each_material(any_engine, make_sketch, tmp_path):
+    for name, pixel in (("meadow", (255, 0, 0)), ("stone", (0, 255, 0)), ("ice", (0, 0, 255))):
+        Image.new("RGB", (5, 3), pixel).save(tmp_path / f"{name}.png")
+    text = PASSES.format("")
+    for name in ("meadow", "stone", "ice"):
+        text = text.replace(f'use = "./{name}"', f'use = "texturing/image"\nset = {{ image = "{name}.png" }}')
+    colour = any_engine.read(make_sketch(text, size=[256, 4], ramp=EASTWARD), "colour").astype(float)
+    np.testing.assert_allclose(colour[2, :, :3], thesis(np.arange(256.0)), atol=2e-3)
 
 
 def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
