@@ -87,3 +87,16 @@ def test_a_tint_dyes_the_tile(any_engine, tile, name):
         for more in ("", ', tint = "#ff0000"')
     )
     assert dyed[0] / dyed.sum() > plain[0] / plain.sum()
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_the_ends_of_every_slider_and_the_smallest_tiles_give_colours(any_engine, make_sketch, name, end):
+    sketch = make_sketch(f'[[pass]]\nname = "c"\nuse = "texturing/{name}"\n', size=17)
+    sliders = [p for p in sketch.graph.passes[0].technique.parameters if p.widget.kind == "slider"]
+    assert len(sliders) >= 4
+    values = {f"c.{p.name}": type(p.default)(getattr(p.widget, end)) for p in sliders}
+    for size in (1, 2, 17):
+        colour = any_engine.read(sketch.with_values({**values, "size": size}), "c")
+        assert colour.shape == (size, size, 4)
+        assert np.isfinite(colour).all() and colour.min() >= 0 and colour[..., :3].max() <= 1
