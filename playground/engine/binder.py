@@ -31,14 +31,18 @@ if TYPE_CHECKING:
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
+_ANISOTROPY = (
+    8.0  # of what is filtered with mipmaps; where the processor draws it costs a hundred times as much
+)
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
 class Binder:
     """Binds textures and sets uniforms on one context."""
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
         self.ctx = ctx
+        self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
         self._files: OrderedDict[tuple[str, bool], moderngl.Texture] = OrderedDict()
@@ -125,6 +129,8 @@ class Binder:
                 shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
             sampler = self.ctx.sampler(repeat_x=around, repeat_y=around)
             sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
+            if linear and sampling.mipmap and self._anisotropy > 1:
+                sampler.anisotropy = self._anisotropy
             self._samplers[sampling] = sampler
         return self._samplers[sampling]
 

@@ -39,7 +39,7 @@ class Runner:
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
-        self.binder = Binder(ctx)
+        self.binder = Binder(ctx, software=info.software)
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
         self.companions = Companions(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)

@@ -1,0 +1,25 @@
+"""How textures are filtered: along slanted ground by a graphics card, plainly where the processor draws."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.engine.binder import Binder
+from playground.sketch.model import Sampling
+
+
+@pytest.mark.parametrize(
+    ("software", "sampling", "wanted"),
+    [
+        (False, Sampling("linear", "repeat", True), 8.0),
+        (False, Sampling("linear", "repeat", False), 1.0),
+        (False, Sampling("nearest", "clamp", True), 1.0),
+        (True, Sampling("linear", "repeat", True), 1.0),
+    ],
+)
+def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, wanted):
+    binder = Binder(ctx, software=software)
+    try:
+        assert binder._sampler(sampling).anisotropy == min(wanted, ctx.max_anisotropy)
+    finally:
+        binder.release()
