@@ -1,0 +1,119 @@
+"""Painting on a mask: where a stroke goes, what it leaves, how it is kept and taken back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.errors import DataError
+from playground.images.files import read_image, write_png
+from playground.live.brush import ERASER, Brush, covered, stroke
+from playground.live.canvas import LONGER_SIDE, Canvas
+
+EXTENT = (1000.0, 500.0)
+HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
+
+
+def empty(ny=51, nx=101):
+    return np.zeros((ny, nx, 4), np.float32)
+
+
+def distance_to_segment(ny, nx, start, end):
+    """Return the distance [m] of each node from a segment, by very many of its points."""
+    y, x = np.mgrid[0:ny, 0:nx]
+    place = np.stack([x * EXTENT[0] / (nx - 1), y * EXTENT[1] / (ny - 1)], axis=-1)
+    points = np.linspace(np.multiply(start, EXTENT), np.multiply(end, EXTENT), 400)
+    return np.linalg.norm(place[:, :, None] - points, axis=-1).min(axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("start", "end"), [((0.5, 0.5), (0.5, 0.5)), ((0.2, 0.3), (0.7, 0.9)), ((0.0, 1.0), (0.05, 1.0))]
+)
+def test_a_hard_brush_covers_what_is_within_its_radius(start, end):
+    mask = empty()
+    stroke(mask, start, end, EXTENT, HARD)
+    away = distance_to_segment(51, 101, start, end)
+    sure = np.abs(away - HARD.radius) > 2.0
+    np.testing.assert_array_equal(mask[..., 1][sure], (away < HARD.radius)[sure])
+    assert (mask[..., [0, 2, 3]] == 0).all() and mask[..., 1].any()
+
+
+def test_a_soft_brush_fades_from_its_middle_to_its_radius():
+    rows, columns, share = covered(
+        (51, 101), (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(radius=200.0, softness=1.0)
+    )
+    middle = share[25 - rows.start]
+    assert middle.max() == 1 and middle[0] < 0.05
+    half = middle[50 - columns.start :]
+    assert (np.diff(half) <= 0).all()
+    assert abs(np.interp(100.0, np.arange(len(half)) * 10.0, half) - 0.5) < 0.01
+
+
+def test_a_layer_takes_from_the_others_and_an_eraser_from_all():
+    mask = empty()
+    mask[..., 0] = 0.75
+    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=3, radius=50.0, strength=0.5, softness=0.0))
+    np.testing.assert_allclose(mask[25, 50], [0.375, 0, 0, 0.5], atol=1e-6)
+    assert mask.sum(axis=-1).max() <= 1
+    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=ERASER, radius=50.0, strength=1.0, softness=0.0))
+    assert (mask[25, 50] == 0).all() and mask[0, 0, 0] == 0.75
+
+
+def test_beside_the_land_nothing_is_painted():
+    mask = empty()
+    stroke(mask, (3.0, 3.0), (4.0, 3.0), EXTENT, HARD)
+    assert (mask == 0).all()
+
+
+def test_a_new_mask_has_the_lands_proportions_and_a_new_name(tmp_path: Path):
+    first = Canvas.begun(tmp_path, "hills-image", None, EXTENT)
+    second = Canvas.begun(tmp_path, "hills-image", None, EXTENT)
+    assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
+    assert read_image(first.path).size == (LONGER_SIDE, LONGER_SIDE // 2)
+
+
+def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, EXTENT)
+    pictures = [read_image(canvas.path).pixels]
+    for x in (0.2, 0.8):
+        canvas.begin()
+        canvas.paint((x, 0.9), (x, 0.95), EXTENT, HARD)
+        canvas.save()
+        pictures.append(read_image(canvas.path).pixels)
+    north, south = pictures[-1][:64], pictures[-1][-64:]
+    assert north[..., 1].max() == 255 and south[..., 1].max() == 0
+    assert (pictures[1] != pictures[2]).any()
+    for wanted in (pictures[1], pictures[0]):
+        assert canvas.can_undo
+        canvas.undo()
+        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+    assert not canvas.can_undo
+    canvas.undo()
+
+
+def test_clearing_can_be_undone(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, EXTENT)
+    canvas.begin()
+    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
+    canvas.save()
+    painted = read_image(canvas.path).pixels
+    canvas.clear()
+    assert (read_image(canvas.path).pixels == 0).all()
+    canvas.undo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, painted)
+
+
+def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
+    pixels = np.random.default_rng(1).integers(0, 256, (16, 32, 4), np.uint8)
+    write_png(tmp_path / "old.png", pixels)
+    canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", EXTENT)
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
+    canvas.clear()
+    np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
+
+
+def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
+    with pytest.raises(DataError, match="missing"):
+        Canvas.begun(tmp_path / "missing", "mask", None, EXTENT)
