@@ -151,7 +151,8 @@ def _mesh_values(job: Job) -> dict[str, Value]:
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:
     """Switch depth test and blending as a draw's header says; both "none" is how others find the context."""
-    ctx.enable_only((ctx.DEPTH_TEST if depth == "less" else 0) | (ctx.BLEND if blend != "none" else 0))
+    ctx.enable_only((ctx.DEPTH_TEST if depth != "none" else 0) | (ctx.BLEND if blend != "none" else 0))
+    ctx.depth_func = "==" if depth == "equal" else "<"
     if blend == "add":
         ctx.blend_func = ctx.ONE, ctx.ONE
     elif blend == "alpha":

@@ -188,7 +188,10 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if len(kernel.outputs) != 1:
         raise line.error("a draw has one output")
     blend, depth = options.get("blend", "none"), options.get("depth", "less")
-    for key, value, valid in (("blend", blend, ("none", "alpha", "add")), ("depth", depth, ("less", "none"))):
+    for key, value, valid in (
+        ("blend", blend, ("none", "alpha", "add")),
+        ("depth", depth, ("less", "equal", "none")),
+    ):
         if value not in valid:
             raise line.error(f'{key} = "{value}": expected one of {", ".join(valid)}')
     samples, count = options.get("samples", "0"), options.get("count", "")

@@ -97,6 +97,20 @@ def test_an_earlier_draw_hands_on_each_sample(any_engine, plates):
     assert (red + blue, alpha) == (1.0, 1.0)
 
 
+@pytest.mark.parametrize("samples", [1, 4])
+def test_equal_depth_draws_over_what_stands_just_there(any_engine, plates, samples):
+    sketch = plates(
+        ("one", "", {"right": 0.0, "depth": 0.25}, ""),
+        ("near", "", {"left": 0.0, "right": 0.5, "depth": 0.0}, "one"),
+        ("over", ', depth = "equal", blend = "alpha"', {"depth": 0.25, "colour": GREEN}, "near"),
+        samples=samples,
+    )
+    found = any_engine.read(sketch, "over")
+    np.testing.assert_array_equal(found[:, :8], np.broadcast_to((0.5, 0.5, 0.0, 1.0), (16, 8, 4)))
+    np.testing.assert_array_equal(found[:, 8:12], np.broadcast_to(RED, (16, 4, 4)))
+    np.testing.assert_array_equal(found[:, 12:], 0.0)
+
+
 def test_without_a_depth_test_the_later_one_shows(any_engine, plates):
     sketch = plates(
         ("one", "", {"depth": 0.0}, ""),
