@@ -21,6 +21,7 @@ from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
+from playground.terrain.masks import read_mask
 from playground.terrain.resample import resample
 
 
@@ -134,6 +135,12 @@ def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> d
     return tables(triangulate(rules), size)
 
 
+def _make_mask(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+    stated = values["texels"]
+    assert isinstance(stated, tuple)  # the kernel's file says so
+    return {"mask": read_mask(Path(str(values["image"])), size, (int(stated[0]), int(stated[1])))}
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -153,5 +160,6 @@ SOURCES: dict[str, SourceKind] = {
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
     ),
+    "mask_file": SourceKind(lambda _: Land(), _make_mask, ("image",), ("image", "texels")),
 }
 """Name → what it does."""
