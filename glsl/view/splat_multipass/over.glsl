@@ -1,0 +1,60 @@
+// view/splat_multipass/over.glsl -- the land again in another texture, blended over what was drawn of it.
+//
+//   gives    frame, linear light, over an earlier draw of the same mesh
+//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl; a height
+//            0..1, weights as of texturing/alpha_map, a tile; a light if there is one
+//   units    metres; colours linear; the tile stands `repeats` times side by side from west to east
+//   source   Belaiche 2010, section 2.6, whose blender does
+//            result = alpha texture + (1 - alpha) previous                              (1)
+//   tested   tests/glsl/test_splat_view.py: four layers give the picture of view/splat
+//
+// The thesis takes alpha from the layer's alpha map as it is. By (1), whatever is drawn later
+// then hides part of all before it, also of what the map gave to those: of weights 1/2 and 1/2,
+// the first layer keeps (1 - 1/2) 1/2 where it is drawn with its own, and a third would take
+// from both. So the map's numbers are weights in one picture only if the last layer's is its
+// weight and each earlier one has more. What the map must hold for (1) to give the weights w is
+//            alpha_k = w_k / (w_1 + ... + w_k),                                         (2)
+// the layer's share of what has been drawn so far, and 1 for the first. That is what `shares`
+// does; "as in the map" is the thesis's text done to the letter.
+//
+// Light and air belong to each draw, since (1) is a mean, and the mean of colours in one light
+// is the mean colour in that light. Equal depth: it draws where the first layer is seen; of two
+// triangles that tie there both draw, which is one sample in some millions, at a crest.
+#include "maths/drape.glsl"
+#include "texturing/splat_weights.glsl"
+#include "view/splat/surface.glsl"
+#pragma draw(mesh = "grid", output = "frame:rgba16f", blend = "alpha", depth = "equal")
+
+uniform sampler2D height;   //! input("linear")
+uniform sampler2D weights;  //! input("linear")
+uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
+uniform sampler2D light;    //! input("linear", "mipmap", "white")
+
+uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side
+uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
+uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
+uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers") How often the tile stands side by side from west to east
+uniform int layer = 1;                //! slider(1, 3) group("Layers") Which channel of the weights is its own, from 0
+uniform int alphas = 0;               //! menu("shares", "as in the map") group("Layers") Its share of what has been drawn so far, or its weight as if it were that
+uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
+uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
+
+vec4 vertex(vec3 corner, out vec3 position, out float mark) {
+    vec4 place = place_of_vertex(height, corner, extent, relief, skirt);
+    position = place.xyz;
+    mark = place.w;
+    return clip_from_world * vec4(position, 1.0);
+}
+
+vec4 fragment(vec3 position, float mark) {
+    vec2 share = position.xy / extent;
+    vec3 shown = texture(colour, share * vec2(1.0, extent.y / extent.x) * repeats).rgb;
+    vec4 weight = textureLod(weights, drape_uv(share, textureSize(weights, 0)), 0.0);
+    float own = layer == 1 ? weight.y : layer == 2 ? weight.z : weight.w;
+    float alpha = alphas == 1 ? own : alpha_of_layer(weight, layer);
+    float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));
+    vec3 seen = surface_seen(shown, light, share, mark, earth, horizon, clear);
+    // The cut earth is no mixture, nor is what is not a number.
+    if (mark > 0.0 || !is_shown(alpha) || seen == LAND_NOT_A_NUMBER) alpha = 1.0;
+    return vec4(seen, alpha);
+}
