@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.sketch.model import Camera
+
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 MASK = '#pragma kernel(output = "mask:rgba32f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
 LAND = '[[pass]]\nname = "height"\nuse = "./land"\n'
@@ -271,3 +273,40 @@ def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
         )
     assert "layers" in str(caught.value) and "1" in str(caught.value) and "4" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+# ── distance to the eye ──────────────────────────────────────────────────────
+
+
+def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
+    text = LAND + '[[pass]]\nname = "plain"\nuse = "./plain"\n'
+    text += (
+        '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "plain" }\n'
+    )
+    text += 'set = { near = "rock", far = "snow", begins = 700, ends = 1100 }\n'
+    hill = "0.3 + 0.002 * float(texel.x)"
+    sketch = make_sketch(
+        text, size=[41, 21], extent=[1000.0, 500.0], relief=300.0,
+        land=HEIGHT.format(hill), plain=MASK.format("vec4(0.2, 0.6, 0.0, 0.2)"),
+    ).with_camera(Camera(azimuth=230, elevation=20, distance=900, target=(500, 250, 90)))  # fmt: skip
+    found = bytes_of(any_engine, sketch)
+    assert (found.sum(axis=-1) == 255).all()
+    y, x = np.indices((21, 41))
+    places = np.stack([x * 25.0, y * 25.0, 300 * (0.3 + 0.002 * x)], axis=-1)
+    away = np.linalg.norm(places - np.array(any_engine.plan.eye.position), axis=-1)
+    assert away.min() < 700 and away.max() > 1100
+    gone = np.clip((away - 700) / 400, 0, 1)
+    np.testing.assert_allclose(found[..., 2], 153 * gone, atol=1.01)
+    np.testing.assert_allclose(found[..., 1], 153 * (1 - gone), atol=1.01)
+    assert (found[..., 0] == 51).all() and (found[..., 3] == 51).all()
+
+
+def test_a_moved_camera_runs_the_distance_and_not_the_rules(any_engine, make_sketch):
+    text = LAND + '[[pass]]\nname = "rules"\nuse = "texturing/alpha_map"\n'
+    text += (
+        '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "rules" }\n'
+    )
+    sketch = make_sketch(text, land=HEIGHT.format("0.5"))
+    any_engine.read(sketch, "weights")
+    any_engine.read(sketch.with_camera(Camera(azimuth=100)), "weights")
+    assert any_engine.ran == ["weights"]
