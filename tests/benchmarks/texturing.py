@@ -1,0 +1,163 @@
+"""Measure what texturing costs a frame, and print it beside its limit.
+
+    python tests/benchmarks/texturing.py [--land 1025] [--frames 9]
+
+Every figure is the median of frames of 1280 x 720 with the camera moved between them, one
+sample a pixel, each after the driver has finished. The rows are measured in turns, one frame
+of each, so that a load on the machine falls on all of them alike: compare within one run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+import playground
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+from playground.sketch.model import Camera, Sketch
+
+SIZE = (1280, 720)
+
+LAND = """format = 1
+size = {size}
+extent = 2560.0
+relief = 470.0
+[[pass]]
+name = "height"
+use = "generation/gradient_noise"
+set = {{ shape = "warped", warp = 0.6, octaves = 8, frequency = 2.2, gain = 0.4, seed = 8 }}
+[[pass]]
+name = "weights"
+use = "texturing/alpha_map"
+size = 513
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+"""
+TILES = "".join(
+    f'[[pass]]\nname = "{name}"\nuse = "texturing/{name}"\nsize = 512\n'
+    for name in ("grass", "rock", "snow", "path")
+)
+BAKED = '[[pass]]\nname = "colour"\nuse = "texturing/splat"\nsize = 1025\n'
+VIEW = '[view]\nuse = "{}"\nsamples = 1\nset = {{ grid = {} }}\n'
+
+# The same six textures at every pixel of the screen, sky and sea of view/splat left out: four
+# tiles filtered over mipmaps, a map of weights, the light.
+FULL = """
+#pragma draw(mesh = "sheet", output = "frame:rgba16f", depth = "none")
+uniform sampler2D weights;  //! input("linear")
+uniform sampler2D grass;    //! input("linear", "repeat", "mipmap")
+uniform sampler2D rock;     //! input("linear", "repeat", "mipmap")
+uniform sampler2D snow;     //! input("linear", "repeat", "mipmap")
+uniform sampler2D path;     //! input("linear", "repeat", "mipmap")
+uniform sampler2D light;    //! input("linear", "mipmap", "white")
+vec4 vertex(vec3 corner, out vec2 place) {
+    place = corner.xy + 1e-3 * eye.xy / extent;
+    return vec4(corner.xy * 2.0 - 1.0, 0.0, 1.0);
+}
+vec4 fragment(vec2 place) {
+    vec4 weight = textureLod(weights, place, 0.0);
+    vec3 shown = weight.x * texture(grass, place * 8.0).rgb + weight.y * texture(rock, place * 8.0).rgb
+               + weight.z * texture(snow, place * 8.0).rgb + weight.w * texture(path, place * 8.0).rgb;
+    return vec4(shown * texture(light, place, -0.7).rgb, 1.0);
+}
+"""
+FULL_PASS = (
+    f'[[pass]]\nname = "screen"\nuse = "./screen"\nsize = [{SIZE[0]}, {SIZE[1]}]\n[view]\nsamples = 1\n'
+)
+
+
+def main() -> None:
+    """Run every measurement and print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--land", type=int, default=1025, help="texels a side of the land (default 1025)")
+    parser.add_argument("--frames", type=int, default=9, help="frames to time (default 9)")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
+        rows = sketches(Path(folder), options.land)
+        times = measure(engine, rows, options.frames)
+        renderer = engine.info.renderer
+    full = times["full"]
+    table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, land of {options.land}²")
+    for heading in ("a frame of 1280 x 720", "median", "of the pass over the screen", "limit"):
+        table.add_column(heading)
+    for name, (what, limit) in WHAT.items():
+        table.add_row(what, f"{times[name]:.1f} ms", f"{times[name] / full:.2f} x", limit)
+    Console(width=None if sys.stdout.isatty() else 130).print(table)
+
+
+WHAT = {
+    "full": ("one pass over the screen, six textures a pixel", ""),
+    "splat land": ("view/splat, its draw of the land, mesh of 257²", ""),
+    "coarse land": ("the same, mesh of 65²: larger triangles", ""),
+    "multipass land": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
+    "baked land": ("view/terrain, its draw, the same layers baked to 1025²", ""),
+    "splat": ("view/splat, whole frame", "2 x, with geomipmap"),
+    "multipass": ("view/splat_multipass, whole frame", "beside splat"),
+    "baked": ("view/terrain, whole frame", "40 ms"),
+}
+"""What each row is, and what is asked of it."""
+
+
+def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
+    """Write and load the sketch of every row, and say which of its passes is timed ("" for the frame)."""
+    (folder / "screen.glsl").write_text(FULL)
+    head = LAND.format(size=size) + TILES
+
+    def made(name: str, text: str) -> Sketch:
+        path = folder / f"{name}.toml"
+        path.write_text(text)
+        return load(path)
+
+    splat = made("splat", head + VIEW.format("view/splat", 257))
+    coarse = made("coarse", head + VIEW.format("view/splat", 65))
+    many = made("multipass", head + VIEW.format("view/splat_multipass", 257))
+    baked = made("baked", head + BAKED + VIEW.format("view/terrain", 257))
+    return {
+        "full": (made("full", head + FULL_PASS), "screen"),
+        "splat land": (splat, "view.land"),
+        "coarse land": (coarse, "view.land"),
+        "multipass land": (many, "view.fourth"),
+        "baked land": (baked, "view.land"),
+        "splat": (splat, ""),
+        "multipass": (many, ""),
+        "baked": (baked, ""),
+    }
+
+
+def measure(engine: Engine, rows: dict[str, tuple[Sketch, str]], frames: int) -> dict[str, float]:
+    """Return the median milliseconds of a frame, or of a pass, of each row."""
+    times: dict[str, list[float]] = {name: [] for name in rows}
+    azimuth = 70.0
+    for turn in range(frames + 2):
+        for name, (sketch, path) in rows.items():
+            azimuth += 0.1
+            look = Camera(azimuth=azimuth, elevation=22.0, distance=2100.0, target=(1280.0, 1280.0, 150.0))
+            moved = sketch.with_camera(look)
+            if path:
+                engine.texture(moved, "view.sky", size=SIZE)  # what the draw begins with is not its own
+            engine.ctx.finish()
+            start = time.perf_counter()
+            if path:
+                engine.texture(moved, path, size=SIZE)
+            else:
+                engine.draw(moved, size=SIZE)
+            engine.ctx.finish()
+            if turn >= 2:  # the first runs make the land and compile
+                times[name].append((time.perf_counter() - start) * 1e3)
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
+if __name__ == "__main__":
+    main()
