@@ -52,7 +52,9 @@ def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, c
     unit = np.stack([x, y], axis=-1) / np.maximum(radius, 1e-9)[..., None]
     steps = np.hypot(unit[..., 0] * 1000 / (size[0] - 1), unit[..., 1] * 1000 / (size[1] - 1))
     inside = (radius > 60) & (radius < 480)
-    np.testing.assert_allclose(found[inside], on_lines(metres / np.maximum(steps, 1e-9), 2)[inside], atol=0.06)
+    np.testing.assert_allclose(
+        found[inside], on_lines(metres / np.maximum(steps, 1e-9), 2)[inside], atol=0.06
+    )
 
 
 def test_their_widths_do_not_depend_on_the_slope(any_engine, cover):

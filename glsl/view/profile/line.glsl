@@ -1,0 +1,19 @@
+// view/profile/line.glsl -- elevations under a straight line over the land, from its start to its finish.
+//
+//   gives    height, in metres above sea level, a row of it
+//   needs    terrain/heightfield.glsl; a height
+//   units    ends as shares of the land, east and north
+//   source   none: heights between texels, as every kernel reads them
+//   tested   tests/glsl/test_view_profile.py, against interpolation in float64
+#include "terrain/heightfield.glsl"
+#pragma kernel(output = "height:r32f")
+
+uniform sampler2D height;  //! input
+
+uniform vec2 start = vec2(0.1, 0.5);   //! point group("Line") Where the line begins
+uniform vec2 finish = vec2(0.9, 0.5);  //! point group("Line") Where it ends
+
+float kernel(ivec2 texel) {
+    vec2 share = mix(start, finish, float(texel.x) / float(max(size.x - 1, 1)));
+    return base_elevation + relief * height_at(height, share * vec2(textureSize(height, 0) - 1));
+}
