@@ -127,3 +127,32 @@ def test_a_fifth_layer(tmp_path):
     text = '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map_file"\nset = { layers = 5 }\n'
     found = refused(tmp_path, text)
     assert "layers" in found and "5" in found and "1 to 4" in found
+
+
+# ── base images as files ─────────────────────────────────────────────────────
+
+LAYERS = '[[pass]]\nname = "{}"\nuse = "texturing/image"\nsize = 8\nset = {{ image = "{}" }}\n'
+SPLAT = '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map_file"\nset = {{ image = "{}" }}\n'
+
+
+def test_base_images_may_be_files_decoded_to_linear_light(any_engine, make_sketch, paint):
+    """Half of one, half of another: the mean of their light, not of their bytes."""
+    mask = paint(np.full((9, 9, 4), (0, 128, 0, 127)))
+    grey = paint(np.full((8, 8, 3), 40), "grey.png")
+    pale = paint(np.full((8, 8, 3), 220), "pale.png")
+    text = SPLAT.format(mask) + "".join(
+        LAYERS.format(name, file)
+        for name, file in (("grass", grey), ("rock", grey), ("snow", grey), ("path", pale))
+    )
+    text += '[[pass]]\nname = "colour"\nuse = "texturing/splat"\n'
+    found = any_engine.read(make_sketch(text, size=9), "colour")[..., :3]
+    dark, light = (((byte / 255 + 0.055) / 1.055) ** 2.4 for byte in (40, 220))
+    np.testing.assert_allclose(found, (128 * dark + 127 * light) / 255, atol=2e-3)
+
+
+def test_a_missing_base_image(paint, tmp_path):
+    mask = paint(random_bytes(9, 9))
+    text = SPLAT.format(mask) + "".join(LAYERS.format(n, "mask.png") for n in ("grass", "rock", "snow"))
+    text += LAYERS.format("path", "gravel.png") + '[view]\nuse = "view/map"\ninputs = { shown = "path" }\n'
+    found = refused(tmp_path, text)
+    assert "gravel.png" in found and "no such file" in found
