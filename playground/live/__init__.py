@@ -8,13 +8,16 @@
     maps.py       any texture of a sketch, shown from above
     session.py    what is shown, what was changed, what is wrong; knows of no window
     pictures.py   a picture saved under a new name
+    brush.py      a stroke on a mask
+    canvas.py     a mask that is painted on, and its file
+    painting.py   the brush over the picture: which mask, which place of the land
     actions.py    what a button or a key asks for that is more than one call of the session
     status.py     what the window shows, as JSON lines for another program
 
     theme.py      fonts, colours, margins
     window.py     GLFW, an OpenGL context, Dear ImGui: the one place that knows of screens
     dividers.py   the lines that part a picture, moved by the mouse
-    gesture.py    the mouse over the picture → a camera
+    gesture.py    a drag over the picture → a camera
     keys.py       the table of keys, which the key map shows as well
 
     numbers.py    how a number is written, and what a drag makes of it
@@ -22,9 +25,11 @@
     widgets.py    one control for each row of ``sketch/widgets.py``
     rows.py       a line of the panel: a label, a control
     costs.py      the table of what the picture cost
+    paintbox.py   the brush's controls
     panel.py      all of that, made from the sketch's annotations
     excerpt.py    an offending line, cut so that it fits
     overlay.py    errors and notices over the picture
+    hand.py       the mouse over the picture: what it turns, moves or paints
     app.py        opens a sketch in a window and ties everything above together
 
 Each knows only those above it. Importing this opens nothing.

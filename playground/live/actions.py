@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError
+from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.session import Session
 from playground.paths import shown
@@ -36,6 +37,9 @@ class Actions:
     notices: list[Notice] = field(default_factory=list)
     last_map: str = ""  # what M shows
     saved: Path | None = None  # the last picture
+
+    def __post_init__(self) -> None:
+        self.painting = Painting(self.session, self.folder)
 
     def say(self, text: str) -> None:
         """Put a sentence on the screen; the same one again only stays longer."""

@@ -21,8 +21,7 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
-from playground.live.dividers import divider_at, moved
-from playground.live.gesture import Gesture, steered
+from playground.live.hand import Hand
 from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
@@ -115,8 +114,7 @@ class Live:
         self._last = time.perf_counter()
         self._followed: object = None
         self._reloads = session.last_reload
-        self._divider = ""  # the line of the picture that the hand holds
-        self._on_divider = False  # the mouse is on one
+        self.hand = Hand(session, self.actions.painting)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -160,7 +158,7 @@ class Live:
         self._last = now
 
     def _take_files(self) -> None:
-        changed = self.watcher.take()
+        changed = self.watcher.take() - self.actions.painting.files
         if changed and (self.session.error or changed & self.session.files):
             self.session.reload()
 
@@ -181,7 +179,7 @@ class Live:
         act_on_keys(actions)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
-        self._steer(area)
+        self.hand.act(area, window.density)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws = session.draws
@@ -203,51 +201,6 @@ class Live:
         window.end()
         self.status.write(actions)
 
-    def _steer(self, area: Area) -> None:
-        """Move the camera, a divider, or with Ctrl the sun, unless the mouse is the panel's."""
-        io, session = imgui.get_io(), self.session
-        if io.want_capture_mouse or session.plan is None or session.sketch is None:
-            return
-        left, right = _dragged(0), _dragged(1)
-        if not io.key_ctrl and self._divide(io.mouse_pos.x - area[0], area[2]):
-            left = False
-        if io.key_ctrl:
-            if left and (io.mouse_delta.x or io.mouse_delta.y):
-                session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
-            return
-        gesture = Gesture(
-            height=area[3],
-            across=io.mouse_delta.x,
-            down=io.mouse_delta.y,
-            wheel=io.mouse_wheel,
-            orbiting=left and not io.key_shift,
-            panning=right or (left and io.key_shift),
-        )
-        if gesture.acts and session.orbits:
-            session.look(steered(session.sketch.camera, session.plan.eye, gesture))
-        if imgui.is_mouse_down(0):
-            gone, density = imgui.get_mouse_drag_delta(0, 0.0), self.window.density
-            x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
-            session.point((x, y, x - gone.x * density, y + gone.y * density))
-
-    def _divide(self, across: float, width: float) -> bool:
-        """Move the line that is held, or take hold of the one under the mouse; say whether one is held."""
-        session = self.session
-        if session.map is not None or session.sketch is None:
-            return False
-        if imgui.is_mouse_clicked(0):
-            self._divider = divider_at(session.sketch, across, width)
-        elif not imgui.is_mouse_down(0) and not imgui.is_mouse_released(0):
-            self._divider = ""
-        motion = imgui.get_io().mouse_delta
-        if self._divider and motion.x:
-            session.set(self._divider, moved(across, width))
-        if motion.x or motion.y:
-            self._on_divider = bool(self._divider or divider_at(session.sketch, across, width))
-        if self._on_divider:
-            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-        return bool(self._divider)
-
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
@@ -255,13 +208,3 @@ class Live:
             if self._reloads is not None:
                 self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest
-
-
-def _dragged(button: int) -> bool:
-    """Say whether the mouse's way since the last turn was a drag.
-
-    The way to where a button went down is none; the way to where it came up is one.
-    """
-    return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(
-        button
-    )

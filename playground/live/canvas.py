@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from playground.images.files import new_name, read_image, write_png
 from playground.live.brush import Brush, stroke
+from playground.terrain.resample import resample
 
 LONGER_SIDE = 512
 """Texels of a new mask's longer side."""
@@ -27,9 +28,14 @@ class Canvas:
     def begun(cls, folder: Path, name: str, of: Path | None, extent: tuple[float, float]) -> Canvas:
         """Begin a file that is new in a folder: a copy of a mask, or nothing painted yet.
 
+        A mask coarser than ``LONGER_SIDE`` becomes as fine as that, with the land's proportions.
+
         Raises ``DataError`` where the mask cannot be read or the folder not be written to.
         """
-        mask = _read(of) if of is not None else _empty(extent)
+        mask = _empty(extent)
+        if of is not None:
+            given = _read(of)
+            mask = given if max(given.shape) >= LONGER_SIDE else _finer(given, mask.shape)
         with new_name(folder / f"{name}.png") as path:
             made = cls(path, mask)
             made.save()
@@ -79,6 +85,11 @@ def _read(path: Path) -> NDArray[np.float32]:
     if not image.transparent:
         mask[..., 3] = 0.0
     return mask
+
+
+def _finer(mask: NDArray[np.float32], shape: tuple[int, ...]) -> NDArray[np.float32]:
+    channels = [resample(mask[..., k], (shape[1], shape[0]), within=(0.0, 1.0)) for k in range(4)]
+    return np.stack(channels, axis=-1).astype(np.float32)
 
 
 def _empty(extent: tuple[float, float]) -> NDArray[np.float32]:

@@ -18,6 +18,7 @@ from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.costs import draw_costs
 from playground.live.keys import KEYS
+from playground.live.paintbox import draw_paintbox
 from playground.live.rows import fitting, reset_width, row
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
@@ -84,6 +85,7 @@ class Panel:
         if sketch.presets:
             _presets(sketch, actions)
         self._shown(actions, look)
+        draw_paintbox(actions.painting)
 
     def _shown(self, actions: Actions, look: Theme) -> None:
         session = actions.session

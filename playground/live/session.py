@@ -255,6 +255,10 @@ class Session:
             self.engine.runner.mouse = mouse
             self._revision += 1
 
+    def look_again(self) -> None:
+        """Draw anew: a file that the sketch reads has changed."""
+        self._revision += 1
+
     def turn_suns(self, across: float, up: float) -> None:
         """Move every sun of the sketch by so much of the picture's height, to the right and upwards."""
         if self.sketch is not None:

@@ -54,6 +54,7 @@ class Parameter:
     label: str = ""
     tooltip: str = ""
     sampling: Sampling = Sampling()  # of a file
+    painted: bool = False  # a file that may be painted on in the window
     file: str = ""
     line: int = 0
 

@@ -123,7 +123,9 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     path = words.pop(0) if is_file and words else ""
     if "\0" in path:
         raise line.error(f"the path of '{name}' holds a zero byte")
-    valid = {"nearest", "linear", "clamp", "repeat", "mipmap"} | (set() if is_file else {"white", "black"})
+    valid = {"nearest", "linear", "clamp", "repeat", "mipmap"} | (
+        {"paint"} if is_file else {"white", "black"}
+    )
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
@@ -147,6 +149,7 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         label=_text(calls, "label", line),
         tooltip=tooltip,
         sampling=sampling,
+        painted="paint" in words,
         file=line.file,
         line=line.number,
     )

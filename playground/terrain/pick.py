@@ -48,6 +48,24 @@ def ground_under(
     return float(np.clip(x, 0.0, 1.0)), float(np.clip(y, 0.0, 1.0))
 
 
+def seen_from(
+    eye: Eye,
+    shares: NDArray[np.floating],
+    heights: NDArray[np.floating],
+    extent: tuple[float, float],
+    relief: float,
+) -> list[tuple[float, float]]:
+    """Return where in the picture places on the ground are seen, (n, 2) shares of the land's sides.
+
+    In shares of the picture from its lower left; what is behind the eye is left out.
+    """
+    place = np.asarray(shares, np.float64) * extent
+    ground = _ground(place[:, 0], place[:, 1], heights, extent, relief)
+    world = np.concatenate([place, ground[:, None], np.ones((len(place), 1))], axis=1)
+    clip = world @ eye.clip_from_world.astype(np.float64).T
+    return [(float(x / w + 1) / 2, float(y / w + 1) / 2) for x, y, _, w in clip if w > 0]
+
+
 def _ray(eye: Eye, place: tuple[float, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return where a pixel's ray begins and its unit vector."""
     far = np.linalg.inv(eye.clip_from_world.astype(np.float64)) @ [2 * place[0] - 1, 2 * place[1] - 1, 1, 1]
@@ -82,14 +100,25 @@ def _over_ground(
     extent: tuple[float, float],
     relief: float,
 ) -> NDArray[np.float64]:
-    """Return how far [m] places along a ray are over the ground between the four texels around them."""
+    """Return how far [m] places along a ray are over the ground."""
+    x, y, z = (origin[axis] + along * way[axis] for axis in range(3))
+    return np.asarray(z - _ground(x, y, heights, extent, relief), np.float64)
+
+
+def _ground(
+    east: NDArray[np.float64],
+    north: NDArray[np.float64],
+    heights: NDArray[np.floating],
+    extent: tuple[float, float],
+    relief: float,
+) -> NDArray[np.float64]:
+    """Return heights [m] between the four texels around places [m], held on the land."""
     ny, nx = heights.shape
-    x = np.clip((origin[0] + along * way[0]) / extent[0], 0, 1) * (nx - 1)
-    y = np.clip((origin[1] + along * way[1]) / extent[1], 0, 1) * (ny - 1)
+    x = np.clip(east / extent[0], 0, 1) * (nx - 1)
+    y = np.clip(north / extent[1], 0, 1) * (ny - 1)
     i, j = np.minimum(x.astype(int), max(nx - 2, 0)), np.minimum(y.astype(int), max(ny - 2, 0))
     u, v = x - i, y - j
     right, up = np.minimum(i + 1, nx - 1), np.minimum(j + 1, ny - 1)
     south = heights[j, i] * (1 - u) + heights[j, right] * u
-    north = heights[up, i] * (1 - u) + heights[up, right] * u
-    ground = np.asarray(south * (1 - v) + north * v, np.float64) * relief
-    return np.asarray(origin[2] + along * way[2] - ground, np.float64)
+    above = heights[up, i] * (1 - u) + heights[up, right] * u
+    return np.asarray(south * (1 - v) + above * v, np.float64) * relief

@@ -92,7 +92,13 @@ def main() -> None:
     kind = 1 if software else 0
     full = times["full"][kind]
     table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, land of {options.land}²")
-    for heading in ("a frame of 1280 x 720", "median", "of all cores", "of the pass over the screen", "limit"):
+    for heading in (
+        "a frame of 1280 x 720",
+        "median",
+        "of all cores",
+        "of the pass over the screen",
+        "limit",
+    ):
         table.add_column(heading)
     for name, (what, limit) in WHAT.items():
         wall, cores = times[name]
@@ -140,7 +146,9 @@ def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
     }
 
 
-def measure(engine: Engine, rows: dict[str, tuple[Sketch, str]], frames: int) -> dict[str, tuple[float, float]]:
+def measure(
+    engine: Engine, rows: dict[str, tuple[Sketch, str]], frames: int
+) -> dict[str, tuple[float, float]]:
     """Return the median milliseconds of a frame, or of a pass, of each row: on the clock, of all cores."""
     times: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
     azimuth = 70.0

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from playground.errors import DataError
+from playground.engine.engine import Engine
+from playground.errors import DataError, ShaderError
 from playground.images.files import read_image, write_png
 from playground.live.brush import ERASER, Brush, covered, stroke
 from playground.live.canvas import LONGER_SIDE, Canvas
+from playground.live.painting import Painting
+from playground.live.session import Session
+from playground.sketch.load import load
 
 EXTENT = (1000.0, 500.0)
 HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
@@ -106,7 +111,7 @@ def test_clearing_can_be_undone(tmp_path: Path):
 
 
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
-    pixels = np.random.default_rng(1).integers(0, 256, (16, 32, 4), np.uint8)
+    pixels = np.random.default_rng(1).integers(0, 256, (LONGER_SIDE // 2, LONGER_SIDE, 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
     canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", EXTENT)
     np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
@@ -114,6 +119,136 @@ def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
 
 
+def test_a_coarse_mask_becomes_fine_enough_to_paint_on(tmp_path: Path):
+    pixels = np.zeros((2, 2, 4), np.uint8)
+    pixels[0] = [0, 200, 0, 0]  # the north
+    write_png(tmp_path / "coarse.png", pixels)
+    canvas = Canvas.begun(tmp_path, "fine", tmp_path / "coarse.png", EXTENT)
+    found = read_image(canvas.path).pixels
+    assert found.shape == (LONGER_SIDE // 2, LONGER_SIDE, 4)
+    assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[LONGER_SIDE // 4, 7, 1] < 110
+
+
 def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
     with pytest.raises(DataError, match="missing"):
         Canvas.begun(tmp_path / "missing", "mask", None, EXTENT)
+
+
+SKETCH = """format = 1
+size = 65
+extent = [2000.0, 2000.0]
+relief = 200.0
+[[pass]]
+name = "height"
+use = "generation/layered_noise"
+[[pass]]
+name = "painted"
+use = "texturing/alpha_map/mask"
+size = 128
+set = { image = "none.png" }
+[[pass]]
+name = "weights"
+use = "texturing/alpha_map"
+set = { path = 0.0 }
+[[pass]]
+name = "colour"
+use = "view/weights"
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+[view]
+use = "view/terrain"
+samples = 1
+camera = { azimuth = 180, elevation = 60, distance = 3500 }
+"""
+
+
+@pytest.fixture
+def session(tmp_path: Path, any_engine: Engine) -> Iterator[Session]:
+    (tmp_path / "sketch").mkdir()
+    write_png(tmp_path / "sketch" / "none.png", np.zeros((4, 4, 4), np.uint8))
+    (tmp_path / "sketch" / "sketch.toml").write_text(SKETCH)
+    made = Session(any_engine, tmp_path / "sketch")
+    made.frame((160, 120))
+    assert made.error is None
+    yield made
+    made.release()
+
+
+def test_a_stroke_over_the_picture_lands_under_the_mouse(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    assert painting.target == "painted.image"
+    painting.toggle()
+    painting.brush = Brush(layer=3, radius=150.0, strength=1.0, softness=0.0)
+    place = (0.42, 0.45)
+    x, y = painting.ground(place)
+    before = session.engine.read(session.sketch, "weights")
+    painting.press(place)
+    painting.release()
+    session.frame((160, 120))
+    after = session.engine.read(session.sketch, "weights")
+    ny, nx = after.shape[:2]
+    there = (round(y * (ny - 1)), round(x * (nx - 1)))
+    assert after[there][3] == 1 and before[there][3] == 0
+    far = np.hypot(*(np.mgrid[0:ny, 0:nx] - np.array(there)[:, None, None])) * 2000 / (nx - 1) > 200
+    np.testing.assert_array_equal(after[far], before[far])
+    painting.undo()
+    session.frame((160, 120))
+    np.testing.assert_array_equal(session.engine.read(session.sketch, "weights"), before)
+
+
+def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tmp_path: Path) -> None:
+    named = (tmp_path / "sketch" / "none.png").read_bytes()
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.5))
+    painting.move((0.6, 0.5))
+    painting.release()
+    assert (tmp_path / "sketch" / "none.png").read_bytes() == named
+    canvas = painting.canvas
+    assert canvas is not None and canvas.path.parent == tmp_path and painting.files == {canvas.path}
+    assert dict(session.shown.edits.values)["painted.image"] == str(canvas.path)
+    assert any("painting on" in note for note in session.notes)
+    session.unset("painted.image")
+    assert painting.canvas is None, "the sketch names its own file again"
+    painting.press((0.5, 0.5))
+    assert painting.canvas is not None and painting.canvas.path != canvas.path
+
+
+def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.999))
+    painting.move((0.5, 0.998))
+    assert painting.canvas is None and not list(tmp_path.glob("*.png"))
+
+
+def test_the_outline_lies_around_the_place(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    outline = np.array(painting.outline((0.5, 0.5), 32))
+    assert outline.shape == (32, 2)
+    np.testing.assert_allclose(outline.mean(axis=0), (0.5, 0.5), atol=0.01)
+    assert painting.outline((0.5, 0.999), 32) == []
+
+
+def test_a_sketch_without_a_mask_says_so(tmp_path: Path, any_engine: Engine) -> None:
+    text = SKETCH.replace("texturing/alpha_map/mask", "texturing/rock")
+    (tmp_path / "plain.toml").write_text(text.replace('set = { image = "none.png" }', ""))
+    session = Session(any_engine, tmp_path / "plain.toml")
+    try:
+        session.frame((80, 60))
+        painting = Painting(session, tmp_path)
+        painting.toggle()
+        assert not painting.on and any("no mask to paint on" in note for note in session.notes)
+    finally:
+        session.release()
+
+
+def test_paint_is_a_word_of_files_alone(tmp_path: Path) -> None:
+    head = '#pragma kernel(output = "a:r32f")\n'
+    kernel = tmp_path / "k.glsl"
+    body = "float kernel(ivec2 texel) { return 0.0; }\n"
+    kernel.write_text(f'{head}uniform sampler2D a_mask; //! input("paint")\n{body}')
+    with pytest.raises(ShaderError, match="'paint' is not a way to read a texture"):
+        load(kernel)

@@ -1,0 +1,66 @@
+"""The brush in the panel: which layer it paints, how wide, how strongly; strokes taken back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from imgui_bundle import imgui
+
+from playground.live.brush import ERASER
+from playground.live.painting import NARROWEST, WIDEST, Painting
+from playground.live.rows import row
+
+_LAYERS = (("1", 0), ("2", 1), ("3", 2), ("4", 3), ("Erase", ERASER))
+
+
+def draw_paintbox(painting: Painting) -> None:
+    """Draw the brush's controls, where the sketch has a mask to paint on."""
+    if not painting.target:
+        return
+    imgui.set_next_item_open(painting.on)
+    opened = imgui.collapsing_header("Paint###paint")
+    imgui.set_item_tooltip(f"Paint on {painting.target} with the left button (B)")
+    if opened != painting.on:
+        painting.toggle()
+    if not opened or not painting.on:
+        return
+    brush = painting.brush
+    with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
+        for index, (name, layer) in enumerate(_LAYERS):
+            if index:
+                imgui.same_line()
+            if imgui.radio_button(name, brush.layer == layer):
+                brush = replace(brush, layer=layer)
+    side = painting.side
+    with row("Radius", "The brush's, on the ground", fixed=True):
+        changed, radius = imgui.slider_float(
+            "##radius",
+            brush.radius,
+            NARROWEST * side,
+            WIDEST * side,
+            "%.0f m",
+            imgui.SliderFlags_.logarithmic,
+        )
+        if changed:
+            brush = replace(brush, radius=radius)
+    with row("Strength", "How much of what was there one pass over a place covers", fixed=True):
+        changed, strength = imgui.slider_float("##strength", brush.strength, 0.01, 1.0, "%.2f")
+        if changed:
+            brush = replace(brush, strength=strength)
+    with row("Softness", "The share of the radius over which the brush fades", fixed=True):
+        changed, softness = imgui.slider_float("##softness", brush.softness, 0.0, 1.0, "%.2f")
+        if changed:
+            brush = replace(brush, softness=softness)
+    painting.brush = brush
+    canvas = painting.canvas
+    imgui.begin_disabled(canvas is None or not canvas.can_undo)
+    if imgui.button("Undo stroke"):
+        painting.undo()
+    imgui.end_disabled()
+    imgui.same_line()
+    if imgui.button("Clear"):
+        painting.clear()
+    imgui.set_item_tooltip("Take all paint away; that can be undone")
+    if canvas is not None:
+        imgui.text_disabled(canvas.path.name)
+        imgui.set_item_tooltip(str(canvas.path))
