@@ -1,31 +1,39 @@
 // view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/wires.glsl; a height 0..1, and a colour
-//            and a light if there are
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/geomipmap/tiles.glsl, view/wires.glsl; a height 0..1, a colour
+//            and a light if there are, and for tiles what view/geomipmap/errors gives
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
 //            (facets); the rest made here
 //   tested   tests/glsl/test_view.py, by where marked land stands in the picture; facets in
-//            tests/glsl/test_facets.py, against the normals of the faces in float64
+//            tests/glsl/test_facets.py, against the normals of the faces in float64; tiles in
+//            tests/glsl/test_view_geomipmap.py
 //
 // The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
-// costs six times the frame, and light carries the detail that its facets lack. Asked to, each
+// costs six times the frame, and light carries the detail that its facets lack. By tiles
+// (section 2.5, geomipmap) it has one for each texel and draws fewer triangles. Asked to, each
 // facet is lit by its own normal instead, so that the mesh itself is what one sees.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/drape.glsl"
+#include "view/geomipmap/tiles.glsl"
 #include "view/wires.glsl"
-#pragma draw(mesh = "grid", output = "frame:rgba16f")
+#pragma draw(mesh = "land", output = "frame:rgba16f")
 
 uniform sampler2D height;  //! input("linear")
 uniform sampler2D colour;  //! input("linear", "mipmap", "white")
 uniform sampler2D light;   //! input("linear", "mipmap", "white")
 uniform sampler2D daylight;  //! input("black")
+uniform sampler2D spans;   //! input("black")
+uniform sampler2D errors;  //! input("black")
 
-uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side
+uniform int detail = 0;               //! menu("full grid", "geomipmap") group("Mesh") How fine the mesh is where: alike everywhere, or by tiles
+uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side of the full grid
+uniform float tolerance = 1.0;        //! slider(0, 16) step(0.1) unit("pixels") group("Mesh") How far a coarser level may lie from the land
 uniform bool wireframe = false;       //! group("Mesh") Draw the mesh's edges; hidden ones stay hidden
+uniform bool levels = false;          //! group("Mesh") label("Colour by level") Draw those edges in a colour for each level of detail
 uniform vec3 wire = vec3(0.75, 0.82, 0.88);  //! colour group("Mesh") The edges' colour
 uniform float faces = 1.0;            //! slider(0, 1) step(0.01) group("Mesh") How bright the faces between the edges are
 uniform bool facets = false;          //! group("Mesh") Light each face by its own normal instead of by the light
@@ -48,17 +56,25 @@ bool is_number(float value) {
     return !isnan(value) && !isinf(value);
 }
 
+// Where a vertex stands, as a share of the land's sides.
+vec2 share_of(vec3 corner, vec4 tile) {
+    return detail == 0 ? corner.xy : share_of_node(tile.xy + corner.xy, textureSize(height, 0));
+}
+
 // mark: 0 on the land, 1 at the skirt's foot, far below 0 around a vertex whose height is not a
 // number: far, because samples at a triangle's rim are extrapolated.
-vec4 vertex(vec3 corner, out vec3 position, out float mark) {
-    float share = textureLod(height, drape_uv(corner.xy, textureSize(height, 0)), 0.0).r;
-    bool broken = !is_number(share);
-    // A vertex at infinity would take its six triangles with it.
-    float up = broken ? 0.0 : share * relief;
+// net: the place in the tile, its level, and the sides where the neighbour is coarser.
+vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark, out vec4 net) {
+    vec2 share = share_of(corner, tile);
+    float found = textureLod(height, drape_uv(share, textureSize(height, 0)), 0.0).r;
+    bool broken = !is_number(found);
+    // A vertex at infinity would take its triangles with it.
+    float up = broken ? 0.0 : found * relief;
     // Land below height 0 may lie deeper than the foot.
     float foot = min(-skirt * max(extent.x, extent.y), up);
-    position = vec3(corner.xy * extent, mix(up, foot, corner.z));
+    position = vec3(share * extent, mix(up, foot, corner.z));
     mark = broken ? -1000.0 : corner.z;
+    net = vec4(corner.xy, tile.zw);
     return clip_from_world * vec4(position, 1.0);
 }
 
@@ -78,12 +94,17 @@ float light_of_face(vec3 position) {
 }
 #endif
 
-vec4 fragment(vec3 position, float mark) {
+vec4 fragment(vec3 position, float mark, vec4 net) {
     vec2 share = position.xy / extent;
     vec3 shown = texture(colour, drape_uv(share, textureSize(colour, 0)), SHARPER).rgb;
     shown *= facets ? vec3(light_of_face(position))
                     : texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
-    if (wireframe) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
+    if (wireframe && detail == 0) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
+    if (wireframe && detail != 0) {
+        int level = int(net.z + 0.5);
+        float lines = wires_of_tile(net.xy, level, int(net.w + 0.5), 1.0);
+        shown = mix(shown * faces, levels ? colour_of_level(level) : wire, lines);
+    }
     if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot
     if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
     vec3 air = sky == 1 && is_daylight(daylight) ? horizon_of(daylight) : horizon;

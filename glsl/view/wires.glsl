@@ -1,6 +1,6 @@
 // view/wires.glsl -- a mesh's edges by arithmetic, smooth at any distance.
 //
-//   gives    wires; in a draw's fragment stage only
+//   gives    wires, wires_of_tile, colour_of_level; in a draw's fragment stage only
 //   needs    derivatives
 //   units    places in cells of the mesh, widths in pixels
 //   source   made here: the distance to a line over its change from pixel to pixel
@@ -21,6 +21,33 @@ float wires(vec2 cell, float width) {
     // Where cells are smaller than lines are wide apart, their mean replaces them: no moire.
     cover = mix(cover, min(width * change, 1.0), smoothstep(0.25, 0.7, change));
     return 1.0 - (1.0 - cover.x) * (1.0 - cover.y) * (1.0 - cover.z);
+}
+
+// The same of a tile of view/geomipmap: `place` in its 16 cells, and the sides (1 south, 2 east,
+// 4 north, 8 west) where the neighbour is one level coarser.
+float wires_of_tile(vec2 place, int level, int coarser, float width) {
+    if (level == 4) return wires(place / 16.0, width);
+    float quad = float(1 << level), last = 16.0 / quad - 1.0;
+    vec2 cell = place / quad;
+    vec4 line = vec4(cell, 0.5 * (cell.x - cell.y), 0.5 * (cell.x + cell.y));
+    vec4 along = dFdx(line), across = dFdy(line);
+    vec4 change = max(sqrt(along * along + across * across), 1e-9);
+    vec4 off = abs(fract(line + 0.5) - 0.5) / change;
+    vec4 cover = mix(clamp(0.5 * width + 0.5 - off, 0.0, 1.0), min(width * change, 1.0), smoothstep(0.25, 0.7, change));
+    // From the middle of a block to the middle of its side there is no edge where that middle is left out.
+    bvec2 odd = equal(mod(floor(cell + 0.5), 2.0), vec2(1.0));
+    bool upright = odd.x && (((coarser & 1) != 0 && cell.y < 1.0) || ((coarser & 4) != 0 && cell.y > last));
+    bool sideways = odd.y && (((coarser & 8) != 0 && cell.x < 1.0) || ((coarser & 2) != 0 && cell.x > last));
+    if (upright) cover.x = 0.0;
+    if (sideways) cover.y = 0.0;
+    cover = 1.0 - cover;
+    return 1.0 - cover.x * cover.y * cover.z * cover.w;
+}
+
+// Blue where the mesh is finest, then green, yellow, orange and red.
+vec3 colour_of_level(int level) {
+    return level <= 0 ? vec3(0.05, 0.25, 1.0) : level == 1 ? vec3(0.02, 0.75, 0.25)
+         : level == 2 ? vec3(0.95, 0.8, 0.02) : level == 3 ? vec3(1.0, 0.3, 0.02) : vec3(0.85, 0.02, 0.05);
 }
 #endif
 #endif

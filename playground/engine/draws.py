@@ -1,7 +1,9 @@
 """Draw meshes: samples of colour and depth, blending, resolved into a texture at the end.
 
 Meshes stay on the graphics card, with a vertex array for each program that draws them;
-what a draw drew on is used again by the next draw of its size.
+what a draw drew on is used again by the next draw of its size. Of a mesh that is chosen
+from, only what the view needs is drawn: the textures that the choice reads come from the
+graphics card once, when they were made.
 """
 
 from __future__ import annotations
@@ -10,15 +12,17 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
-from playground.engine.results import Result, Surface
+from playground.engine.results import Result, Surface, Wired
 from playground.errors import ContextError, SketchError
-from playground.gpu.textures import drain, make_framebuffer, split_format
+from playground.gpu.textures import drain, make_framebuffer, read_texture, split_format
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Value
+from playground.terrain.lod import CHOOSERS, Chosen, View, ranges
 from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
 
 if TYPE_CHECKING:
@@ -26,6 +30,7 @@ if TYPE_CHECKING:
 
 _MAX_MESHES = 8
 _MAX_SURFACES = 2
+_MAX_TABLES = 8
 _MeshKey = tuple[str, tuple[tuple[str, int], ...]]
 
 
@@ -38,6 +43,8 @@ class Draws:
         self.finest: int | None = None  # no mesh is finer than this, whatever its draw asks for
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
+        self._tables: OrderedDict[tuple[int, str], tuple[Result, NDArray[np.float32]]] = OrderedDict()
+        self.triangles = 0  # of the last draw of a mesh that is chosen from
 
     def release(self) -> None:
         """Give back every mesh and surface kept."""
@@ -48,13 +55,15 @@ class Draws:
             surface.release()
         self._meshes.clear()
         self._surfaces.clear()
+        self._tables.clear()
 
     def run(self, job: Job) -> Result:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
         output = kernel.outputs[0]
-        program = self.kernels.program(job, "draw")
-        array = self._array(program, job)
+program = self.kernels.program(job, "draw")
+        loaded, array = self._array(program, job)
+        chosen = self._chosen(job) if loaded.places is not None and step.repeat else None
         surface = self._surface(step.size, output.format, job.samples)
         self._start_from(job, surface)
         surface.framebuffer.use()
@@ -63,7 +72,10 @@ class Draws:
             _enable(ctx, kernel.depth, kernel.blend)
             for iteration in range(step.repeat):
                 job.count(program, iteration, kernel.repeat, step.whole)
-                array.render(ctx.TRIANGLES)
+                if chosen is None:
+                    array.render(ctx.TRIANGLES)
+                else:
+                    self.triangles = loaded.render(array, chosen)
         finally:
             _enable(ctx, "none", "none")
         result = self.kernels.pool.take(step.size, kernel.outputs)
@@ -118,7 +130,38 @@ class Draws:
             return
         self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
 
-    def _array(self, program: Program, job: Job) -> moderngl.VertexArray:
+    def _chosen(self, job: Job) -> Chosen:
+        """Return what to draw of a mesh that is chosen from."""
+        kernel, given = job.step.kernel, job.given
+        chooser = CHOOSERS[kernel.registry]
+        wanted = ("clip_from_world", "eye", "extent", "relief")
+        missing = [name for name in wanted if name not in given]
+        missing += [name for name in chooser.parameters if name not in job.step.values]
+        if missing:
+            raise kernel.error(f"mesh '{kernel.registry}' needs a draw that reads {', '.join(missing)}")
+        matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T
+        view = View(matrix, given["eye"], given["extent"], given["relief"], job.step.size)
+
+        def tables() -> dict[str, NDArray[np.float32]]:
+            return {name: self._table(job, name) for name in chooser.inputs}
+
+        return chooser.choose(job.step.values, tables, view)
+
+    def _table(self, job: Job, name: str) -> NDArray[np.float32]:
+        """Return the texels of an input, read once for each time that they are made."""
+        result, texture, output = job.inputs.get(name, Wired())
+        if result is None or texture is None:
+            mesh = job.step.kernel.registry
+            raise job.step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
+        key = (id(result), output)
+        if key not in self._tables:
+            self._tables[key] = (result, read_texture(texture))  # held, so that its identity stays its own
+            while len(self._tables) > _MAX_TABLES:
+                self._tables.popitem(last=False)
+        self._tables.move_to_end(key)
+        return self._tables[key][1]
+
+    def _array(self, program: Program, job: Job) -> tuple[_Loaded, moderngl.VertexArray]:
         step = job.step
         try:
             key = (step.kernel.registry, mesh_key(step.kernel.registry, _mesh_values(job)))
@@ -136,7 +179,7 @@ class Draws:
         array = program.arrays.get(key)
         if array is None:
             array = program.arrays[key] = self._meshes[key].array(program)
-        return array
+        return self._meshes[key], array
 
 
 def _mesh_values(job: Job) -> dict[str, Value]:
@@ -176,17 +219,36 @@ class _Loaded:
             for name, array in mesh.attributes.items()
         ]
         self._indices = ctx.buffer(mesh.indices.astype(np.uint32).tobytes())
+        # Of a mesh that is chosen from: the tiles of the piece being drawn.
+        self.places = ctx.buffer(reserve=16, dynamic=True) if key[0] in CHOOSERS else None
 
     def array(self, program: Program) -> moderngl.VertexArray:
         """Join the mesh to a program's attributes."""
         names = set(program.compiled)
-        content = [attribute for attribute in self._attributes if attribute[2] in names]
+        content: list[tuple[Any, ...]] = [each for each in self._attributes if each[2] in names]
+        if self.places is not None and "k_in_tile" in names:
+            content.append((self.places, "4f/i", "k_in_tile"))
         return self._ctx.vertex_array(
             program.compiled, content, index_buffer=self._indices, index_element_size=4
         )
 
+    def render(self, array: moderngl.VertexArray, chosen: Chosen) -> int:
+        """Draw each piece once for all of its tiles; return how many triangles that were."""
+        assert self.places is not None
+        done, triangles = 0, 0
+        for piece, count in chosen.runs:
+            first, length = ranges().get(piece, (0, self._indices.size // 4))
+            triangles += count * (length // 3)
+            self.places.orphan(16 * count)  # what the driver still reads stays as it is
+            self.places.write(np.ascontiguousarray(chosen.places[done : done + count]).tobytes())
+            array.render(self._ctx.TRIANGLES, vertices=length, first=first, instances=count)
+            done += count
+        return triangles
+
     def release(self) -> None:
         """Give the buffers back to the driver."""
+        if self.places is not None:
+            self.places.release()
         for buffer, _, _ in self._attributes:
             buffer.release()
         self._indices.release()

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import SketchError, nearest
+from playground.terrain import lod
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +64,21 @@ def triangles(values: Mapping[str, int]) -> Mesh:
     return Mesh({"corner": corner.reshape(-1, 3)}, np.arange(3 * n, dtype=np.uint32))
 
 
+def land(values: Mapping[str, int]) -> Mesh:
+    """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices that ``lod`` has.
+
+    Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on the land or 1 at the skirt's foot.
+    """
+    if values["detail"] == 0:
+        return grid(values)
+    return Mesh({"corner": lod.vertices()}, np.concatenate(list(lod.pieces().values())))
+
+
 MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int, int]]]] = {
     "grid": (grid, {"grid": (2, 4097)}),
     "sheet": (sheet, {}),
     "triangles": (triangles, {"count": (1, 2**20)}),
+    "land": (land, {"detail": (0, len(lod.DETAILS) - 1), "grid": (2, 4097)}),
 }
 """Name → (builder, the draw's parameters that it reads with their least and greatest).
 
@@ -75,8 +87,9 @@ A draw's header may work out ``count``.
 
 
 def mesh_parameters(name: str) -> tuple[str, ...]:
-    """Return the names of the parameters that a mesh depends on; none where there is no such mesh."""
-    return tuple(MESHES[name][1]) if name in MESHES else ()
+    """Return the parameters that a mesh, or the choice from it, reads; none where there is no such mesh."""
+    chosen = lod.CHOOSERS[name].parameters if name in lod.CHOOSERS else ()
+    return (*MESHES[name][1], *chosen) if name in MESHES else ()
 
 
 def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], ...]:

@@ -1,0 +1,119 @@
+// view/geomipmap/errors.glsl -- how far each level of a tile lies from the land, and between which heights the tile lies.
+//
+//   gives    spans: lowest and highest height of a tile; errors: of levels 1, 2, 3 and 4
+//   needs    view/geomipmap/tiles.glsl; a height
+//   units    of the height, all four
+//   source   Belaiche 2010, section 2.5; de Boer 2000, "Fast Terrain Rendering Using Geometrical
+//            MipMapping", for the error of a level as the largest height between it and the land
+//   tested   tests/glsl/test_view_geomipmap.py, against planes through the corners of each
+//            triangle in float64, with every set of coarser neighbours
+//
+// A level's triangles lie as fans around the middles of blocks of 2 x 2 quads; a coarser
+// neighbour takes the middle of a block's side out of the fan, so two triangles become one.
+// So each triangle of any such mesh is made of whole triangles of any finer one, and two
+// meshes of a tile lie farthest apart at a node of the finer one, which is on the land. That
+// is why an error, taken over all nodes, is the largest jump to any finer level as well, and
+// why a level that fits within a number of pixels changes within that number. What lies on
+// the side itself counts for the neighbour, whose triangles end there too.
+//
+// A level is no better than the finer ones: each has at least the error of those.
+#include "view/geomipmap/tiles.glsl"
+#pragma kernel(output = "spans:rg32f, errors:rgba32f")
+
+uniform sampler2D height;  //! input("linear")
+
+// A tile with a height that is not a number stays whole, so that the hole is as small as it is.
+const float NEVER = 1e30;
+
+// The heights of the tile, fetched once: each is needed for every level.
+const int ROW = TILE + 1;
+float nodes[ROW * ROW];
+
+float node(ivec2 at) {
+    return nodes[at.y * ROW + at.x];
+}
+
+// The corners and the middles of a block's sides, counter-clockwise from the south-west; even ones are corners.
+ivec2 around(int k, int half_side) {
+    ivec2 sign = ivec2(k >= 2 && k <= 4 ? 1 : k == 1 || k == 5 ? 0 : -1,
+                       k >= 4 && k <= 6 ? 1 : k == 3 || k == 7 ? 0 : -1);
+    return sign * half_side;
+}
+
+// The largest error of the fans of one block, `middle` counted from the tile's corner.
+float error_of_block(ivec2 middle, int half_side) {
+    float ring[8];
+    for (int k = 0; k < 8; k++) ring[k] = node(middle + around(k, half_side));
+    float centre = node(middle);
+    float worst = 0.0;
+    for (int y = -half_side; y <= half_side; y++) {
+        for (int x = -half_side; x <= half_side; x++) {
+            float truth = node(middle + ivec2(x, y));
+            // Four sectors, each with a side: how far out towards it, and how far along it.
+            bool upright = abs(y) >= abs(x);
+            int side = upright ? (y < 0 ? 0 : 2) : (x < 0 ? 3 : 1);
+            float outward = float(max(abs(x), abs(y))) / float(half_side);
+            int turned = side == 0 ? x : side == 1 ? y : side == 2 ? -x : -y;
+            float along = float(turned) / float(half_side);
+            float first = side == 0 ? ring[0] : side == 1 ? ring[2] : side == 2 ? ring[4] : ring[6];
+            float mid = side == 0 ? ring[1] : side == 1 ? ring[3] : side == 2 ? ring[5] : ring[7];
+            float last = side == 0 ? ring[2] : side == 1 ? ring[4] : side == 2 ? ring[6] : ring[0];
+            float ends = along < 0.0 ? mid - first : last - mid;
+            worst = max(worst, abs(centre + outward * (mid - centre) + along * ends - truth));
+            ivec2 reach = middle + ivec2(side == 1 ? 1 : side == 3 ? -1 : 0, side == 2 ? 1 : side == 0 ? -1 : 0) * half_side;
+            bool at_rim = upright ? reach.y == 0 || reach.y == TILE : reach.x == 0 || reach.x == TILE;
+            if (at_rim && outward < 1.0) {
+                float joined = centre + outward * (0.5 * (first + last) - centre) + along * 0.5 * (last - first);
+                worst = max(worst, abs(joined - truth));
+            }
+        }
+    }
+    return worst;
+}
+
+float error_of_level(int level) {
+    int half_side = 1 << level;
+    float worst = 0.0;
+    for (int y = half_side; y < TILE; y += 2 * half_side) {
+        for (int x = half_side; x < TILE; x += 2 * half_side) {
+            worst = max(worst, error_of_block(ivec2(x, y), half_side));
+        }
+    }
+    return worst;
+}
+
+// Of the last level: two triangles that part along the diagonal to the north-east.
+float error_of_two() {
+    float corner = node(ivec2(0)), east = node(ivec2(TILE, 0));
+    float north = node(ivec2(0, TILE)), far = node(ivec2(TILE));
+    float worst = 0.0;
+    for (int y = 0; y <= TILE; y++) {
+        for (int x = 0; x <= TILE; x++) {
+            vec2 s = vec2(x, y) / float(TILE);
+            float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
+                                 : corner + s.y * (north - corner) + s.x * (far - north);
+            worst = max(worst, abs(plane - node(ivec2(x, y))));
+        }
+    }
+    return worst;
+}
+
+void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
+    bool broken = false;
+    for (int y = 0; y <= TILE; y++) {
+        for (int x = 0; x <= TILE; x++) {
+            float found = height_of_node(height, texel * TILE + ivec2(x, y));
+            bool hole = isnan(found) || isinf(found);
+            broken = broken || hole;
+            // As a vertex of view/land stands there.
+            found = hole ? 0.0 : found;
+            spans = x + y == 0 ? vec2(found) : vec2(min(spans.x, found), max(spans.y, found));
+            nodes[y * ROW + x] = found;
+        }
+    }
+    errors.x = error_of_level(1);
+    errors.y = max(errors.x, error_of_level(2));
+    errors.z = max(errors.y, error_of_level(3));
+    errors.w = max(errors.z, error_of_two());
+    if (broken) errors = vec4(NEVER);
+}

@@ -1,0 +1,351 @@
+"""Geomipmapping: errors against the planes of the triangles, no crack, no jump beyond the pixels allowed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from playground.engine.engine import Engine
+from playground.sketch.model import Camera
+from playground.terrain import lod
+from playground.terrain.camera import look
+
+HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+ROUGH = (
+    "0.5 + 0.3 * sin(float(texel.x) * 0.11) * cos(float(texel.y) * 0.09)"
+    " + 0.1 * pow(float(texel.x) / float(size.x), 4.0) * random(texel, 5u)"
+)
+HOLE = "texel == ivec2(20, 3) ? uintBitsToFloat(0x7fc00000u) : float(texel.x & 7) * 0.1"
+LAND = '[[pass]]\nname = "height"\nuse = "./land"\n'
+TILES = '[[pass]]\nname = "tiles"\nuse = "view/geomipmap/errors"\n'
+TILES += 'size = ["(height.size.x + 14) // 16", "(height.size.y + 14) // 16"]\n'
+GREEN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) { return vec4(0, 1, 0, 1); }\n'
+SKY = 'zenith = "#ff00ff", horizon = "#ff00ff", nadir = "#ff00ff"'
+VIEW = LAND + '[[pass]]\nname = "colour"\nuse = "./green"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
+SIZE = (320, 180)
+
+
+def land(text: str) -> str:
+    include = '#include "noise/hash.glsl"\n' if "random(" in text else ""
+    return include + HEIGHT.format(text)
+
+
+@pytest.fixture
+def errors_of(make_sketch):
+    def make(engine: Engine, text: str, size):
+        sketch = make_sketch(LAND + TILES, size=size, land=land(text))
+        spans, errors = (engine.read(sketch, f"tiles:{name}") for name in ("spans", "errors"))
+        return engine.read(sketch, "height"), spans, errors
+
+    return make
+
+
+@pytest.fixture
+def shown(make_sketch):
+    def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", given=SKY):
+        given = f'detail = "{detail}", earth = "#00ff00", {given}'
+        view = VIEW + f"set = {{ {given} }}\n"
+        return make_sketch(view, size=size, relief=relief, land=land(text), green=GREEN)
+
+    return make
+
+
+# ── errors ───────────────────────────────────────────────────────────────────
+
+
+@cache
+def weights(level: int, coarser: int) -> np.ndarray:
+    """Return (289, 289): how much of each node's height is in the mesh's height over each node."""
+    nodes = lod.vertices()[:289, :2].astype(np.float64)
+    found = np.full((289, 289), np.nan)
+    for corners in lod.pieces()["fans", level, coarser].reshape(-1, 3):
+        system = np.c_[nodes[corners], np.ones(3)]
+        shares = np.c_[nodes, np.ones(289)] @ np.linalg.inv(system)
+        inside = (shares >= -1e-9).all(axis=1)
+        found[inside] = 0
+        found[np.ix_(inside, corners)] = shares[inside]
+    assert not np.isnan(found).any()
+    return found
+
+
+def nodes_of(heights: np.ndarray) -> np.ndarray:
+    """Return the heights at the nodes, linear between texels."""
+    heights = heights.astype(np.float64)
+    for axis in (0, 1):
+        n = heights.shape[axis]
+        cells = -(-(n - 1) // 16) * 16
+        at = np.arange(cells + 1) * (n - 1) / cells
+        low = np.minimum(at.astype(int), n - 2)
+        share = (at - low).reshape((-1, 1) if axis == 0 else (1, -1))
+        heights = heights.take(low, axis) * (1 - share) + heights.take(low + 1, axis) * share
+    return heights
+
+
+def tiles_of(nodes: np.ndarray) -> np.ndarray:
+    """Return (ny, nx, 289)."""
+    ny, nx = (n // 16 for n in nodes.shape)
+    cut = [[nodes[16 * j : 16 * j + 17, 16 * i : 16 * i + 17].ravel() for i in range(nx)] for j in range(ny)]
+    return np.array(cut)
+
+
+def own_nodes(coarser: int) -> np.ndarray:
+    """Say which nodes are the tile's to answer for: not those on the side of a coarser neighbour."""
+    east, north = lod.vertices()[:289, :2].T
+    away = {lod.SOUTH: north == 0, lod.EAST: east == 16, lod.NORTH: north == 16, lod.WEST: east == 0}
+    return ~np.any([away[side] for side in lod.SIDES if coarser & side] or [np.zeros(289, bool)], axis=0)
+
+
+def true_errors(tiles: np.ndarray, level: int) -> np.ndarray:
+    worst = np.zeros(tiles.shape[:2])
+    for coarser in range(16 if level < 4 else 1):
+        away = np.abs(tiles @ weights(level, coarser).T - tiles)[..., own_nodes(coarser)]
+        worst = np.maximum(worst, away.max(axis=-1))
+    return worst
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [
+        ("random(texel, 1u)", [33, 49]),
+        ("0.003 * float(texel.x) - 0.001 * float(texel.y)", 33),
+        ("sin(float(texel.x) * 0.2) * float(texel.y) * 0.01", [40, 29]),
+        ("random(texel, 2u)", [2, 5]),
+    ],
+)
+def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_land(
+    any_engine, errors_of, text, size
+):
+    heights, spans, errors = errors_of(any_engine, text, size)
+    tiles = tiles_of(nodes_of(heights))
+    truth = np.stack([true_errors(tiles, level) for level in range(1, 5)], axis=-1)
+    np.testing.assert_allclose(errors, np.maximum.accumulate(truth, axis=-1), atol=3e-6)
+    np.testing.assert_allclose(spans[..., 0], tiles.min(axis=-1), atol=1e-6)
+    np.testing.assert_allclose(spans[..., 1], tiles.max(axis=-1), atol=1e-6)
+    assert true_errors(tiles, 0).max() < 1e-12
+
+
+def test_both_drivers_give_the_same_bits(ctx, errors_of):
+    found = []
+    for driver in ("fragment", "compute"):
+        with Engine(ctx, driver=driver) as engine:
+            found.append(errors_of(engine, ROUGH, [65, 50])[1:])
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_tile_with_a_hole_stays_whole_and_its_span_is_of_numbers(any_engine, errors_of):
+    _, spans, errors = errors_of(any_engine, HOLE, 33)
+    assert (errors[0, 1] > 1e29).all() and (errors[1] < 1).all() and (errors[0, 0] < 1).all()
+    assert np.isfinite(spans).all() and spans[0, 1].tolist() == [0.0, pytest.approx(0.7)]
+
+
+# ── no crack ─────────────────────────────────────────────────────────────────
+
+
+def flight(count: int):
+    """Cameras on a way low over the land, turning."""
+    for k in range(count):
+        t = k / count
+        yield Camera(
+            azimuth=360.0 * t,
+            elevation=12.0 + 40.0 * np.sin(9.0 * t) ** 2,
+            distance=90.0 + 900.0 * t,
+            target=(200.0 + 600.0 * t, 700.0 - 500.0 * t, 60.0),
+            field_of_view=35.0 + 40.0 * t,
+        )
+
+
+def holes(picture: np.ndarray) -> int:
+    """Count the pixels of background that land closes in on every side."""
+    sky = (picture[..., 0] > 128) & (picture[..., 2] > 128)
+    return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
+
+
+@pytest.mark.parametrize("tolerance", [1.0, 6.0])
+def test_no_background_shows_through_on_a_flight(engine, shown, tolerance):
+    sketch = shown().with_values({"view.tolerance": tolerance})
+    levels = set()
+    for camera in flight(12):
+        picture = engine.render(sketch.with_camera(camera), size=SIZE).array
+        assert ((picture[..., 1] > 250) & (picture[..., 0] < 5)).mean() > 0.1
+        assert holes(picture) == 0
+        levels |= chosen_levels(engine, sketch.with_camera(camera), tolerance)
+    assert len(levels) >= 3
+
+
+def chosen_levels(engine, sketch, tolerance) -> set[int]:
+    chosen = lod.geomipmap({"tolerance": tolerance}, tables_of(engine, sketch), view_of(sketch))
+    return {piece[1] for piece, _ in chosen.runs if piece[0] == "fans"}
+
+
+def tables_of(engine, sketch):
+    return {name: engine.read(sketch, f"view.tiles:{name}") for name in ("spans", "errors")}
+
+
+def view_of(sketch, size=SIZE) -> lod.View:
+    eye = look(sketch.camera, sketch.extent, sketch.relief, size)
+    matrix = eye.clip_from_world.astype(np.float64)
+    return lod.View(matrix, eye.position, sketch.extent, sketch.relief, size)
+
+
+PATTERNS = [np.indices((8, 8)).sum(axis=0) % 2, (np.indices((8, 8))[0] // 2 + np.indices((8, 8))[1]) % 2]
+
+
+@pytest.mark.parametrize("fine", range(4))
+def test_no_background_shows_between_any_two_levels(engine, shown, monkeypatch, fine):
+    for number, pattern in enumerate(PATTERNS):
+        monkeypatch.setattr(lod, "levels_of", lambda *_, levels=fine + pattern: levels)
+        for camera in list(flight(12))[2::4]:
+            # A tolerance of its own, or the picture would be taken from those kept.
+            sketch = shown().with_camera(camera).with_values({"view.tolerance": number + 2.0})
+            assert holes(engine.render(sketch, size=SIZE).array) == 0
+
+
+def test_the_background_would_show_if_neighbours_were_forgotten(engine, shown, monkeypatch):
+    monkeypatch.setattr(lod, "coarser_of", np.zeros_like)
+    sketch = shown().with_values({"view.tolerance": 6.0})
+    assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 50
+
+
+# ── nothing seen is left out ─────────────────────────────────────────────────
+
+
+def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
+    sketch = shown()
+    left_out = 0
+    for camera in flight(8):
+        seen = sketch.with_camera(camera)
+        engine.render(seen, size=SIZE)
+        drawn = engine.runner.draws.triangles
+        culled = engine.read(seen, "view.land", size=SIZE)
+        with monkeypatch.context() as patch:
+            patch.setattr(lod.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            other = seen.with_values({"view.tolerance": 1.0000001})  # or it would not be drawn again
+            whole = engine.read(other, "view.land", size=SIZE)
+        left_out += engine.runner.draws.triangles - drawn
+        np.testing.assert_array_equal(culled, whole)
+    assert left_out > 1000
+
+
+# ── no jump ──────────────────────────────────────────────────────────────────
+
+
+def surfaces(levels: np.ndarray, coarser: np.ndarray, tiles: np.ndarray) -> np.ndarray:
+    """Return the mesh's heights over the nodes of each tile, (ny, nx, 289)."""
+    found = np.empty_like(tiles)
+    for j, i in np.ndindex(levels.shape):
+        found[j, i] = weights(int(levels[j, i]), int(coarser[j, i])) @ tiles[j, i]
+    return found
+
+
+def in_picture(heights: np.ndarray, view: lod.View) -> np.ndarray:
+    """Return where nodes at given heights stand in the picture, NaN outside it."""
+    ny, nx = heights.shape[:2]
+    nodes = lod.vertices()[:289, :2].astype(np.float64) / 16
+    east = (np.arange(nx)[:, None] + nodes[:, 0]) / nx * view.extent[0]
+    north = (np.arange(ny)[:, None] + nodes[:, 1]) / ny * view.extent[1]
+    place = np.stack(np.broadcast_arrays(east[None], north[:, None], heights * view.relief, 1.0), axis=-1)
+    clip = place @ view.clip_from_world.T
+    outside = (np.abs(clip[..., :3]) > clip[..., 3:]).any(axis=-1)
+    at = clip[..., :2] / np.where(outside, 1.0, clip[..., 3])[..., None] * np.array(view.size) / 2
+    at[outside] = np.nan
+    return at
+
+
+@pytest.mark.parametrize("tolerance", [1.0, 3.0])
+def test_a_change_of_level_moves_no_place_by_more_than_the_tolerance(engine, shown, tolerance):
+    sketch = shown()
+    tables = tables_of(engine, sketch)
+    tiles = tiles_of(nodes_of(engine.read(sketch, "height")))
+    cameras = list(flight(40))[:20]
+    changed, worst, before = 0, 0.0, None
+    for camera in cameras:
+        view = view_of(sketch.with_camera(camera))
+        boxes = lod.boxes_of(tables["spans"], view)
+        levels = lod.levels_of(tables["errors"], boxes, view, tolerance)
+        now = surfaces(levels, lod.coarser_of(levels), tiles)
+        # In both pictures a place is as far from the land as is allowed, whatever the level.
+        away = np.linalg.norm(in_picture(now, view) - in_picture(tiles, view), axis=-1)
+        assert np.nanmax(away) <= tolerance * 1.0001
+        if before is not None:
+            old_levels, old, old_view = before
+            for coarse, its_view in ((levels >= old_levels, view), (levels <= old_levels, old_view)):
+                jump = np.linalg.norm(in_picture(now, its_view) - in_picture(old, its_view), axis=-1)[coarse]
+                worst = max(worst, float(np.nanmax(jump, initial=0.0)))
+            changed += int((levels != old_levels).sum())
+        before = levels, now, view
+    assert changed > 30
+    assert worst <= tolerance * 1.0001
+    assert worst > tolerance * 0.2, "and the bound is not far off"
+
+
+def test_land_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, monkeypatch):
+    """Two frames a change of level apart, seen by one camera: each outline lies within the other, widened."""
+    sketch = shown(size=257).with_values({"view.tolerance": 3.0})
+    cameras = list(flight(60))[10:30:4]
+    found = []
+    for camera in cameras:
+        near = replace(camera, distance=camera.distance * 1.15)
+        other = lod.levels_of(
+            tables_of(engine, sketch)["errors"],
+            lod.boxes_of(tables_of(engine, sketch)["spans"], view_of(sketch.with_camera(near))),
+            view_of(sketch.with_camera(near)),
+            3.0,
+        )
+        masks = []
+        for levels in (None, other):
+            with monkeypatch.context() as patch:
+                given = 3.0
+                if levels is not None:
+                    patch.setattr(lod, "levels_of", lambda *_, levels=levels: levels)
+                    given = 3.0000001
+                seen = sketch.with_camera(camera).with_values({"view.tolerance": given})
+                masks.append(engine.render(seen, size=SIZE).array[..., 0] < 128)
+        found.append((masks[0] != masks[1]).sum())
+        reach = (
+            np.hypot(*np.indices((9, 9)) - 4) <= 4.0
+        )  # 3 pixels further off, and a pixel's own half on each side
+        for one, two in (masks, masks[::-1]):
+            assert not (one & ~ndimage.binary_dilation(two, reach)).any()
+    assert sum(found) > 0
+
+
+# ── what the view asks for ───────────────────────────────────────────────────
+
+
+def test_no_tolerance_at_all_is_the_full_grid(engine, shown):
+    """On land whose every cell is flat, whichever way it is cut."""
+    camera = list(flight(8))[5]
+    text = "float((texel.x * 7) & 15) * 0.06 + float((texel.y * 5) & 15) * 0.03"
+    pictures = []
+    for values in ({"view.tolerance": 0.0}, {"view.detail": "full grid", "view.grid": 65}):
+        sketch = shown(text, size=65).with_camera(camera).with_values(values)
+        pictures.append(engine.read(sketch, "view.land", size=SIZE))
+    different = (pictures[0] != pictures[1]).any(axis=-1)
+    assert different.mean() < 0.01
+
+
+def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engine, shown):
+    counts = []
+    for tolerance in (0.0, 0.5, 1.0, 2.0, 4.0):
+        engine.render(shown(size=257).with_values({"view.tolerance": tolerance}), size=SIZE)
+        counts.append(engine.runner.draws.triangles)
+    assert counts == sorted(counts, reverse=True) and counts[0] > 10 * counts[-1]
+    full = shown(detail="full grid")
+    assert engine.texture(full, "view.tiles:errors", size=SIZE).size == (1, 1)
+
+
+def test_levels_have_colours(engine, shown):
+    given = "wireframe = true, levels = true, faces = 0.0, skirt = 0.0, " + SKY
+    sketch = shown(size=257, given=given).with_values({"view.tolerance": 4.0})
+    camera = Camera(elevation=35.0, distance=500.0, target=(500.0, 300.0, 100.0))
+    view = engine.read(sketch.with_camera(camera), "view.land", size=SIZE).astype(float)
+    levels = chosen_levels(engine, sketch.with_camera(camera), 4.0)
+    colours = [(0.05, 0.25, 1.0), (0.02, 0.75, 0.25), (0.95, 0.8, 0.02), (1.0, 0.3, 0.02), (0.85, 0.02, 0.05)]
+    assert len(levels) >= 3
+    for level in levels:
+        assert (np.abs(view[..., :3] - colours[level]).max(axis=-1) < 0.02).any(), f"level {level}"
