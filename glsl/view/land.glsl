@@ -1,7 +1,7 @@
 // view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/geomipmap/tiles.glsl, view/wires.glsl; a height 0..1, a colour
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour
 //            and a light if there are, and for tiles what view/geomipmap/errors gives
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
@@ -18,7 +18,7 @@
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/drape.glsl"
-#include "view/geomipmap/tiles.glsl"
+#include "view/vertices.glsl"
 #include "view/wires.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
 
@@ -29,7 +29,7 @@ uniform sampler2D daylight;  //! input("black")
 uniform sampler2D spans;   //! input("black")
 uniform sampler2D errors;  //! input("black")
 
-uniform int detail = 0;               //! menu("full grid", "geomipmap") group("Mesh") How fine the mesh is where: alike everywhere, or by tiles
+uniform int detail = 0;               //! menu("full grid", "geomipmap", "morph") group("Mesh") How fine the mesh is where: alike everywhere, by tiles, or by tiles that morph into each other
 uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side of the full grid
 uniform float tolerance = 1.0;        //! slider(0, 16) step(0.1) unit("pixels") group("Mesh") How far a coarser level may lie from the land
 uniform bool wireframe = false;       //! group("Mesh") Draw the mesh's edges; hidden ones stay hidden
@@ -56,16 +56,11 @@ bool is_number(float value) {
     return !isnan(value) && !isinf(value);
 }
 
-// Where a vertex stands, as a share of the land's sides.
-vec2 share_of(vec3 corner, vec4 tile) {
-    return detail == 0 ? corner.xy : share_of_node(tile.xy + corner.xy, textureSize(height, 0));
-}
-
 // mark: 0 on the land, 1 at the skirt's foot, far below 0 around a vertex whose height is not a
 // number: far, because samples at a triangle's rim are extrapolated.
-// net: the place in the tile, its level, and the sides where the neighbour is coarser.
+// net: the place in the tile, its level, and how it is joined or how far it reaches.
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark, out vec4 net) {
-    vec2 share = share_of(corner, tile);
+    vec2 share = share_of_vertex(height, detail, corner, tile);
     float found = textureLod(height, drape_uv(share, textureSize(height, 0)), 0.0).r;
     bool broken = !is_number(found);
     // A vertex at infinity would take its triangles with it.
@@ -102,7 +97,9 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
     if (wireframe && detail == 0) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
     if (wireframe && detail != 0) {
         int level = int(net.z + 0.5);
-        float lines = wires_of_tile(net.xy, level, int(net.w + 0.5), 1.0);
+        // A tile that morphs has all of its triangles at any level; those that vanish have no pixels.
+        bool morphs = detail == 2;
+        float lines = wires_of_tile(net.xy, morphs ? 0 : level, morphs ? 0 : int(net.w + 0.5), 1.0);
         shown = mix(shown * faces, levels ? colour_of_level(level) : wire, lines);
     }
     if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot

@@ -24,9 +24,10 @@ float wires(vec2 cell, float width) {
 }
 
 // The same of a tile of view/geomipmap: `place` in its 16 cells, and the sides (1 south, 2 east,
-// 4 north, 8 west) where the neighbour is one level coarser.
+// 4 north, 8 west) where the neighbour is one level coarser. At the last level there are none,
+// and 1 says that the tile is cut from its south-east to its north-west.
 float wires_of_tile(vec2 place, int level, int coarser, float width) {
-    if (level == 4) return wires(place / 16.0, width);
+    if (level == 4) return wires(vec2(coarser == 1 ? 16.0 - place.x : place.x, place.y) / 16.0, width);
     float quad = float(1 << level), last = 16.0 / quad - 1.0;
     vec2 cell = place / quad;
     vec4 line = vec4(cell, 0.5 * (cell.x - cell.y), 0.5 * (cell.x + cell.y));
@@ -44,10 +45,11 @@ float wires_of_tile(vec2 place, int level, int coarser, float width) {
     return 1.0 - cover.x * cover.y * cover.z * cover.w;
 }
 
-// Blue where the mesh is finest, then green, yellow, orange and red.
+// Blue where the mesh is finest, then green, yellow, orange, red and, of tiles that morph, purple.
 vec3 colour_of_level(int level) {
     return level <= 0 ? vec3(0.05, 0.25, 1.0) : level == 1 ? vec3(0.02, 0.75, 0.25)
-         : level == 2 ? vec3(0.95, 0.8, 0.02) : level == 3 ? vec3(1.0, 0.3, 0.02) : vec3(0.85, 0.02, 0.05);
+         : level == 2 ? vec3(0.95, 0.8, 0.02) : level == 3 ? vec3(1.0, 0.3, 0.02)
+         : level == 4 ? vec3(0.85, 0.02, 0.05) : vec3(0.5, 0.05, 0.9);
 }
 #endif
 #endif

@@ -5,6 +5,9 @@ each level has a list of indices for each set of neighbours that are one level c
 whose edges it then shares vertex for vertex, so that no crack can open (``pieces``). A
 piece is drawn once for all tiles that are to look so, each tile an instance.
 
+``morph`` cuts squares of tiles in four where they are near, down to single tiles, and has each
+drawn by the same 512 triangles, whose vertices slide with the distance.
+
 ``geomipmap`` gives each tile the coarsest level whose error, in pixels, is allowed.
 Levels of neighbours then differ by one at most; a level made finer for that has a smaller
 error. Tiles outside the view are left out.
@@ -28,9 +31,14 @@ CELLS = 16
 LEVELS = 5
 SOUTH, EAST, NORTH, WEST = 1, 2, 4, 8
 SIDES = (SOUTH, EAST, NORTH, WEST)
+_FAR = 1e30
 
 Piece = tuple[str, int, int]
-"""A list: "fans", level, sides where the neighbour is coarser; "wall", level, side; "cells", 0, 0."""
+"""A list: "fans", level, sides where the neighbour is coarser; "wall", level, side.
+
+The last level has no coarser neighbours: there 0 is a tile cut from its south-west to its
+north-east, 1 one cut the other way.
+"""
 
 Floats = NDArray[np.float64]
 Levels = NDArray[np.int8]
@@ -80,13 +88,19 @@ class View:
             )
         )
 
+    @property
+    def stretch(self) -> float:
+        """How much further than it is deep a place in the picture may be."""
+        across, upright = (self.clip_from_world[k, :3] for k in (0, 1))
+        return float(np.sqrt(1.0 + 1.0 / (across @ across) + 1.0 / (upright @ upright)))
+
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
     """What to draw: instances of pieces, in order."""
 
     runs: tuple[tuple[Piece, int], ...]  # a piece, and how many of the places it takes, one after another
-    places: NDArray[np.float32]  # (n, 4): node of the south-west corner, level, sides or step
+    places: NDArray[np.float32]  # (n, 4): node of the south-west corner, level, sides or reach [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +123,15 @@ class Boxes:
         """Return the least depth [m] of each that can be seen."""
         least: Floats = np.maximum(-self.reach(-view.forward), view.near)
         return least
+
+    def distances(self, eye: tuple[float, float, float]) -> Floats:
+        """Return how far [m] the eye is from each."""
+        east, north, up = (
+            np.maximum(np.maximum(low - at, at - high), 0.0)
+            for (low, high), at in zip((self.east, self.north, self.up), eye, strict=True)
+        )
+        found: Floats = np.sqrt(east**2 + north[:, None] ** 2 + up**2)
+        return found
 
     def seen(self, view: View) -> NDArray[np.bool_]:
         """Say which are not wholly outside one of the six planes of the view."""
@@ -140,11 +163,12 @@ def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
     for level in range(LEVELS - 1):
         for coarser in range(16):
             found["fans", level, coarser] = _fans(level, coarser)
-    found["fans", LEVELS - 1, 0] = _cells(CELLS)
+    west, east, far, north = (_node(*n) for n in ((0, 0), (CELLS, 0), (CELLS, CELLS), (0, CELLS)))
+    found["fans", LEVELS - 1, 0] = np.array([west, east, far, west, far, north], np.uint32)
+    found["fans", LEVELS - 1, 1] = np.array([west, east, north, east, far, north], np.uint32)
     for level in range(LEVELS):
         for side in SIDES:
             found["wall", level, side] = _wall(level, side)
-    found["cells", 0, 0] = _cells(1)
     return found
 
 
@@ -191,17 +215,6 @@ def _fans(level: int, coarser: int) -> NDArray[np.uint32]:
     return np.array(found, np.uint32)
 
 
-def _cells(step: int) -> NDArray[np.uint32]:
-    """Return squares cut from their south-west to their north-east."""
-    found = []
-    for north in range(0, CELLS, step):
-        for east in range(0, CELLS, step):
-            a, b = _node(east, north), _node(east + step, north)
-            d, c = _node(east, north + step), _node(east + step, north + step)
-            found += [a, b, c, a, c, d]
-    return np.array(found, np.uint32)
-
-
 def _wall(level: int, side: int) -> NDArray[np.uint32]:
     """Return the wall from a side down to its feet."""
     step = 1 << level
@@ -217,12 +230,20 @@ def _wall(level: int, side: int) -> NDArray[np.uint32]:
 # ── choosing ─────────────────────────────────────────────────────────────────
 
 
-def boxes_of(spans: NDArray[np.float32], view: View) -> Boxes:
-    """Return the boxes of tiles whose lowest and highest heights are ``spans``, (ny, nx, 2)."""
-    heights = np.moveaxis(np.clip(spans.astype(np.float64), -1e30, 1e30), -1, 0) * view.relief
+def boxes_of(
+    spans: NDArray[np.float32], view: View, side: int = CELLS, tiles: tuple[int, int] | None = None
+) -> Boxes:
+    """Return the boxes of squares whose lowest and highest heights are ``spans``, (ny, nx, 2).
+
+    ``side`` is theirs in cells; ``tiles`` says how many tiles, east and north, the land has,
+    where that is not how many squares it has.
+    """
+    heights = np.moveaxis(np.clip(spans.astype(np.float64), -_FAR, _FAR), -1, 0) * view.relief
     sides = []
-    for count, extent in zip(spans.shape[1::-1], view.extent, strict=True):
-        edges = np.arange(count + 1) * (extent / count)
+    for count, whole, extent in zip(
+        spans.shape[1::-1], tiles or spans.shape[1::-1], view.extent, strict=True
+    ):
+        edges = np.minimum(np.arange(count + 1) * side, whole * CELLS) * (extent / (whole * CELLS))
         sides.append(np.stack([edges[:-1], edges[1:]]))
     # A relief below 0 turns the land upside down.
     return Boxes(sides[0], sides[1], heights if view.relief >= 0 else heights[::-1])
@@ -268,19 +289,30 @@ def geomipmap(values: Mapping[str, object], tables: Tables, view: View) -> Chose
 
 def tiles_at(levels: Levels, boxes: Boxes, view: View) -> Chosen:
     """Return the tiles in the view at given levels, neighbours one apart at most, and walls at the rim."""
-    coarser = coarser_of(levels)
-    seen = boxes.seen(view)
-    places = [_gathered("fans", levels, coarser, seen)]
     ny, nx = levels.shape
-    # How deep a wall goes is the draw's to say; none goes deeper than this, or than the land itself.
-    deep = np.minimum(boxes.up[0], -max(view.extent))
-    seen = replace(boxes, up=np.stack([deep, boxes.up[1]])).seen(view)
     j, i = np.indices((ny, nx))
-    for side in SIDES:
-        rim = {SOUTH: j == 0, EAST: i == nx - 1, NORTH: j == ny - 1, WEST: i == 0}[side]
+    # Of the last level, four tiles in a square make a fan.
+    sides = np.where(levels == LEVELS - 1, (i + j) % 2, coarser_of(levels))
+    places = [_gathered("fans", levels, sides, boxes.seen(view))]
+    seen = _with_walls(boxes, view).seen(view)
+    for side, rim in _rims(ny, nx).items():
         places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), seen & rim))
     runs = tuple(run for found, _ in places for run in found)
     return Chosen(runs, np.concatenate([each for _, each in places]))
+
+
+def _with_walls(boxes: Boxes, view: View) -> Boxes:
+    """Return boxes that hold the walls at the rim as well.
+
+    How deep a wall goes is the draw's to say; none goes deeper than this, or than the land itself.
+    """
+    return replace(boxes, up=np.stack([np.minimum(boxes.up[0], -max(view.extent)), boxes.up[1]]))
+
+
+def _rims(ny: int, nx: int) -> dict[int, NDArray[np.bool_]]:
+    """Return which tiles stand at each side of the land."""
+    j, i = np.indices((ny, nx))
+    return {SOUTH: j == 0, EAST: i == nx - 1, NORTH: j == ny - 1, WEST: i == 0}
 
 
 def _gathered(
@@ -297,10 +329,90 @@ def _gathered(
     return runs, places
 
 
+# ── morphing ─────────────────────────────────────────────────────────────────
+
+START = 0.8
+"""Where vertices begin to slide, over the distance that a level reaches; as in view/vertices.glsl."""
+
+
+def pyramid(spans: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+    """Return the lowest and highest heights of squares of 1, 2, 4 ... tiles a side, up to one square."""
+    found = [spans]
+    while max(found[-1].shape[:2]) > 1:
+        ny, nx = found[-1].shape[:2]
+        even = np.pad(found[-1], ((0, ny % 2), (0, nx % 2), (0, 0)), mode="edge")
+        four = np.stack([even[j::2, i::2] for j in (0, 1) for i in (0, 1)])
+        found.append(np.stack([four[..., 0].min(axis=0), four[..., 1].max(axis=0)], axis=-1))
+    return found
+
+
+def reaches(tables: Tables, squares: Sequence[NDArray[np.float32]], view: View, tolerance: float) -> Floats:
+    """Return the distance [m] that each level of morphing tiles reaches; the last has no end.
+
+    The next level shows through from ``START`` of it on, and must be within ``tolerance``
+    pixels there. Of levels whose quads are larger than a tile, the error is taken to be all
+    that heights differ in a quad. A level also reaches so far that the next one lies wholly
+    within its own unmorphed part wherever the two meet.
+    """
+    errors = tables["errors"].reshape(-1, LEVELS - 1).astype(np.float64)
+    known = errors[errors[:, -1] < _FAR / 2]  # holes may change their shape
+    cells = [CELLS * count for count in squares[0].shape[1::-1]]
+    cell = [extent / count for extent, count in zip(view.extent, cells, strict=True)]
+    pixel = abs(view.relief) * view.pixels * view.stretch / max(tolerance, 1e-9)
+    found: list[float] = []
+    error = 0.0
+    for level in range(1, len(squares)):
+        if level < LEVELS:
+            error = max(error, float(known[:, level - 1].max(initial=0.0)))
+        else:
+            error = max(error, _tallest(squares[level - LEVELS + 1]))
+        tile = [CELLS * 2.0 ** (level - 1) * side for side in cell]
+        tall = abs(view.relief) * _tallest(squares[level - 1])
+        # The tile before it was cut because its parent is near: its points may be a parent's size further.
+        within = (found[-1] + float(np.hypot(*tile)) + tall) * 1.02 if found else 0.0
+        found.append(min(max(error * pixel, within) / START, _FAR))
+    return np.array([*found, _FAR])
+
+
+def _tallest(spans: NDArray[np.float32]) -> float:
+    return float(np.max(spans[..., 1].astype(np.float64) - spans[..., 0]))
+
+
+def morph(values: Mapping[str, object], tables: Tables, view: View) -> Chosen:
+    """Choose tiles of a quadtree in the view, each cut in four where its children reach."""
+    tolerance = values["tolerance"]
+    assert isinstance(tolerance, float)
+    squares = pyramid(tables["spans"])
+    reach = reaches(tables, squares, view, tolerance)
+    places: list[tuple[Piece, NDArray[np.float32]]] = []
+    reached = np.ones(squares[-1].shape[:2], bool)
+    for level in range(len(squares) - 1, -1, -1):
+        boxes = boxes_of(squares[level], view, CELLS * 2**level, tables["spans"].shape[1::-1])
+        cut = np.zeros_like(reached)
+        if level:
+            cut = reached & (boxes.distances(view.eye) < reach[level - 1])
+        drawn = reached & ~cut
+        wanted = [(("fans", 0, 0), drawn & boxes.seen(view))]
+        walls = drawn & _with_walls(boxes, view).seen(view)
+        wanted += [(("wall", 0, side), walls & rim) for side, rim in _rims(*drawn.shape).items()]
+        for piece, tiles in wanted:
+            north, east = (CELLS * 2**level * at for at in np.nonzero(tiles))
+            each = np.broadcast_arrays(east, north, np.float32(level), np.float32(reach[level]))
+            places.append((piece, np.stack(each, axis=1).astype(np.float32)))
+        if level:
+            ny, nx = squares[level - 1].shape[:2]
+            reached = np.repeat(np.repeat(cut, 2, axis=0), 2, axis=1)[:ny, :nx]
+    runs: list[tuple[Piece, int]] = []
+    order = sorted(places, key=lambda each: each[0])
+    for piece in dict.fromkeys(piece for piece, _ in order):
+        runs.append((piece, sum(len(found) for other, found in order if other == piece)))
+    return Chosen(tuple(runs), np.concatenate([found for _, found in order]))
+
+
 # ── the registry ─────────────────────────────────────────────────────────────
 
 WHOLE: Piece = ("whole", 0, 0)
-DETAILS = ("full grid", "geomipmap")
+DETAILS = ("full grid", "geomipmap", "morph")
 """What ``detail`` of mesh "land" may be, by number."""
 
 
@@ -308,7 +420,7 @@ def choose_land(values: Mapping[str, object], tables: Callable[[], Tables], view
     """Choose what to draw of mesh "land"; its full grid is drawn whole, once."""
     if values["detail"] == 0:
         return Chosen(((WHOLE, 1),), np.zeros((1, 4), np.float32))
-    return geomipmap(values, tables(), view)
+    return (geomipmap if values["detail"] == 1 else morph)(values, tables(), view)
 
 
 @dataclass(frozen=True, slots=True)

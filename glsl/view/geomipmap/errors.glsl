@@ -82,8 +82,8 @@ float error_of_level(int level) {
     return worst;
 }
 
-// Of the last level: two triangles that part along the diagonal to the north-east.
-float error_of_two() {
+// Of the last level: two triangles, parted so that four tiles in a square make a fan as well.
+float error_of_two(bool turned) {
     float corner = node(ivec2(0)), east = node(ivec2(TILE, 0));
     float north = node(ivec2(0, TILE)), far = node(ivec2(TILE));
     float worst = 0.0;
@@ -92,7 +92,9 @@ float error_of_two() {
             vec2 s = vec2(x, y) / float(TILE);
             float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
                                  : corner + s.y * (north - corner) + s.x * (far - north);
-            worst = max(worst, abs(plane - node(ivec2(x, y))));
+            float other = x + y <= TILE ? corner + s.x * (east - corner) + s.y * (north - corner)
+                                        : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
+            worst = max(worst, abs((turned ? other : plane) - node(ivec2(x, y))));
         }
     }
     return worst;
@@ -114,6 +116,6 @@ void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
     errors.x = error_of_level(1);
     errors.y = max(errors.x, error_of_level(2));
     errors.z = max(errors.y, error_of_level(3));
-    errors.w = max(errors.z, error_of_two());
+    errors.w = max(errors.z, error_of_two(((texel.x + texel.y) & 1) == 1));
     if (broken) errors = vec4(NEVER);
 }
