@@ -20,7 +20,7 @@
 #ifdef VERTEX_STAGE
 #include "view/geomipmap/tiles.glsl"
 
-// As START in playground/terrain/lod.py, which sees to it that no level begins to slide where
+// As START in playground/terrain/morph.py, which sees to it that no level begins to slide where
 // the one before ends. What rounds off must not keep a vertex from the end of its way.
 const float MORPH_START = 0.8;
 const float MORPH_END = 0.99;

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,15 +23,16 @@ from playground.gpu.textures import drain, make_framebuffer, read_texture, split
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Value
-from playground.terrain.lod import CHOOSERS, Chosen, View, ranges
+from playground.terrain.lod import CHOOSERS
 from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
+from playground.terrain.sight import View
+from playground.terrain.tiles import Chosen, ranges
 
 if TYPE_CHECKING:
     import moderngl
 
 _MAX_MESHES = 8
 _MAX_SURFACES = 2
-_MAX_TABLES = 8
 _MeshKey = tuple[str, tuple[tuple[str, int], ...]]
 
 
@@ -43,7 +45,7 @@ class Draws:
         self.finest: int | None = None  # no mesh is finer than this, whatever its draw asks for
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
-        self._tables: OrderedDict[tuple[int, str], tuple[Result, NDArray[np.float32]]] = OrderedDict()
+        self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
         self.triangles = 0  # of the last draw of a mesh that is chosen from
 
     def release(self) -> None:
@@ -153,13 +155,10 @@ program = self.kernels.program(job, "draw")
         if result is None or texture is None:
             mesh = job.step.kernel.registry
             raise job.step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
-        key = (id(result), output)
-        if key not in self._tables:
-            self._tables[key] = (result, read_texture(texture))  # held, so that its identity stays its own
-            while len(self._tables) > _MAX_TABLES:
-                self._tables.popitem(last=False)
-        self._tables.move_to_end(key)
-        return self._tables[key][1]
+        read = self._tables.setdefault(result, {})
+        if output not in read:
+            read[output] = read_texture(texture)
+        return read[output]
 
     def _array(self, program: Program, job: Job) -> tuple[_Loaded, moderngl.VertexArray]:
         step = job.step

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import SketchError, nearest
-from playground.terrain import lod
+from playground.terrain import lod, tiles
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +65,13 @@ def triangles(values: Mapping[str, int]) -> Mesh:
 
 
 def land(values: Mapping[str, int]) -> Mesh:
-    """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices that ``lod`` has.
+    """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``tiles``.
 
     Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on the land or 1 at the skirt's foot.
     """
     if values["detail"] == 0:
         return grid(values)
-    return Mesh({"corner": lod.vertices()}, np.concatenate(list(lod.pieces().values())))
+    return Mesh({"corner": tiles.vertices()}, np.concatenate(list(tiles.pieces().values())))
 
 
 MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int, int]]]] = {

@@ -10,8 +10,9 @@ import pytest
 from scipy import ndimage
 
 from playground.engine.engine import Engine
+from playground.errors import PlaygroundError, SketchError
 from playground.sketch.model import Camera
-from playground.terrain import lod
+from playground.terrain import lod, sight, tiles
 from playground.terrain.camera import look
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -66,9 +67,9 @@ def shown(make_sketch):
 @cache
 def weights(level: int, coarser: int) -> np.ndarray:
     """Return (289, 289): how much of each node's height is in the mesh's height over each node."""
-    nodes = lod.vertices()[:289, :2].astype(np.float64)
+    nodes = tiles.vertices()[:289, :2].astype(np.float64)
     found = np.full((289, 289), np.nan)
-    for corners in lod.pieces()["fans", level, coarser].reshape(-1, 3):
+    for corners in tiles.pieces()["fans", level, coarser].reshape(-1, 3):
         system = np.c_[nodes[corners], np.ones(3)]
         shares = np.c_[nodes, np.ones(289)] @ np.linalg.inv(system)
         inside = (shares >= -1e-9).all(axis=1)
@@ -100,9 +101,9 @@ def tiles_of(nodes: np.ndarray) -> np.ndarray:
 
 def own_nodes(coarser: int) -> np.ndarray:
     """Say which nodes are the tile's to answer for: not those on the side of a coarser neighbour."""
-    east, north = lod.vertices()[:289, :2].T
-    away = {lod.SOUTH: north == 0, lod.EAST: east == 16, lod.NORTH: north == 16, lod.WEST: east == 0}
-    return ~np.any([away[side] for side in lod.SIDES if coarser & side] or [np.zeros(289, bool)], axis=0)
+    east, north = tiles.vertices()[:289, :2].T
+    away = {tiles.SOUTH: north == 0, tiles.EAST: east == 16, tiles.NORTH: north == 16, tiles.WEST: east == 0}
+    return ~np.any([away[side] for side in tiles.SIDES if coarser & side] or [np.zeros(289, bool)], axis=0)
 
 
 def true_errors(tiles: np.ndarray, level: int) -> np.ndarray:
@@ -196,10 +197,10 @@ def tables_of(engine, sketch):
     return {name: engine.read(sketch, f"view.tiles:{name}") for name in ("spans", "errors")}
 
 
-def view_of(sketch, size=SIZE) -> lod.View:
+def view_of(sketch, size=SIZE) -> sight.View:
     eye = look(sketch.camera, sketch.extent, sketch.relief, size)
     matrix = eye.clip_from_world.astype(np.float64)
-    return lod.View(matrix, eye.position, sketch.extent, sketch.relief, size)
+    return sight.View(matrix, eye.position, sketch.extent, sketch.relief, size)
 
 
 PATTERNS = [np.indices((8, 8)).sum(axis=0) % 2, (np.indices((8, 8))[0] // 2 + np.indices((8, 8))[1]) % 2]
@@ -233,7 +234,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         drawn = engine.runner.draws.triangles
         culled = engine.read(seen, "view.land", size=SIZE)
         with monkeypatch.context() as patch:
-            patch.setattr(lod.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn
@@ -253,10 +254,10 @@ def surfaces(levels: np.ndarray, coarser: np.ndarray, tiles: np.ndarray) -> np.n
     return found
 
 
-def in_picture(heights: np.ndarray, view: lod.View) -> np.ndarray:
+def in_picture(heights: np.ndarray, view: sight.View) -> np.ndarray:
     """Return where nodes at given heights stand in the picture, NaN outside it."""
     ny, nx = heights.shape[:2]
-    nodes = lod.vertices()[:289, :2].astype(np.float64) / 16
+    nodes = tiles.vertices()[:289, :2].astype(np.float64) / 16
     east = (np.arange(nx)[:, None] + nodes[:, 0]) / nx * view.extent[0]
     north = (np.arange(ny)[:, None] + nodes[:, 1]) / ny * view.extent[1]
     place = np.stack(np.broadcast_arrays(east[None], north[:, None], heights * view.relief, 1.0), axis=-1)
@@ -276,7 +277,7 @@ def test_a_change_of_level_moves_no_place_by_more_than_the_tolerance(engine, sho
     changed, worst, before = 0, 0.0, None
     for camera in cameras:
         view = view_of(sketch.with_camera(camera))
-        boxes = lod.boxes_of(tables["spans"], view)
+        boxes = sight.boxes_of(tables["spans"], view)
         levels = lod.levels_of(tables["errors"], boxes, view, tolerance)
         now = surfaces(levels, lod.coarser_of(levels), tiles)
         # In both pictures a place is as far from the land as is allowed, whatever the level.
@@ -303,7 +304,7 @@ def test_land_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, monke
         near = replace(camera, distance=camera.distance * 1.15)
         other = lod.levels_of(
             tables_of(engine, sketch)["errors"],
-            lod.boxes_of(tables_of(engine, sketch)["spans"], view_of(sketch.with_camera(near))),
+            sight.boxes_of(tables_of(engine, sketch)["spans"], view_of(sketch.with_camera(near))),
             view_of(sketch.with_camera(near)),
             3.0,
         )
@@ -348,6 +349,36 @@ def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engin
     assert counts == sorted(counts, reverse=True) and counts[0] > 10 * counts[-1]
     full = shown(detail="full grid")
     assert engine.texture(full, "view.tiles:errors", size=SIZE).size == (1, 1)
+
+
+def test_the_errors_are_read_back_once_for_each_land(engine, shown, monkeypatch):
+    from playground.engine import draws
+
+    times = []
+    right = draws.read_texture
+    monkeypatch.setattr(draws, "read_texture", lambda texture: times.append(1) or right(texture))
+    sketch = shown()
+    for camera in flight(5):
+        engine.draw(sketch.with_camera(camera), size=SIZE)
+    assert len(times) == 2  # spans and errors
+    engine.draw(shown("float(texel.x) * 0.001"), size=SIZE)
+    assert len(times) == 4
+
+
+def test_tiles_without_their_errors_have_a_sentence(engine, make_sketch):
+    alone = make_sketch(
+        LAND + '[view]\nuse = "view/land"\nset = { detail = "geomipmap" }\n', land=land("0.0")
+    )
+    with pytest.raises(SketchError, match="at this detail needs the input 'spans' wired"):
+        engine.render(alone, size=SIZE)
+
+
+def test_a_draw_that_does_not_read_the_camera_has_a_sentence(engine, make_sketch):
+    text = '#pragma draw(mesh = "land")\nuniform int detail = 0;\nuniform int grid = 3;\n'
+    text += "vec4 vertex(vec3 corner) { return vec4(corner, 1.0); }\nvec4 fragment() { return vec4(1.0); }\n"
+    blind = make_sketch(LAND + '[view]\nuse = "./blind"\n', land=land("0.0"), blind=text)
+    with pytest.raises(PlaygroundError, match="needs a draw that reads clip_from_world, eye, extent"):
+        engine.render(blind, size=SIZE)
 
 
 def test_levels_have_colours(engine, shown):

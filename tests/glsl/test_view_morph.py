@@ -9,7 +9,7 @@ import pytest
 from scipy import ndimage
 
 from playground.sketch.model import Camera
-from playground.terrain import lod
+from playground.terrain import morph, sight, tiles
 from playground.terrain.camera import look
 
 LAND = """#include "noise/hash.glsl"
@@ -86,9 +86,9 @@ def flight(count: int):
         )
 
 
-def view_of(camera: Camera, size=SIZE) -> lod.View:
+def view_of(camera: Camera, size=SIZE) -> sight.View:
     eye = look(camera, EXTENT, RELIEF, size)
-    return lod.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
+    return sight.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
 
 
 def tables_of(engine, sketch):
@@ -97,13 +97,13 @@ def tables_of(engine, sketch):
 
 @pytest.fixture
 def all_seen(monkeypatch):
-    monkeypatch.setattr(lod.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+    monkeypatch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
 
 
 # ── the choice ───────────────────────────────────────────────────────────────
 
 
-def level_map(chosen: lod.Chosen, cells: tuple[int, int]) -> np.ndarray:
+def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
     """Return the level drawn in each tile of a land of so many cells; each is drawn once."""
     times = np.zeros((cells[1] // 16, cells[0] // 16), int)
     levels = np.zeros_like(times)
@@ -129,11 +129,11 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
     for camera in flight(10):
         for tolerance in (0.5, 4.0):
             view = view_of(camera)
-            squares = lod.pyramid(tables["spans"])
-            reach = lod.reaches(tables, squares, view, tolerance)
-            levels = level_map(lod.morph({"tolerance": tolerance}, tables, view), tuple(cells))
+            squares = morph.pyramid(tables["spans"])
+            reach = morph.reaches(tables, squares, view, tolerance)
+            levels = level_map(morph.morph({"tolerance": tolerance}, tables, view), tuple(cells))
             seen |= set(levels.ravel().tolist())
-            boxes = lod.boxes_of(tables["spans"], view)
+            boxes = sight.boxes_of(tables["spans"], view)
             for axis in (0, 1):
                 pairs = [levels.take(range(k, levels.shape[axis] + k - 1), axis) for k in (0, 1)]
                 assert abs(pairs[0] - pairs[1]).max() <= 1
@@ -145,11 +145,11 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
                         away = np.linalg.norm(edge_of(boxes, before, after, axis) - view.eye, axis=1)
                         level = int(fine[j, i])
                         assert away.min() >= 0.99 * reach[level]
-                        assert away.max() <= lod.START * reach[level + 1]
+                        assert away.max() <= morph.START * reach[level + 1]
     assert len(seen) >= 3
 
 
-def edge_of(boxes: lod.Boxes, before: np.ndarray, after: np.ndarray, axis: int) -> np.ndarray:
+def edge_of(boxes: sight.Boxes, before: np.ndarray, after: np.ndarray, axis: int) -> np.ndarray:
     """Return points between tiles, one north (axis 0) or east (1) of the other, up to where land may be."""
     (j, i), share = before, np.linspace(0, 1, 9)
     up = [fold(boxes.up[k][tuple(t)] for t in (before, after)) for k, fold in ((0, max), (1, min))]
@@ -160,7 +160,7 @@ def edge_of(boxes: lod.Boxes, before: np.ndarray, after: np.ndarray, axis: int) 
 
 def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
     spans = np.sort(np.random.default_rng(3).uniform(0, 1, (11, 5, 2)), axis=-1).astype(np.float32)
-    found = lod.pyramid(spans)
+    found = morph.pyramid(spans)
     assert [s.shape[:2] for s in found] == [(11, 5), (6, 3), (3, 2), (2, 1), (1, 1)]
     for level, squares in enumerate(found):
         for j, i in np.ndindex(squares.shape[:2]):
@@ -171,7 +171,7 @@ def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
 def test_a_box_s_distance_is_that_of_its_nearest_point():
     rng = np.random.default_rng(4)
     view = view_of(Camera())
-    boxes = lod.boxes_of(np.sort(rng.uniform(0, 1, (4, 3, 2)), axis=-1).astype(np.float32), view)
+    boxes = sight.boxes_of(np.sort(rng.uniform(0, 1, (4, 3, 2)), axis=-1).astype(np.float32), view)
     for eye in ((200.0, 300.0, 500.0), (-50.0, 400.0, 20.0), (1200.0, -90.0, 100.0)):
         for j, i in np.ndindex(4, 3):
             sides = np.array([boxes.east[:, i], boxes.north[:, j], boxes.up[:, j, i]])
@@ -198,9 +198,9 @@ def test_no_background_shows_through_on_a_flight(engine, shown, tolerance, size)
 
 
 def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkeypatch):
-    right = lod.reaches
+    right = morph.reaches
     monkeypatch.setattr(
-        lod, "reaches", lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))]
+        morph, "reaches", lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))]
     )
     sketch = shown(tolerance=8.0)
     assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 10
@@ -213,7 +213,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         culled = engine.read(seen, "view.land", size=SIZE)
         drawn = engine.runner.draws.triangles
         with monkeypatch.context() as patch:
-            patch.setattr(lod.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.land.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn
@@ -231,7 +231,7 @@ def heights(engine, sketch, camera) -> np.ndarray:
     return found[..., 0].astype(np.float64)
 
 
-def pixels(view: lod.View, truth: np.ndarray) -> np.ndarray:
+def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
     """Return how many pixels a metre upwards is long over each place of the land, 0 outside the picture."""
     east, north = np.meshgrid(*((np.arange(n) + 0.5) / n * e for n, e in zip(SIZE, EXTENT, strict=True)))
     place = np.stack([east, north, truth, np.ones_like(truth)], axis=-1)

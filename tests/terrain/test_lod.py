@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from playground.sketch.model import Camera
-from playground.terrain import lod
+from playground.terrain import lod, sight, tiles
 from playground.terrain.camera import look
 
 EXTENT, RELIEF, SIZE = (1000.0, 800.0), 300.0, (640, 360)
 
 
-def view_of(camera: Camera, size: tuple[int, int] = SIZE) -> lod.View:
+def view_of(camera: Camera, size: tuple[int, int] = SIZE) -> sight.View:
     eye = look(camera, EXTENT, RELIEF, size)
-    return lod.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
+    return sight.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
 
 
 def random_camera(rng: np.random.Generator) -> Camera:
@@ -27,7 +27,7 @@ def random_camera(rng: np.random.Generator) -> Camera:
     )
 
 
-def pixels(view: lod.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def pixels(view: sight.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return where places stand in the picture, (n, 2), and which of them are in it."""
     clip = places @ view.clip_from_world[:, :3].T + view.clip_from_world[:, 3]
     inside = (np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)
@@ -38,19 +38,19 @@ def pixels(view: lod.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 # ── pieces ───────────────────────────────────────────────────────────────────
 
 
-def faces_of(piece: lod.Piece) -> np.ndarray:
+def faces_of(piece: tiles.Piece) -> np.ndarray:
     """Return (m, 3, 3): nodes east and north, and whether at the foot."""
-    return lod.vertices()[lod.pieces()[piece].reshape(-1, 3)].astype(int)
+    return tiles.vertices()[tiles.pieces()[piece].reshape(-1, 3)].astype(int)
 
 
 def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
-    counts = [len(faces_of(("fans", level, 0))) for level in range(lod.LEVELS)]
+    counts = [len(faces_of(("fans", level, 0))) for level in range(tiles.LEVELS)]
     assert counts == [512, 128, 32, 8, 2]
-    assert len(lod.vertices()) == 17 * 17 + 4 * 17
-    assert all(indices.max() < len(lod.vertices()) for indices in lod.pieces().values())
+    assert len(tiles.vertices()) == 17 * 17 + 4 * 17
+    assert all(indices.max() < len(tiles.vertices()) for indices in tiles.pieces().values())
 
 
-@pytest.mark.parametrize("piece", [p for p in lod.pieces() if p[0] != "wall"], ids=str)
+@pytest.mark.parametrize("piece", [p for p in tiles.pieces() if p[0] != "wall"], ids=str)
 def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
     faces = faces_of(piece)
     a, b = faces[:, 1, :2] - faces[:, 0, :2], faces[:, 2, :2] - faces[:, 0, :2]
@@ -61,14 +61,14 @@ def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
     assert max(edges.values()) == 1
     open_edges = {edge for edge in edges if edge[::-1] not in edges}
     wanted = set()
-    for side in lod.SIDES:
+    for side in tiles.SIDES:
         step = 1 << (piece[1] + bool(piece[2] & side) if piece[1] < 4 else 4)
-        nodes = [(*node, 0) for node in lod._side(side, step)]
+        nodes = [(*node, 0) for node in tiles._side(side, step)]
         wanted |= set(pairwise(nodes))
     assert open_edges == wanted, "its sides are those of its neighbours"
 
 
-def mesh_edges(chosen: lod.Chosen) -> Counter:
+def mesh_edges(chosen: tiles.Chosen) -> Counter:
     """Count the directed edges of everything chosen, by their ends' nodes in the whole land."""
     edges: Counter = Counter()
     start = 0
@@ -80,15 +80,15 @@ def mesh_edges(chosen: lod.Chosen) -> Counter:
     return edges
 
 
-def far_view() -> lod.View:
+def far_view() -> sight.View:
     return view_of(Camera(elevation=60.0, distance=6000.0, target=(500.0, 400.0, 0.0)))
 
 
-def boxes(ny: int, nx: int, view: lod.View) -> lod.Boxes:
-    return lod.boxes_of(np.tile(np.float32([0, 1]), (ny, nx, 1)), view)
+def boxes(ny: int, nx: int, view: sight.View) -> sight.Boxes:
+    return sight.boxes_of(np.tile(np.float32([0, 1]), (ny, nx, 1)), view)
 
 
-def corners_of(around: lod.Boxes) -> tuple[np.ndarray, np.ndarray]:
+def corners_of(around: sight.Boxes) -> tuple[np.ndarray, np.ndarray]:
     """Return the lower south-western and the upper north-eastern corners of boxes, (ny, nx, 3)."""
     ny, nx = around.up.shape[1:]
     each = [
@@ -112,7 +112,7 @@ def test_any_levels_make_one_surface_closed_but_for_the_ground(seed):
         assert (b, a) in edges or (a[2] == b[2] == 1), "an open edge that is not at a foot"
 
 
-@pytest.mark.parametrize("fine", range(lod.LEVELS - 1))
+@pytest.mark.parametrize("fine", range(tiles.LEVELS - 1))
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("turned", [False, True])
 def test_two_levels_side_by_side_leave_no_crack(fine, axis, turned):
@@ -159,7 +159,7 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
     rng = np.random.default_rng(seed)
     view = view_of(random_camera(rng))
     spans = np.sort(rng.uniform(-0.2, 1.2, (9, 11, 2)), axis=-1).astype(np.float32)
-    around = lod.boxes_of(spans, view)
+    around = sight.boxes_of(spans, view)
     seen, depths = around.seen(view), around.depths(view)
     share = rng.uniform(0, 1, (400, 1, 1, 3))
     share[:200] = np.round(share[:200])  # corners
@@ -174,7 +174,7 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
 
 def test_looking_at_one_corner_leaves_most_of_the_land_out():
     view = view_of(Camera(45.0, 50.0, 60.0, (20.0, 20.0, 100.0)))
-    assert lod.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).seen(view).mean() < 0.2
+    assert sight.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).seen(view).mean() < 0.2
 
 
 # ── levels ───────────────────────────────────────────────────────────────────
@@ -210,7 +210,7 @@ def test_each_tile_is_as_coarse_as_its_error_and_its_neighbours_allow(seed, tole
 def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
     view = far_view()
     spans = np.float32([[[0, 1], [0, 1e30]], [[-1e30, 0], [np.nan, np.nan]]])
-    around = lod.boxes_of(np.nan_to_num(spans), view)
+    around = sight.boxes_of(np.nan_to_num(spans), view)
     errors = np.full((2, 2, 4), 1e30, np.float32)
     assert not lod.levels_of(errors, around, view, 16.0).any()
     assert lod.tiles_at(np.zeros((2, 2), int), around, view).runs

@@ -1,0 +1,128 @@
+"""Say what a view sees of the boxes around tiles, how deep they lie, and how long a metre looks there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.terrain.tiles import CELLS
+
+FAR = 1e30
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """From where, and how large, a land is looked at."""
+
+    clip_from_world: Floats  # (4, 4), rows; acts on column vectors
+    eye: tuple[float, float, float]  # [m]
+    extent: tuple[float, float]  # [m]
+    relief: float  # [m] of height 1
+    size: tuple[int, int]  # [pixels]
+
+    @property
+    def forward(self) -> Floats:
+        """What a place's depth [m] is worked out with: its first three times the place, plus the last."""
+        row: Floats = self.clip_from_world[3]
+        return row
+
+    @property
+    def near(self) -> float:
+        """Depth [m] of the plane before which nothing is drawn."""
+        ahead = self.clip_from_world[3, :3]
+        along = float(self.clip_from_world[2, :3] @ ahead / (ahead @ ahead))
+        return float(-(self.clip_from_world[2] @ (*self.eye, 1.0)) / (1.0 + along))
+
+    @property
+    def pixels(self) -> float:
+        """The most pixels that a metre upwards is long, at depth 1 m, anywhere in the picture.
+
+        A place at (x, y) of the view, over its depth, is x and y times a scale from the
+        middle. Moved by a short way (a, b, c) at depth z it moves by (a - x c, b - y c) / z,
+        whose length is greatest in a corner of the picture.
+        """
+        across, upright, ahead = (self.clip_from_world[k, :3] for k in (0, 1, 3))
+        wide, tall = 1.0 / np.linalg.norm(across), 1.0 / np.linalg.norm(upright)
+        scale = self.size[0] / (2.0 * wide), self.size[1] / (2.0 * tall)
+        moved = across[2] * wide, upright[2] * tall, ahead[2]
+        corners = ((x, y) for x in (-wide, wide) for y in (-tall, tall))
+        return float(
+            max(
+                np.hypot(scale[0] * (moved[0] - x * moved[2]), scale[1] * (moved[1] - y * moved[2]))
+                for x, y in corners
+            )
+        )
+
+    @property
+    def stretch(self) -> float:
+        """How much further than it is deep a place in the picture may be."""
+        across, upright = (self.clip_from_world[k, :3] for k in (0, 1))
+        return float(np.sqrt(1.0 + 1.0 / (across @ across) + 1.0 / (upright @ upright)))
+
+
+@dataclass(frozen=True, slots=True)
+class Boxes:
+    """The boxes around the tiles of a land [m]: columns and rows share their sides."""
+
+    east: Floats  # (2, nx): west and east sides
+    north: Floats  # (2, ny): south and north sides
+    up: Floats  # (2, ny, nx): lowest and highest
+
+    def reach(self, plane: Floats) -> Floats:
+        """Return, (ny, nx), the most of a plane's first three times a place of each box, plus its last."""
+        east, north = (plane[0] * self.east).max(axis=0), (plane[1] * self.north).max(axis=0)
+        found: Floats = plane[2] * self.up[int(plane[2] > 0)]
+        found += east
+        found += north[:, None] + plane[3]
+        return found
+
+    def depths(self, view: View) -> Floats:
+        """Return the least depth [m] of each that can be seen."""
+        least: Floats = np.maximum(-self.reach(-view.forward), view.near)
+        return least
+
+    def distances(self, eye: tuple[float, float, float]) -> Floats:
+        """Return how far [m] the eye is from each."""
+        east, north, up = (
+            np.maximum(np.maximum(low - at, at - high), 0.0)
+            for (low, high), at in zip((self.east, self.north, self.up), eye, strict=True)
+        )
+        found: Floats = np.sqrt(east**2 + north[:, None] ** 2 + up**2)
+        return found
+
+    def seen(self, view: View) -> NDArray[np.bool_]:
+        """Say which are not wholly outside one of the six planes of the view."""
+        found = np.ones(self.up.shape[1:], bool)
+        for row in (0, 1, 2):
+            for sign in (1.0, -1.0):
+                found &= self.reach(view.clip_from_world[3] + sign * view.clip_from_world[row]) >= 0
+        return found
+
+    def with_walls(self, view: View) -> Boxes:
+        """Return boxes that hold the walls at the land's rim as well.
+
+        How deep a wall goes is the draw's to say; none goes deeper than this, or than the land itself.
+        """
+        return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
+
+
+def boxes_of(
+    spans: NDArray[np.float32], view: View, side: int = CELLS, tiles: tuple[int, int] | None = None
+) -> Boxes:
+    """Return the boxes of squares whose lowest and highest heights are ``spans``, (ny, nx, 2).
+
+    ``side`` is theirs in cells; ``tiles`` says how many tiles, east and north, the land has,
+    where that is not how many squares it has.
+    """
+    heights = np.moveaxis(np.clip(spans.astype(np.float64), -FAR, FAR), -1, 0) * view.relief
+    sides = []
+    for count, whole, extent in zip(
+        spans.shape[1::-1], tiles or spans.shape[1::-1], view.extent, strict=True
+    ):
+        edges = np.minimum(np.arange(count + 1) * side, whole * CELLS) * (extent / (whole * CELLS))
+        sides.append(np.stack([edges[:-1], edges[1:]]))
+    # A relief below 0 turns the land upside down.
+    return Boxes(sides[0], sides[1], heights if view.relief >= 0 else heights[::-1])
