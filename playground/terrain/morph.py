@@ -3,7 +3,7 @@
 Every square is drawn by the same 512 triangles. Their vertices slide into those of the
 next level as the distance grows (view/vertices.glsl), so that no level begins or ends in
 one picture, and no edge needs stitching. How far a level reaches is one number for the
-whole land, so its worst place rules all of it.
+whole land: its roughest place among those near enough to matter rules all of it.
 """
 
 from __future__ import annotations
@@ -13,11 +13,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.terrain.sight import FAR, Floats, View, boxes_of
+from playground.terrain.sight import FAR, Boxes, Floats, View, boxes_of
 from playground.terrain.tiles import CELLS, LEVELS, Chosen, Piece, rims_of
 
 START = 0.8
 """Where vertices begin to slide, over the distance that a level reaches; as in view/vertices.glsl."""
+NEARLY = 0.8
+"""From where on a box counts, over the distance at which it needs a finer level."""
 
 
 def pyramid(spans: NDArray[np.float32]) -> list[NDArray[np.float32]]:
@@ -44,28 +46,32 @@ def reaches(
     that heights differ in a quad. A level also reaches so far that the next one lies wholly
     within its own unmorphed part wherever the two meet.
     """
-    errors = tables["errors"].reshape(-1, LEVELS - 1).astype(np.float64)
-    known = errors[errors[:, -1] < FAR / 2]  # holes may change their shape
-    cells = [CELLS * count for count in squares[0].shape[1::-1]]
-    cell = [extent / count for extent, count in zip(view.extent, cells, strict=True)]
+    tiles = tables["spans"].shape[1::-1]
     pixel = abs(view.relief) * view.pixels * view.stretch / max(tolerance, 1e-9)
+    boxes = [boxes_of(each, view, CELLS * 2**k, tiles) for k, each in enumerate(squares)]
     found: list[float] = []
-    error = 0.0
     for level in range(1, len(squares)):
+        size = max(level - LEVELS + 1, 0)  # of the squares whose errors are known
+        heights = np.diff(squares[size].astype(np.float64), axis=-1)[..., 0]
         if level < LEVELS:
-            error = max(error, float(known[:, level - 1].max(initial=0.0)))
-        else:
-            error = max(error, _tallest(squares[level - LEVELS + 1]))
-        tile = [CELLS * 2.0 ** (level - 1) * side for side in cell]
-        tall = abs(view.relief) * _tallest(squares[level - 1])
-        # The tile before it was cut because its parent is near: its points may be a parent's size further.
-        within = (found[-1] + float(np.hypot(*tile)) + tall) * 1.02 if found else 0.0
-        found.append(min(max(error * pixel, within) / START, FAR))
+            errors = tables["errors"][..., level - 1].astype(np.float64)
+            heights = np.where(errors < FAR / 2, errors, 0.0)  # holes may change their shape
+        wanted = _furthest(boxes[size], heights * pixel, view)
+        # The tile before was cut because its parent is near: its points may be a parent's size further.
+        within = (found[-1] + boxes[level - 1].longest) * 1.02 if found else 0.0
+        found.append(min(max(wanted, within) / START, FAR))
     return np.array([*found, FAR])
 
 
-def _tallest(spans: NDArray[np.float32]) -> float:
-    return float(np.max(spans[..., 1].astype(np.float64) - spans[..., 0]))
+def _furthest(boxes: Boxes, fine: Floats, view: View) -> float:
+    """Return the distance up to which some box needs a finer level, each for itself up to ``fine``.
+
+    A box that lies wholly beyond that needs none. It comes in little by little as the eye
+    comes near, so that nothing jumps.
+    """
+    near, far = boxes.distances(view.eye)
+    share = np.clip((fine - NEARLY * near) / np.maximum((1.0 - NEARLY) * near, 1e-9), 0.0, 1.0)
+    return float((np.minimum(fine, far) * share).max())
 
 
 def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]], view: View) -> Chosen:
@@ -80,15 +86,18 @@ def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]
         boxes = boxes_of(squares[level], view, CELLS * 2**level, tables["spans"].shape[1::-1])
         cut = np.zeros_like(reached)
         if level:
-            cut = reached & (boxes.distances(view.eye) < reach[level - 1])
+            cut = reached & (boxes.distances(view.eye)[0] < reach[level - 1])
         drawn = reached & ~cut
-        wanted = [(("fans", 0, 0), drawn & boxes.seen(view))]
+        seen, beyond = drawn & boxes.seen(view), boxes.distances(view.eye)[0] >= reach[level]
+        places.append((("fans", 0, 0), _placed(seen & ~beyond, level, level, reach)))
+        # What has become its parent's quarter altogether, and is drawn as that.
+        for quarter in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            here = np.zeros_like(seen)
+            here[quarter[1] :: 2, quarter[0] :: 2] = True
+            places.append((("quarter", *quarter), _placed(seen & beyond & here, level, level + 1, reach)))
         walls = drawn & boxes.with_walls(view).seen(view)
-        wanted += [(("wall", 0, side), walls & rim) for side, rim in rims_of(*drawn.shape).items()]
-        for piece, tiles in wanted:
-            north, east = (CELLS * 2**level * at for at in np.nonzero(tiles))
-            each = np.broadcast_arrays(east, north, np.float32(level), np.float32(reach[level]))
-            places.append((piece, np.stack(each, axis=1).astype(np.float32)))
+        for side, rim in rims_of(*drawn.shape).items():
+            places.append((("wall", 0, side), _placed(walls & rim, level, level, reach)))
         if level:
             ny, nx = squares[level - 1].shape[:2]
             reached = np.repeat(np.repeat(cut, 2, axis=0), 2, axis=1)[:ny, :nx]
@@ -97,3 +106,11 @@ def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]
     for piece in dict.fromkeys(piece for piece, _ in order):
         runs.append((piece, sum(len(found) for other, found in order if other == piece)))
     return Chosen(tuple(runs), np.concatenate([found for _, found in order]))
+
+
+def _placed(chosen: NDArray[np.bool_], level: int, shown: int, reach: Floats) -> NDArray[np.float32]:
+    """Return the places of squares of a level, or of those of another that they lie in."""
+    north, east = (CELLS * 2**shown * (at >> (shown - level)) for at in np.nonzero(chosen))
+    last = min(shown, len(reach) - 1)
+    each = np.broadcast_arrays(east, north, np.float32(shown), np.float32(reach[last]))
+    return np.stack(each, axis=1).astype(np.float32)

@@ -84,14 +84,20 @@ class Boxes:
         least: Floats = np.maximum(-self.reach(-view.forward), view.near)
         return least
 
-    def distances(self, eye: tuple[float, float, float]) -> Floats:
-        """Return how far [m] the eye is from each."""
-        east, north, up = (
-            np.maximum(np.maximum(low - at, at - high), 0.0)
-            for (low, high), at in zip((self.east, self.north, self.up), eye, strict=True)
+    @property
+    def longest(self) -> float:
+        """The largest that a diagonal of any box can be [m]."""
+        return float(
+            np.linalg.norm([np.ptp(side, axis=0).max() for side in (self.east, self.north, self.up)])
         )
-        found: Floats = np.sqrt(east**2 + north[:, None] ** 2 + up**2)
-        return found
+
+    def distances(self, eye: tuple[float, float, float]) -> tuple[Floats, Floats]:
+        """Return how far [m] the eye is from each box's nearest place, and from its furthest."""
+        nearest, furthest = [], []
+        for (low, high), at in zip((self.east, self.north, self.up), eye, strict=True):
+            nearest.append(np.maximum(np.maximum(low - at, at - high), 0.0) ** 2)
+            furthest.append(np.maximum(np.abs(low - at), np.abs(high - at)) ** 2)
+        return _length(*nearest), _length(*furthest)
 
     def seen(self, view: View) -> NDArray[np.bool_]:
         """Say which are not wholly outside one of the six planes of the view."""
@@ -107,6 +113,11 @@ class Boxes:
         How deep a wall goes is the draw's to say; none goes deeper than this, or than the land itself.
         """
         return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
+
+
+def _length(east: Floats, north: Floats, up: Floats) -> Floats:
+    found: Floats = np.sqrt(east + north[:, None] + up)
+    return found
 
 
 def boxes_of(

@@ -21,7 +21,8 @@ SOUTH, EAST, NORTH, WEST = 1, 2, 4, 8
 SIDES = (SOUTH, EAST, NORTH, WEST)
 
 Piece = tuple[str, int, int]
-"""A list: "fans", level, sides where the neighbour is coarser; "wall", level, side.
+"""A list: "fans", level, sides where the neighbour is coarser; "quarter" of the finest level, east or
+not, north or not; "wall", level, side.
 
 The last level has no coarser neighbours: there 0 is a tile cut from its south-west to its
 north-east, 1 one cut the other way.
@@ -57,6 +58,9 @@ def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
     west, east, far, north = (_node(*n) for n in ((0, 0), (CELLS, 0), (CELLS, CELLS), (0, CELLS)))
     found["fans", LEVELS - 1, 0] = np.array([west, east, far, west, far, north], np.uint32)
     found["fans", LEVELS - 1, 1] = np.array([west, east, north, east, far, north], np.uint32)
+    for east in (0, 1):
+        for north in (0, 1):
+            found["quarter", east, north] = _fans(0, 0, (east, north))
     for level in range(LEVELS):
         for side in SIDES:
             found["wall", level, side] = _wall(level, side)
@@ -87,13 +91,16 @@ def _side(side: int, step: int) -> list[tuple[int, int]]:
     return nodes if side in (SOUTH, EAST) else nodes[::-1]
 
 
-def _fans(level: int, coarser: int) -> NDArray[np.uint32]:
+def _fans(level: int, coarser: int, quarter: tuple[int, int] | None = None) -> NDArray[np.uint32]:
     """Return a level's triangles: fans around the middles of blocks of two by two quads."""
     half = 1 << level
+    blocks = [list(range(half, CELLS, 2 * half))] * 2
+    if quarter is not None:
+        blocks = [[at for at in blocks[0] if at * 2 // CELLS == part] for part in quarter]
     ring = [(-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)]
     found = []
-    for north in range(half, CELLS, 2 * half):
-        for east in range(half, CELLS, 2 * half):
+    for north in blocks[1]:
+        for east in blocks[0]:
             around = [(east + half * x, north + half * y) for x, y in ring]
             for side, middle in zip(SIDES, (1, 3, 5, 7), strict=True):
                 axis = 1 if side in (SOUTH, NORTH) else 0

@@ -109,10 +109,13 @@ def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
     levels = np.zeros_like(times)
     done = 0
     for piece, count in chosen.runs:
-        for east, north, level, _ in chosen.places[done : done + count]:
-            if piece[0] == "fans":
-                side = 2 ** int(level)
-                square = np.s_[int(north) // 16 :, int(east) // 16 :]
+        for east, north, level, _ in chosen.places[done : done + count].astype(int):
+            side = 2**level
+            if piece[0] == "quarter":
+                side //= 2
+                east, north = east + 16 * side * piece[1], north + 16 * side * piece[2]
+            if piece[0] != "wall":
+                square = np.s_[north // 16 :, east // 16 :]
                 times[square][:side, :side] += 1
                 levels[square][:side, :side] = level
         done += count
@@ -168,7 +171,7 @@ def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
             assert squares[j, i].tolist() == [inside[..., 0].min(), inside[..., 1].max()]
 
 
-def test_a_box_s_distance_is_that_of_its_nearest_point():
+def test_a_box_s_distances_are_those_of_its_nearest_and_its_furthest_point():
     rng = np.random.default_rng(4)
     view = view_of(Camera())
     boxes = sight.boxes_of(np.sort(rng.uniform(0, 1, (4, 3, 2)), axis=-1).astype(np.float32), view)
@@ -176,7 +179,11 @@ def test_a_box_s_distance_is_that_of_its_nearest_point():
         for j, i in np.ndindex(4, 3):
             sides = np.array([boxes.east[:, i], boxes.north[:, j], boxes.up[:, j, i]])
             nearest = np.clip(eye, sides[:, 0], sides[:, 1])
-            assert boxes.distances(eye)[j, i] == pytest.approx(np.linalg.norm(nearest - eye))
+            corners = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
+            found = [distance[j, i] for distance in boxes.distances(eye)]
+            away = np.linalg.norm(corners - eye, axis=1)
+            assert found == pytest.approx([np.linalg.norm(nearest - eye), away.max()])
+            assert boxes.longest >= np.linalg.norm(sides[:, 1] - sides[:, 0])
 
 
 # ── no crack ─────────────────────────────────────────────────────────────────

@@ -50,7 +50,7 @@ def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
     assert all(indices.max() < len(tiles.vertices()) for indices in tiles.pieces().values())
 
 
-@pytest.mark.parametrize("piece", [p for p in tiles.pieces() if p[0] != "wall"], ids=str)
+@pytest.mark.parametrize("piece", [p for p in tiles.pieces() if p[0] == "fans"], ids=str)
 def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
     faces = faces_of(piece)
     a, b = faces[:, 1, :2] - faces[:, 0, :2], faces[:, 2, :2] - faces[:, 0, :2]
@@ -66,6 +66,16 @@ def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
         nodes = [(*node, 0) for node in tiles._side(side, step)]
         wanted |= set(pairwise(nodes))
     assert open_edges == wanted, "its sides are those of its neighbours"
+
+
+def test_a_tile_s_quarters_are_its_finest_triangles():
+    quarters = [tiles.pieces()["quarter", east, north].reshape(-1, 3) for east in (0, 1) for north in (0, 1)]
+    whole = tiles.pieces()["fans", 0, 0].reshape(-1, 3)
+    assert sorted(np.concatenate(quarters).tolist()) == sorted(whole.tolist())
+    for k, quarter in enumerate(quarters):
+        nodes = tiles.vertices()[quarter, :2]
+        low = np.array([8 * (k // 2), 8 * (k % 2)])
+        assert (nodes >= low).all() and (nodes <= low + 8).all()
 
 
 def mesh_edges(chosen: tiles.Chosen) -> Counter:
