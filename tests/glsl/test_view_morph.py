@@ -252,8 +252,11 @@ def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("tolerance", [1.0, 2.0, 8.0])
-def test_no_place_is_drawn_further_from_the_land_than_the_tolerance(engine, shown, all_seen, tolerance):
-    sketch = shown(tolerance=tolerance)
+@pytest.mark.parametrize("detail", ["morph", "geomipmap"])
+def test_no_place_is_drawn_further_from_the_land_than_the_tolerance(
+    engine, shown, all_seen, tolerance, detail
+):
+    sketch = shown(tolerance=tolerance, detail=detail)
     full = shown(tolerance=1e-9)
     worst = []
     for camera in flight(6):
