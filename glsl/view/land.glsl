@@ -1,14 +1,15 @@
 // view/land.glsl -- the land as a mesh: heights at its vertices, colour and light at every pixel.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl, maths/drape.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour
-//            and a light if there are, and for tiles what view/geomipmap/errors gives
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl,
+//            maths/drape.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour and a
+//            light if there are, and for tiles what view/geomipmap/errors gives
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
 //            (facets); the rest made here
 //   tested   tests/glsl/test_view.py, by where marked land stands in the picture; facets in
 //            tests/glsl/test_facets.py, against the normals of the faces in float64; tiles in
-//            tests/glsl/test_view_geomipmap.py
+//            tests/glsl/test_view_geomipmap.py and tests/glsl/test_view_morph.py
 //
 // The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
 // costs six times the frame, and light carries the detail that its facets lack. By tiles

@@ -1,7 +1,7 @@
 // view/vertices.glsl -- where the vertices of mesh "land" stand: of a full grid, of tiles, or of tiles that morph.
 //
 //   gives    share_of_vertex
-//   needs    view/geomipmap/tiles.glsl; in a draw's vertex stage only
+//   needs    view/geomipmap/tiles.glsl; eye, extent and relief; in a draw's vertex stage only
 //   units    shares 0..1 of the land's sides, east and north; nodes as in view/geomipmap/tiles.glsl
 //   source   Strugar 2009, "Continuous Distance-Dependent Level of Detail for Rendering
 //            Heightmaps", Journal of Graphics, GPU, and Game Tools 14(4): one grid for every
