@@ -63,7 +63,7 @@ class Draws:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
         output = kernel.outputs[0]
-program = self.kernels.program(job, "draw")
+        program = self.kernels.program(job, "draw")
         loaded, array = self._array(program, job)
         chosen = self._chosen(job) if loaded.places is not None and step.repeat else None
         surface = self._surface(step.size, output.format, job.samples)
