@@ -4,7 +4,9 @@
 
 Every figure is the median of frames of 1280 x 720 with the camera moved between them, one
 sample a pixel, each after the driver has finished. The rows are measured in turns, one frame
-of each, so that a load on the machine falls on all of them alike: compare within one run.
+of each, so that a load on the machine falls on all of them alike: compare within one run. Where
+the processor draws, the times of all its cores are summed beside that, and the ratios are of
+those: they depend less on what else the machine does.
 """
 
 from __future__ import annotations
@@ -92,13 +94,7 @@ def main() -> None:
     kind = 1 if software else 0
     full = times["full"][kind]
     table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, land of {options.land}²")
-    for heading in (
-        "a frame of 1280 x 720",
-        "median",
-        "of all cores",
-        "of the pass over the screen",
-        "limit",
-    ):
+    for heading in ("a frame of 1280 x 720", "median", "of all cores", "over the first", "limit"):
         table.add_column(heading)
     for name, (what, limit) in WHAT.items():
         wall, cores = times[name]
