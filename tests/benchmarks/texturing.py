@@ -107,9 +107,11 @@ WHAT = {
     "full": ("one pass over the screen, six textures a pixel", ""),
     "splat land": ("view/splat, its draw of the land, mesh of 257²", ""),
     "coarse land": ("the same, mesh of 65²: larger triangles", ""),
+    "tiled land": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
     "multipass land": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
     "baked land": ("view/terrain, its draw, the same layers baked to 1025²", ""),
-    "splat": ("view/splat, whole frame", "2 x, with geomipmap"),
+    "splat": ("view/splat, whole frame", ""),
+    "tiled": ("view/splat, whole frame by geomipmap at 1 pixel", "2 x"),
     "multipass": ("view/splat_multipass, whole frame", "beside splat"),
     "baked": ("view/terrain, whole frame", "40 ms"),
 }
@@ -128,15 +130,18 @@ def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
 
     splat = made("splat", head + VIEW.format("view/splat", 257))
     coarse = made("coarse", head + VIEW.format("view/splat", 65))
+    tiled = made("tiled", head + VIEW.format("view/splat", '257, detail = "geomipmap"'))
     many = made("multipass", head + VIEW.format("view/splat_multipass", 257))
     baked = made("baked", head + BAKED + VIEW.format("view/terrain", 257))
     return {
         "full": (made("full", head + FULL_PASS), "screen"),
         "splat land": (splat, "view.land"),
         "coarse land": (coarse, "view.land"),
+        "tiled land": (tiled, "view.land"),
         "multipass land": (many, "view.fourth"),
         "baked land": (baked, "view.land"),
         "splat": (splat, ""),
+        "tiled": (tiled, ""),
         "multipass": (many, ""),
         "baked": (baked, ""),
     }

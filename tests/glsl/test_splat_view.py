@@ -90,6 +90,25 @@ def test_many_draws_blended_give_the_picture_of_one(any_engine, make_sketch, sam
         np.testing.assert_allclose(found, expected, atol=2.01)
 
 
+@pytest.mark.parametrize("detail", ["geomipmap", "morph"])
+def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sketch, detail):
+    """With a tolerance below a pixel, in one draw and in four; the four meet the one to 2 of 255 here too."""
+    full, tiled, many = (
+        make_sketch(real_land(view, 4, more), size=65, relief=400.0).with_camera(LOOK)
+        for view, more in (
+            ("view/splat", ""),
+            ("view/splat", f', detail = "{detail}", tolerance = 0.1'),
+            ("view/splat_multipass", f', detail = "{detail}", tolerance = 0.1'),
+        )
+    )
+    expected, found, blended = (
+        any_engine.render(sketch, size=(200, 120)).array.astype(int) for sketch in (full, tiled, many)
+    )
+    difference = np.abs(found - expected).max(axis=-1)
+    assert np.mean(difference > 8) < 0.005
+    np.testing.assert_allclose(blended, found, atol=2.01)
+
+
 def test_no_layer_of_the_many_draws_is_idle(any_engine, make_sketch):
     sketch = make_sketch(real_land("view/splat_multipass"), size=65, relief=400.0).with_camera(LOOK)
     frames = [

@@ -16,14 +16,14 @@ bool is_shown(float value) {
     return !isnan(value) && !isinf(value);
 }
 
-// The place of a vertex of mesh `grid` in x to z; in w 0 on the land, 1 at the skirt's foot, and
-// far below 0 where the height is not a number.
-vec4 place_of_vertex(sampler2D field, vec3 corner, vec2 metres, float rise, float skirt) {
-    float share = textureLod(field, drape_uv(corner.xy, textureSize(field, 0)), 0.0).r;
-    bool broken = !is_shown(share);
-    float up = broken ? 0.0 : share * rise;
+// The place in x to z of a vertex that stands at a share of the land, `down` from the land to the
+// skirt's foot; in w that too, or far below 0 where the height is not a number.
+vec4 place_of_vertex(sampler2D field, vec2 share, float down, vec2 metres, float rise, float skirt) {
+    float found = textureLod(field, drape_uv(share, textureSize(field, 0)), 0.0).r;
+    bool broken = !is_shown(found);
+    float up = broken ? 0.0 : found * rise;
     float foot = min(-skirt * max(metres.x, metres.y), up);
-    return vec4(corner.xy * metres, mix(up, foot, corner.z), broken ? -1000.0 : corner.z);
+    return vec4(share * metres, mix(up, foot, down), broken ? -1000.0 : down);
 }
 
 #ifdef FRAGMENT_STAGE

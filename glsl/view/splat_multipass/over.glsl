@@ -1,8 +1,9 @@
 // view/splat_multipass/over.glsl -- the land again in another texture, blended over what was drawn of it.
 //
 //   gives    frame, linear light, over an earlier draw of the same mesh
-//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl; a height
-//            0..1, weights as of texturing/alpha_map, a tile; a light if there is one
+//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl,
+//            view/vertices.glsl; a height 0..1, weights as of texturing/alpha_map, a tile; a
+//            light if there is one, and for tiles of the mesh what view/geomipmap/errors gives
 //   units    metres; colours linear; the tile stands `repeats` times side by side from west to east
 //   source   Belaiche 2010, section 2.6, whose blender does
 //            result = alpha texture + (1 - alpha) previous                              (1)
@@ -23,14 +24,19 @@
 #include "maths/drape.glsl"
 #include "texturing/splat_weights.glsl"
 #include "view/splat/surface.glsl"
-#pragma draw(mesh = "grid", output = "frame:rgba16f", blend = "alpha", depth = "equal")
+#include "view/vertices.glsl"
+#pragma draw(mesh = "land", output = "frame:rgba16f", blend = "alpha", depth = "equal")
 
 uniform sampler2D height;   //! input("linear")
 uniform sampler2D weights;  //! input("linear")
 uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
+uniform sampler2D spans;    //! input("black")
+uniform sampler2D errors;   //! input("black")
 
-uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side
+uniform int detail = 0;               //! menu("full grid", "geomipmap", "morph") group("Mesh") How fine the mesh is where: alike everywhere, by tiles, or by tiles that morph into each other
+uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side of the full grid
+uniform float tolerance = 1.0;        //! slider(0, 16) step(0.1) unit("pixels") group("Mesh") How far a coarser level may lie from the land
 uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
 uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
 uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers") How often the tile stands side by side from west to east
@@ -39,8 +45,8 @@ uniform int alphas = 0;               //! menu("shares", "as in the map") group(
 uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
 
-vec4 vertex(vec3 corner, out vec3 position, out float mark) {
-    vec4 place = place_of_vertex(height, corner, extent, relief, skirt);
+vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
+    vec4 place = place_of_vertex(height, share_of_vertex(height, detail, corner, tile), corner.z, extent, relief, skirt);
     position = place.xyz;
     mark = place.w;
     return clip_from_world * vec4(position, 1.0);
