@@ -1,6 +1,6 @@
 // lighting/daylight_reading.glsl -- sun and sky from lighting/daylight where it is wired, else from parameters.
 //
-//   gives    Sunlight, sunlight, sun_direction, sun_elevation, is_daylight
+//   gives    Sunlight, sunlight, sun_direction, sun_elevation
 //   needs    the output of lighting/daylight, or one black texel, and whether it is wired
 //   units    azimuth and elevation in degrees; light without unit, 1 that of the sun outside the air
 //   source   none: the order of texels in lighting/daylight/light
@@ -13,12 +13,6 @@ struct Sunlight {
     vec3 sun;        // its light on a surface that faces it
     vec3 sky;        // the sky's light on open level ground
 };
-
-// Whether a texture is that of lighting/daylight, for whom `wired_daylight` is not at hand: else
-// it is one black texel. Its size is known without reading it.
-bool is_daylight(sampler2D daylight) {
-    return textureSize(daylight, 0).x > 1;
-}
 
 // The direction of the sun, for what asks no more. `towards` is what is given for the parameter.
 vec3 sun_direction(bool wired, sampler2D daylight, vec3 towards) {

@@ -2,23 +2,28 @@
 //
 //   gives    frame, linear light, over an earlier frame
 //   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl,
-//            maths/drape.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour and a
-//            light if there are, and for tiles what view/geomipmap/errors gives
+//            maths/drape.glsl, texturing/detail_near.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour, a
+//            light and a detail image if there are, and for tiles what view/geomipmap/errors gives
 //   units    metres; colours linear
-//   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), and figure 1.3
-//            (facets); the rest made here
+//   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), figure 1.3
+//            (facets), and section 2.7 (the detail image); the rest made here
 //   tested   tests/glsl/test_view.py, by where marked land stands in the picture; facets in
 //            tests/glsl/test_facets.py, against the normals of the faces in float64; tiles in
-//            tests/glsl/test_view_geomipmap.py and tests/glsl/test_view_morph.py
+//            tests/glsl/test_view_geomipmap.py and tests/glsl/test_view_morph.py; the detail image
+//            in tests/glsl/test_texturing_detail.py, against rays in float64
 //
 // The mesh has `grid` vertices a side, far fewer than the land has texels: a 1025 x 1025 mesh
 // costs six times the frame, and light carries the detail that its facets lack. By tiles
 // (section 2.5, geomipmap) it has one for each texel and draws fewer triangles. Asked to, each
 // facet is lit by its own normal instead, so that the mesh itself is what one sees.
+//
+// A detail image lies over the cover, seen the more the nearer the eye: the cover's colour is the
+// mean of what one sees, the detail only moves it up and down.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/drape.glsl"
+#include "texturing/detail_near.glsl"
 #include "view/vertices.glsl"
 #include "view/wires.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
@@ -27,6 +32,7 @@ uniform sampler2D height;  //! input("linear")
 uniform sampler2D colour;  //! input("linear", "mipmap", "white")
 uniform sampler2D light;   //! input("linear", "mipmap", "white")
 uniform sampler2D daylight;  //! input("black")
+uniform sampler2D detail_image;  //! input("linear", "repeat", "mipmap", "white")
 uniform sampler2D spans;   //! input("black")
 uniform sampler2D errors;  //! input("black")
 
@@ -42,6 +48,9 @@ uniform vec2 facet_sun = vec2(135.0, 30.0);  //! direction group("Mesh") label("
 uniform float facet_ambient = 0.15;   //! slider(0, 1) step(0.01) group("Mesh") label("Sky on facets") Light on a level face that the sun does not reach
 uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
 uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
+uniform float detail_repeats = 100.0; //! slider(1, 2000) step(1) group("Detail image") label("Repeats") How often the detail image stands side by side from west to east
+uniform float detail_strength = 1.0;  //! slider(0, 2) step(0.01) group("Detail image") label("Strength") How much of it is seen at the eye; 1: as its own greys have it
+uniform float detail_reach = 2500.0;  //! log_slider(10, 50000) unit("m") group("Detail image") label("Reach") Distance from the eye at which nothing of it is left
 uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
 uniform int sky = 0;  //! menu("colours", "daylight") group("Sky") Whether the haze has that colour, or that of the sky of lighting/daylight
@@ -93,6 +102,12 @@ float light_of_face(vec3 position) {
 vec4 fragment(vec3 position, float mark, vec4 net) {
     vec2 share = position.xy / extent;
     vec3 shown = texture(colour, drape_uv(share, textureSize(colour, 0)), SHARPER).rgb;
+    if (wired_detail_image) {
+        // Tiles are square on the ground. The level after the last is the last: the image's mean.
+        vec3 fine = texture(detail_image, share * detail_repeats * vec2(1.0, extent.y / extent.x), SHARPER).rgb;
+        vec3 mean = textureLod(detail_image, vec2(0.5), 99.0).rgb;
+        shown = with_detail(shown, fine, mean, detail_strength * detail_nearness(distance(eye, position), detail_reach));
+    }
     shown *= facets ? vec3(light_of_face(position))
                     : texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
     if (wireframe && detail == 0) shown = mix(shown * faces, wire, wires(share * float(grid - 1), 1.0));
@@ -105,7 +120,7 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
     }
     if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot
     if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
-    vec3 air = sky == 1 && is_daylight(daylight) ? horizon_of(daylight) : horizon;
+    vec3 air = sky == 1 && wired_daylight ? horizon_of(daylight) : horizon;
     if (haze > 0.0) shown = mix(air, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
     return vec4(shown, 1.0);
 }

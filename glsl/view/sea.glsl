@@ -36,7 +36,7 @@ vec4 fragment(vec3 position) {
     float hidden = 1.0 - 0.6 * exp(-depth / clarity);
     vec3 below = water;
     vec3 above = horizon;
-    if (sky == 1 && is_daylight(daylight)) {
+    if (sky == 1 && wired_daylight) {
         vec3 away = normalize(position - eye);
         above = sky_towards(daylight, vec3(away.xy, abs(away.z)));
         below *= level_light(daylight);

@@ -45,7 +45,7 @@ vec4 kernel(ivec2 texel) {
     // Both halves leave the horizon at the same pace, so that no line is seen there.
     float share = 1.0 - exp(-3.0 * abs(towards.z));
     vec3 seen = mix(horizon, towards.z > 0.0 ? zenith : nadir, share);
-    if (sky == 1 && is_daylight(daylight)) {
+    if (sky == 1 && wired_daylight) {
         float pixel = distance(towards, direction_of(vec2(texel) + vec2(0.5, 1.5)));
         seen = daylight_in(towards, max(pixel, 1e-6));
     }

@@ -249,7 +249,7 @@ uniform vec2 sun = vec2(200.0, 33.0);  //! direction
 vec4 kernel(ivec2 texel) {
     vec3 own = vec3(0.5, 0.25, 0.125);
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, own, vec3(0.0625, 0.125, 0.75));
-    if (texel.x == 0) return vec4(from.direction, is_daylight(daylight) ? 1.0 : 0.0);
+    if (texel.x == 0) return vec4(from.direction, wired_daylight ? 1.0 : 0.0);
     if (texel.x == 1) return vec4(from.place, 0.0, 0.0);
     if (texel.x == 2) return vec4(from.sun, 0.0);
     if (texel.x == 3) return vec4(from.sky, 0.0);
