@@ -10,7 +10,7 @@ from playground.live.brush import ERASER
 from playground.live.painting import NARROWEST, WIDEST, Painting
 from playground.live.rows import row
 
-_LAYERS = (("1", 0), ("2", 1), ("3", 2), ("4", 3), ("Erase", ERASER))
+_LAYERS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 
 
 def draw_paintbox(painting: Painting) -> None:
@@ -26,11 +26,11 @@ def draw_paintbox(painting: Painting) -> None:
         return
     brush = painting.brush
     with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
-        for index, (name, layer) in enumerate(_LAYERS):
-            if index:
-                imgui.same_line()
-            if imgui.radio_button(name, brush.layer == layer):
-                brush = replace(brush, layer=layer)
+        if imgui.begin_combo("##layer", _LAYERS[brush.layer]):
+            for layer, name in _LAYERS.items():
+                if imgui.selectable(name, brush.layer == layer)[0]:
+                    brush = replace(brush, layer=layer)
+            imgui.end_combo()
     side = painting.side
     with row("Radius", "The brush's, on the ground", fixed=True):
         changed, radius = imgui.slider_float(
