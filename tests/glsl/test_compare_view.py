@@ -59,3 +59,46 @@ def test_the_difference_is_grey_where_there_is_none_and_signed(any_engine, pictu
     found = any_engine.render(changed, size=SIZE).array.astype(int)
     expected = np.clip(127.5 + 0.5 * (two - one), 0, 255)[..., :3]
     np.testing.assert_allclose(found[..., :3], expected, atol=1.01)
+
+
+def test_variants_have_all_of_their_own(make_sketch, any_engine):
+    passes = """
+[[pass]]
+name = "hills"
+use = "generation/layered_noise"
+[[pass]]
+name = "rough"
+use = "generation/diamond_square"
+[[pass]]
+name = "green"
+use = "texturing/grass"
+size = 32
+[[pass]]
+name = "brown"
+use = "texturing/mud"
+size = 32
+[[pass]]
+name = "sun"
+use = "lighting/l_dot_n"
+inputs = { height = "hills" }
+[[pass]]
+name = "moon"
+use = "lighting/l_dot_n"
+inputs = { height = "rough" }
+set = { gain = 0.6 }
+"""
+    of = {"left": ("hills", "green", "sun"), "right": ("rough", "brown", "moon")}
+    wires = ", ".join(
+        f'{kind}_{side} = "{name}"'
+        for side, names in of.items()
+        for kind, name in zip(("height", "colour", "light"), names, strict=True)
+    )
+    both = make_sketch(f'{passes}[view]\nuse = "view/variants"\ninputs = {{ {wires} }}\n', size=33)
+    for divider, (height, colour, light) in ((1.0, of["left"]), (0.0, of["right"])):
+        alone = make_sketch(
+            f'{passes}[view]\nuse = "view/terrain"\n'
+            f'inputs = {{ height = "{height}", colour = "{colour}", light = "{light}" }}\n',
+            size=33,
+        )
+        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
+        np.testing.assert_array_equal(found, any_engine.render(alone, size=SIZE).array)
