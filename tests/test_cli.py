@@ -276,11 +276,16 @@ def test_live_without_a_display_says_what_to_do(run: Run):
     assert re.fullmatch(r"error: There is no screen to open a window on\. .*\n", done.stderr)
 
 
+def _hear_control_c() -> None:
+    """A job that a shell began in the background is deaf to it, and so are its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "playground", "check", str(GLSL)],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_hear_control_c,
     )  # fmt: skip
     assert process.stdout is not None
     process.stdout.readline()  # the first file is checked: it is in the middle of its work

@@ -8,11 +8,12 @@
 //            land that a line has passed, its upper hull is all that matters; blocks and the near
 //            rows are made here
 //   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
-//   agrees   to 0.03 degrees along axes and diagonals; else, five texels and more from the edge, to
-//            0.4 degrees (rms) and K to 0.012 on land whose slopes are mostly below 20 degrees, to
-//            0.9 where half are over 35, to 1.7 where half are over 55, where a march is as far from
-//            the truth; nearer to the edge lines and sight lines leave the land at different
-//            rows, and single texels differ much: tests/glsl/test_horizons.py
+//   agrees   on land, as tests/glsl/test_horizons.py holds it to: to 0.03 degrees along axes and
+//            diagonals; else, five texels and more from the edge, to 0.4 degrees (rms) and K to
+//            0.012 on land whose slopes are mostly below 20 degrees, to 0.9 where half are over
+//            35, to 1.7 where half are over 55, where a march is as far from the truth; nearer
+//            to the edge lines and sight lines leave the land at different rows, and single
+//            texels differ much
 //
 // Sight lines of one direction are parallel, a texel apart, and each texel of a row is on one of
 // them. A sweep follows the lines from the end of the land that they look to, back to the other.
