@@ -27,7 +27,8 @@ float wires(vec2 cell, float width) {
 // 4 north, 8 west) where the neighbour is one level coarser. At the last level there are none,
 // and 1 says that the tile is cut from its south-east to its north-west.
 float wires_of_tile(vec2 place, int level, int coarser, float width) {
-    if (level == 4) return wires(vec2(coarser == 1 ? 16.0 - place.x : place.x, place.y) / 16.0, width);
+    // Before any branch: derivatives are of all pixels of a triangle or of none.
+    float whole = wires(vec2(coarser == 1 ? 16.0 - place.x : place.x, place.y) / 16.0, width);
     float quad = float(1 << level), last = 16.0 / quad - 1.0;
     vec2 cell = place / quad;
     vec4 line = vec4(cell, 0.5 * (cell.x - cell.y), 0.5 * (cell.x + cell.y));
@@ -42,7 +43,7 @@ float wires_of_tile(vec2 place, int level, int coarser, float width) {
     if (upright) cover.x = 0.0;
     if (sideways) cover.y = 0.0;
     cover = 1.0 - cover;
-    return 1.0 - cover.x * cover.y * cover.z * cover.w;
+    return level == 4 ? whole : 1.0 - cover.x * cover.y * cover.z * cover.w;
 }
 
 // Blue where the mesh is finest, then green, yellow, orange, red and, of tiles that morph, purple.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.capture.endings import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
-from playground.capture.find import height_of, kind_of, seen
+from playground.capture.find import height_of, kind_of
 from playground.capture.form import Form, besides, bits_for, check
 from playground.capture.gltf import encode_glb
 from playground.capture.mesh import grid_of, land_mesh, sampled
@@ -27,9 +27,12 @@ from playground.capture.together import write_together
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
+from playground.engine.seen import seen
 from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+
+_NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
 
 
 @dataclass(frozen=True)
@@ -214,7 +217,7 @@ def _write_mesh(engine: Engine, job: Job) -> Exported:
     said = [
         f"{size[0]} x {size[1]} vertices, {len(mesh.triangles)} triangles",
         f"{extent[0]:.7g} x {extent[1]:.7g} m, {low:.5g} to {high:.5g} m high",
-        f"texture {texels[0]} x {texels[1]}" if texels else "no texture: the sketch has no colour",
+        f"texture {texels[0]} x {texels[1]}" if texels else _NO_TEXTURE,
     ]
     notes = [warning]
     if job.form.grid > max(size):

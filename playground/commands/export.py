@@ -196,11 +196,11 @@ def _refuse_twins(paths: list[Path]) -> None:
 
     taken: set[Path] = set()
     for path in paths:
-        files = {path, *besides(path)}
-        if taken & files:
-            twin = min(taken & files)
-            raise ParameterError(f"--to {path}: {twin} would be written twice; choose another name")
-        taken |= files
+        files = {file.resolve(): file for file in (path, *besides(path))}
+        twins = [named for file, named in files.items() if file in taken]
+        if twins:
+            raise ParameterError(f"--to {path}: {min(twins)} would be written twice; choose another name")
+        taken |= files.keys()
 
 
 def _whole(option: str, text: str) -> int:

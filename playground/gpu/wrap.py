@@ -271,7 +271,8 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
             given = ", ".join(f"{k} {n}" for n, k in varyings.items()) or "nothing"
             raise line.error(f"fragment takes {kind} {name}, which vertex does not give; it gives {given}")
     expected = "vec4 vertex(…) and vec4 fragment(…)"
-    before = ["#version 330", "#define VERTEX_STAGE", *_given(kernel)]
+    # Draws of one mesh by several programs must agree to the last bit where depths are equal.
+    before = ["#version 330", "#define VERTEX_STAGE", "invariant gl_Position;", *_given(kernel)]
     after = [f"in {kind} k_in_{name};" for kind, name in attributes]
     after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
     arguments = [f"k_to_{name}" if way == "out" else f"k_in_{name}" for way, _, name in vertex]

@@ -47,6 +47,7 @@ MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as fl
 
 _PNG_START = b"\x89PNG\r\n\x1a\n"
 _PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
+_WITH_ALPHA = frozenset({"RGBA", "RGBa", "LA", "La", "PA"})
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
 
 
@@ -58,6 +59,7 @@ class Image:
     # from 8-bit files, float32 0..1 from 16-bit ones; alpha is full where the file has none
     name: str  # the file's name, for messages
     transparent: bool  # whether any pixel is not opaque
+    has_alpha: bool  # whether the file holds an alpha channel at all, be it full everywhere
 
     @property
     def size(self) -> tuple[int, int]:
@@ -85,11 +87,13 @@ def read_image(path: str | Path) -> Image:
             samples = _png_samples(handle, path)
             pixels: NDArray[np.uint8] | NDArray[np.float32]
             pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
-            opaque = bool((pixels[..., 3] == 1.0).all())
+            opaque, has_alpha = bool((pixels[..., 3] == 1.0).all()), samples.shape[-1] in (2, 4)
         else:
-            pixels = _eight_bit(_open(handle, path))
+            picture = _open(handle, path)
+            has_alpha = picture.mode in _WITH_ALPHA or "transparency" in picture.info
+            pixels = _eight_bit(picture)
             opaque = bool((pixels[..., 3] == 255).all())
-    return Image(pixels, path.name, not opaque)
+    return Image(pixels, path.name, not opaque, has_alpha)
 
 
 def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:

@@ -7,6 +7,7 @@ never written to: painting begins a new one in the current folder and puts it in
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,35 +16,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.files import find_file
+from playground.engine.seen import height_seen
 from playground.errors import DataError, PlaygroundError
 from playground.live.brush import Brush
 from playground.live.canvas import Canvas
 from playground.live.session import Session
-from playground.sketch.assign import Shown, shown_parameters, value_of, values_of
+from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
 from playground.terrain.pick import ground_under, seen_from
 
 NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
 """A brush's radius, in shares of the land's longer side."""
 
+SAVES_EVERY = 0.1
+"""[s] The file, and so the picture, follows a stroke; it is written once more when the stroke ends."""
+
 
 class Painting:
     """What is painted in one session."""
 
-    def __init__(self, session: Session, folder: Path) -> None:
+    def __init__(self, session: Session, folder: Path, now: Callable[[], float] = time.perf_counter) -> None:
         self.session = session
         self.folder = folder  # where new masks go
-        self.on = False
         self.brush = Brush(radius=0.0)
+        self._now = now
+        self._taken = False  # the brush is in the hand
         self._canvases: dict[str, Canvas] = {}  # by the parameter's path
-        self._heights: NDArray[np.float32] | None = None  # of the land, while a stroke goes on
+        self._found: tuple[Sketch | None, Shown | None] = (None, None)
+        self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
         self._last: tuple[float, float] | None = None  # where the stroke is
+        self._saved_at = 0.0
+
+    @property
+    def on(self) -> bool:
+        """Whether the brush is in the hand, and there is something to paint on."""
+        return self._taken and bool(self.target)
 
     @property
     def target(self) -> str:
         """The path of the parameter that is painted on; "" where the sketch has none."""
-        found = _painted(self.session.sketch)
-        return found.path if found else ""
+        sketch = self.session.sketch
+        if self._found[0] is not sketch:
+            self._found = sketch, _painted(sketch)
+        return self._found[1].path if self._found[1] else ""
 
     @property
     def files(self) -> frozenset[Path]:
@@ -66,27 +81,25 @@ class Painting:
 
     def toggle(self) -> None:
         """Take the brush, or put it down."""
-        self.on = bool(self.target) and not self.on
         if not self.target:
             self.session.notes.append("this sketch has no mask to paint on; texturing/alpha_map/mask is one")
-        if self.on and not self.brush.radius:
+        self._taken = bool(self.target) and not self._taken
+        if not NARROWEST * self.side <= self.brush.radius <= WIDEST * self.side:
             self.brush = replace(self.brush, radius=USUAL * self.side)
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the land a place of the picture lies, both in shares; None in the sky."""
-        plan = self.session.plan
-        heights = self._heights if self._heights is not None else self._read_heights()
+        plan, heights = self.session.plan, self._land()
         if plan is None or heights is None or plan.land.extent is None or plan.land.relief is None:
             return None
         return ground_under(plan.eye, place, heights, plan.land.extent, plan.land.relief)
 
     def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
         """Return the brush's circle as it lies on the land, in shares of the picture; [] in the sky."""
-        plan, middle = self.session.plan, self.ground(place)
-        if middle is None or plan is None or plan.land.extent is None or plan.land.relief is None:
+        plan, heights, middle = self.session.plan, self._land(), self.ground(place)
+        if middle is None or heights is None or plan is None:
             return []
-        heights = self._heights if self._heights is not None else self._read_heights()
-        if heights is None:
+        if plan.land.extent is None or plan.land.relief is None:
             return []
         turns = np.linspace(0, 2 * np.pi, corners, endpoint=False)
         around = np.stack([np.cos(turns), np.sin(turns)], axis=1) * self.brush.radius
@@ -95,27 +108,35 @@ class Painting:
 
     def press(self, place: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
-        self._heights = self._read_heights()
+        if self.canvas is not None and not self.canvas.path.exists():
+            self._saved(self.canvas.save)  # somebody took the file away
+        if self._land() is None:
+            self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
         canvas = self._begun() if self._last is not None else None
         if canvas is not None:
             canvas.begin()
+            self._saved_at = -SAVES_EVERY
             self.move(place)
 
     def move(self, place: tuple[float, float]) -> None:
         """Go on with the stroke."""
         plan, canvas = self.session.plan, self.canvas
-        if self._heights is None or plan is None or plan.land.extent is None or canvas is None:
+        if plan is None or plan.land.extent is None or canvas is None:
             return
         now = self.ground(place)
         if now is not None:
             canvas.paint(self._last or now, now, plan.land.extent, self.brush)
-            self._saved(canvas.save)
+            if self._now() - self._saved_at >= SAVES_EVERY:
+                self._saved(canvas.save)
+                self._saved_at = self._now()
         self._last = now
 
     def release(self) -> None:
         """End the stroke."""
-        self._heights = self._last = None
+        self._last = None
+        if self.canvas is not None and not self.canvas.saved:
+            self._saved(self.canvas.save)
 
     def undo(self) -> None:
         """Take the last stroke back."""
@@ -137,36 +158,35 @@ class Painting:
 
     def _begun(self) -> Canvas | None:
         """Return the mask that is painted on, begun anew where the sketch names another file."""
-        found, sketch, plan = _painted(self.session.sketch), self.session.sketch, self.session.plan
         if self.canvas is not None:
             return self.canvas
-        if found is None or sketch is None or plan is None or plan.land.extent is None:
+        path, sketch, plan = self.target, self.session.sketch, self.session.plan
+        if not path or sketch is None or plan is None:
             return None
-        name = re.sub(r"[^\w.-]+", "-", f"{sketch.name}-{found.path}").strip("-.")
+        leaf = resolve(sketch.graph, path)[0]
+        step = plan.step(leaf.path.rpartition(".")[0])
+        if step is None:
+            return None
+        name = re.sub(r"[^\w.-]+", "-", f"{sketch.name}-{path}").strip("-.")
         try:
-            file = str(value_of(sketch, found.path, values_of(sketch)))
-            of = find_file(file, sketch.folder, found.parameter.file, found.path) if file else None
-            canvas = Canvas.begun(self.folder, name, of, plan.land.extent)
+            file = str(value_of(sketch, path, values_of(sketch)))
+            of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
+            canvas = Canvas.begun(self.folder, name, of, step.size)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
-        self._canvases[found.path] = canvas
-        self.session.set(found.path, str(canvas.path))
-        self.session.notes.append(f"painting on {canvas.path.name} in {self.folder}")
+        self._canvases[path] = canvas
+        self.session.set(path, str(canvas.path))
+        self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
         return canvas
 
-    def _read_heights(self) -> NDArray[np.float32] | None:
-        sketch = self.session.sketch
-        heights = [ref for ref in self.session.refs if ref.endswith(":height")]
-        ref = next(
-            (ref for ref in reversed(heights) if "." not in ref), ""
-        )  # the last that a pass itself gives
-        if sketch is None or not ref:
-            return None
-        try:
-            return self.session.engine.read(sketch, ref, time=self.session.clock.time)
-        except PlaygroundError:
-            return None
+    def _land(self) -> NDArray[np.float32] | None:
+        """Return the heights that the picture shows, read once for each picture; a stroke moves none."""
+        session = self.session
+        if self._last is None and self._heights[0] != session.draws:
+            ref = height_seen(session.plan) if session.plan is not None else ""
+            self._heights = session.draws, session.values_of(ref) if ref else None
+        return self._heights[1]
 
 
 def _painted(sketch: Sketch | None) -> Shown | None:

@@ -37,6 +37,8 @@ from playground.sketch.model import Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:
     import moderngl
+    import numpy as np
+    from numpy.typing import NDArray
 
 log = logging.getLogger("playground.live")
 
@@ -319,13 +321,19 @@ class Session:
         if self.map is None or self.sketch is None:
             return
         self._revision += 1
+        values = self.values_of(self.map.ref)
+        self.map = fitted(self.map, values) if values is not None else None
+
+    def values_of(self, ref: str) -> NDArray[np.float32] | None:
+        """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
+        if self.sketch is None:
+            return None
         try:
             steps = self._steps_for(self.sketch)
-            values = self.engine.read(self.sketch, self.map.ref, time=self.clock.time, steps=steps)
-            self.map = fitted(self.map, values)
+            return self.engine.read(self.sketch, ref, time=self.clock.time, steps=steps)
         except PlaygroundError as error:
-            self.map = None
             self.notes.append(str(error))
+            return None
 
     def frame(self, size: tuple[int, int]) -> moderngl.Texture | None:
         """Return the picture, drawn anew if anything changed; None before the first good one.
@@ -338,7 +346,7 @@ class Session:
             self._draw_coming(size)
         if self.shown is not None and self._wanted(size) != self._drawn:
             self._draw_shown(size)
-        elif self.hasty and self._now() - self._drawn_at >= REST:
+        elif self.hasty and self.shown is not None and self._now() - self._drawn_at >= REST:
             self._draw_shown(size, in_full=True)
         return self._picture.texture
 
@@ -402,10 +410,11 @@ class Session:
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
         """Draw; where the processor draws, hastily first: four samples take it three times as long as one."""
-        self.hasty = self.engine.info.software and not in_full and sketch.samples > 1 and _has_draws(sketch)
+        hasty = self.engine.info.software and not in_full and sketch.samples > 1 and _has_draws(sketch)
         self.engine.runner.frame = self.draws
-        chosen = replace(sketch, samples=1) if self.hasty else sketch
+        chosen = replace(sketch, samples=1) if hasty else sketch
         texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
+        self.hasty = hasty
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1

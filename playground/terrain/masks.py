@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.images.files import read_image
+from playground.images.files import Image, read_image
 from playground.terrain.resample import resample
 
 
@@ -39,11 +39,21 @@ def read_mask(path: Path, size: tuple[int, int], stated: tuple[int, int] = (0, 0
             "would stretch; the same proportions were expected",
             file=path,
         )
+    return resized(weights_of(image), size)
+
+
+def weights_of(image: Image) -> NDArray[np.float32]:
+    """Return an image's channels as four weights (ny, nx, 4), 0..1, row 0 south."""
     pixels = image.pixels[::-1]
-    values = pixels / np.float32(255) if pixels.dtype == np.uint8 else pixels
-    channels = np.array(values, np.float32)
-    if not image.transparent:
-        channels[..., 3] = 0.0
-    if (width, height) == size:
-        return channels
-    return np.stack([resample(channels[..., k], size, within=(0.0, 1.0)) for k in range(4)], axis=-1)
+    weights = np.array(pixels / np.float32(255) if pixels.dtype == np.uint8 else pixels, np.float32)
+    if not image.has_alpha:
+        weights[..., 3] = 0.0
+    return weights
+
+
+def resized(weights: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
+    """Return four weights a texel on a grid of another size (nx, ny), corners on corners."""
+    if weights.shape[1::-1] == size:
+        return weights
+    channels = [resample(weights[..., k], size, within=(0.0, 1.0)) for k in range(4)]
+    return np.stack(channels, axis=-1).astype(np.float32)

@@ -154,7 +154,7 @@ def test_land_without_colour_has_no_texture(any_engine: Engine, folder: Path, tm
     bare = playground.load(folder / "bare.toml")
     for ending in ENDINGS:
         done = playground.export(bare, tmp_path / f"land.{ending}", engine=any_engine)
-        assert "no texture: the sketch has no colour" in done.said
+        assert "no texture: the view shows no colour" in done.said
         assert opened(done.path).faces.shape == (64, 3)
     assert [path.name for path in done.beside] == ["land.mtl"]
     assert "map_Kd" not in (tmp_path / "land.mtl").read_text()

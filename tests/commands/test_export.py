@@ -203,3 +203,18 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
         "lit.glb", "land.png", "land.tif", "land.r16", "land.r16.json", "ground.webp", "land.glb",
         "land.obj", "land.mtl", "land-texture.png",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["splat", "splat_mask", "splat_distance"])
+def test_a_view_that_mixes_at_every_pixel_has_no_texture_to_give(
+    name: str, folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    """None of its layers is the land's texture."""
+    assert cli.main(["export", name, "--grid", "9", "--to", "a.obj"]) == 0
+    assert "no texture: the view shows no colour; name one with --texture" in said(capsys)[1]
+    assert names(folder) == ["a.mtl", "a.obj"]
+
+
+def test_one_file_by_two_names_is_one(folder: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["export", "rise", "--to", "a.png", "--to", str(folder / "a.png")]) == 2
+    assert "would be written twice" in said(capsys)[1] and not list(folder.glob("a.png"))

@@ -391,3 +391,8 @@ def test_levels_have_colours(engine, shown):
     assert len(levels) >= 3
     for level in levels:
         assert (np.abs(view[..., :3] - colours[level]).max(axis=-1) < 0.02).any(), f"level {level}"
+
+
+@pytest.mark.parametrize("detail", ["geomipmap", "morph", "full grid"])
+def test_land_of_one_texel_is_drawn(engine, shown, detail):
+    assert engine.render(shown(size=1, detail=detail), size=(64, 36)).array.shape == (36, 64, 4)

@@ -117,6 +117,7 @@ def test_a_draw_becomes_two_stages_with_what_each_needs(kernel, ctx):
     wrapped = wrap(made, "draw")
     vertex, fragment = wrapped.stages["vertex"], wrapped.stages["fragment"]
     assert "dFdx" not in vertex.text
+    assert "invariant gl_Position;" in vertex.text, "draws of one mesh are held to equal depths"
     assert "corner" not in fragment.text.replace("k_", "")
     assert "flat out int k_to_which;" in vertex.text
     assert "flat in int k_to_which;" in fragment.text

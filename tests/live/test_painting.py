@@ -12,10 +12,11 @@ from playground.engine.engine import Engine
 from playground.errors import DataError, ShaderError
 from playground.images.files import read_image, write_png
 from playground.live.brush import ERASER, Brush, covered, stroke
-from playground.live.canvas import LONGER_SIDE, Canvas
+from playground.live.canvas import MOST_TEXELS, Canvas
 from playground.live.painting import Painting
 from playground.live.session import Session
 from playground.sketch.load import load
+from playground.terrain.masks import read_mask
 
 EXTENT = (1000.0, 500.0)
 HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
@@ -72,22 +73,30 @@ def test_beside_the_land_nothing_is_painted():
     assert (mask == 0).all()
 
 
-def test_a_new_mask_has_the_lands_proportions_and_a_new_name(tmp_path: Path):
-    first = Canvas.begun(tmp_path, "hills-image", None, EXTENT)
-    second = Canvas.begun(tmp_path, "hills-image", None, EXTENT)
+SIZE = (128, 64)  # texels of the pass that reads it
+
+
+def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
+    first = Canvas.begun(tmp_path, "hills-image", None, SIZE)
+    second = Canvas.begun(tmp_path, "hills-image", None, SIZE)
     assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
-    assert read_image(first.path).size == (LONGER_SIDE, LONGER_SIDE // 2)
+    assert read_image(first.path).size == SIZE
+
+
+def test_a_large_one_is_held_to_what_can_be_written_while_painting(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049))
+    assert read_image(canvas.path).size == (MOST_TEXELS, MOST_TEXELS // 2)
 
 
 def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "mask", None, EXTENT)
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
     pictures = [read_image(canvas.path).pixels]
     for x in (0.2, 0.8):
         canvas.begin()
         canvas.paint((x, 0.9), (x, 0.95), EXTENT, HARD)
         canvas.save()
         pictures.append(read_image(canvas.path).pixels)
-    north, south = pictures[-1][:64], pictures[-1][-64:]
+    north, south = pictures[-1][:16], pictures[-1][-16:]
     assert north[..., 1].max() == 255 and south[..., 1].max() == 0
     assert (pictures[1] != pictures[2]).any()
     for wanted in (pictures[1], pictures[0]):
@@ -99,7 +108,7 @@ def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_pat
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "mask", None, EXTENT)
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
     canvas.save()
@@ -111,27 +120,36 @@ def test_clearing_can_be_undone(tmp_path: Path):
 
 
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
-    pixels = np.random.default_rng(1).integers(0, 256, (LONGER_SIDE // 2, LONGER_SIDE, 4), np.uint8)
+    pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
-    canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", EXTENT)
+    canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
     np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
     canvas.clear()
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
 
 
-def test_a_coarse_mask_becomes_fine_enough_to_paint_on(tmp_path: Path):
+def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[0] = [0, 200, 0, 0]  # the north
     write_png(tmp_path / "coarse.png", pixels)
-    canvas = Canvas.begun(tmp_path, "fine", tmp_path / "coarse.png", EXTENT)
+    canvas = Canvas.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
     found = read_image(canvas.path).pixels
-    assert found.shape == (LONGER_SIDE // 2, LONGER_SIDE, 4)
-    assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[LONGER_SIDE // 4, 7, 1] < 110
+    assert found.shape == (SIZE[1], SIZE[0], 4)
+    assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[SIZE[1] // 2, 7, 1] < 110
+
+
+def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "full", None, SIZE)
+    everything = Brush(layer=3, radius=5000.0, strength=1.0, softness=0.0)
+    canvas.begin()
+    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
+    canvas.save()
+    np.testing.assert_array_equal(read_mask(canvas.path, SIZE), np.broadcast_to([0, 0, 0, 1], (64, 128, 4)))
 
 
 def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
     with pytest.raises(DataError, match="missing"):
-        Canvas.begun(tmp_path / "missing", "mask", None, EXTENT)
+        Canvas.begun(tmp_path / "missing", "mask", None, SIZE)
 
 
 SKETCH = """format = 1
@@ -213,6 +231,95 @@ def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tm
     assert painting.canvas is None, "the sketch names its own file again"
     painting.press((0.5, 0.5))
     assert painting.canvas is not None and painting.canvas.path != canvas.path
+
+
+def shown(tmp_path: Path, engine: Engine, text: str, *files: tuple[str, str]) -> Session:
+    folder = tmp_path / "another"
+    folder.mkdir()
+    write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
+    for name, content in files:
+        (folder / name).write_text(content)
+    (folder / "sketch.toml").write_text(text)
+    made = Session(engine, folder)
+    made.frame((160, 120))
+    assert made.error is None
+    return made
+
+
+def test_land_that_is_not_square_can_be_painted_on(tmp_path: Path, any_engine: Engine) -> None:
+    text = SKETCH.replace("extent = [2000.0, 2000.0]", "extent = [2000.0, 1100.0]")
+    session = shown(tmp_path, any_engine, text)
+    try:
+        painting = Painting(session, tmp_path)
+        painting.toggle()
+        painting.press((0.5, 0.5))
+        painting.release()
+        session.frame((160, 120))
+        assert session.error is None and painting.canvas is not None and painting.canvas.mask.max() > 0.5
+    finally:
+        session.release()
+
+
+FLAT = '#pragma kernel(output = "{}:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+
+
+def test_the_ground_is_that_of_the_height_that_the_view_shows(
+    tmp_path: Path, any_engine: Engine, session: Session
+) -> None:
+    """Neither a later pass that gives a height nor what a height is called leads the brush astray."""
+    wanted = Painting(session, tmp_path).ground((0.42, 0.55))
+    text = SKETCH.replace(
+        "[view]\n", '[[pass]]\nname = "sea_bed"\nuse = "./bed"\n[view]\ninputs = { height = "height" }\n'
+    )
+    other = shown(tmp_path, any_engine, text, ("bed.glsl", FLAT.format("height", "0.0")))
+    try:
+        assert Painting(other, tmp_path).ground((0.42, 0.55)) == wanted
+    finally:
+        other.release()
+
+
+def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.5))
+    painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    canvas.path.unlink()
+    painting.press((0.4, 0.5))
+    painting.release()
+    session.frame((160, 120))
+    assert canvas.path.exists() and session.error is None
+
+
+def test_without_its_mask_the_brush_is_not_in_the_hand(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    assert painting.on
+    text = SKETCH.replace("texturing/alpha_map/mask", "texturing/rock").replace(
+        'set = { image = "none.png" }', ""
+    )
+    (tmp_path / "sketch" / "sketch.toml").write_text(text)
+    session.reload()
+    session.frame((160, 120))
+    assert session.error is None and not painting.on
+
+
+def test_a_stroke_is_saved_now_and_then_and_at_its_end(session: Session, tmp_path: Path) -> None:
+    clock = [0.0]
+    painting = Painting(session, tmp_path, lambda: clock[0])
+    painting.toggle()
+    painting.press((0.4, 0.5))
+    canvas = painting.canvas
+    assert canvas is not None and canvas.saved
+    painting.move((0.45, 0.5))
+    assert not canvas.saved
+    clock[0] = 1.0
+    painting.move((0.5, 0.5))
+    assert canvas.saved
+    painting.move((0.55, 0.5))
+    painting.release()
+    assert canvas.saved
 
 
 def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
-from playground.errors import SketchError, TrialTimeout
+from playground.errors import ContextError, SketchError, TrialTimeout
 from playground.live.files import files_of
 from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
@@ -331,6 +331,23 @@ def test_the_trial_comes_first(tried: tuple[Bench, FakeTrial]) -> None:
     trial.answer = TrialReport(True)
     assert not np.array_equal(bench.picture(), before)
     assert not bench.session.testing
+
+
+def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_engine: Engine) -> None:
+    """The child had no context to try it in, and here it cannot be drawn: several samples, no image."""
+    text = SKETCH_3D.replace("generation/diamond_square", "generation/heightmap")
+    (tmp_path / "sketch.toml").write_text(text.replace("[view]", 'set = { elevation = "none.npy" }\n[view]'))
+    np.save(tmp_path / "none.npy", np.zeros((3, 3), np.float32))
+    trial = FakeTrial()
+    session = Session(any_engine, tmp_path / "sketch.toml", trial=trial)
+    try:
+        (tmp_path / "none.npy").unlink()
+        trial.answer = TrialReport(False, ContextError("no context"))
+        for _ in range(3):
+            assert session.frame(SIZE) is None
+        assert "none.npy" in str(session.error) and not session.hasty
+    finally:
+        session.release()
 
 
 def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -> None:

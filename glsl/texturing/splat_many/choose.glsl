@@ -10,7 +10,8 @@
 //
 // A material's claim is how far a place lies inside its bands, times chance. The four largest
 // claims count, less the fifth: so a material that is about to be left out has faded to 0
-// already, and no line is seen where the list changes.
+// already, and no line is seen where the list changes. Only where five claims are equal over an
+// area, as whole ones without chance are, may one that ends there take the place of another.
 #include "noise/periodic.glsl"
 #include "terrain/heightfield.glsl"
 #include "texturing/splat_weights.glsl"

@@ -1,6 +1,6 @@
 // view/geomipmap/tiles.glsl -- where the nodes of a tiled land stand.
 //
-//   gives    TILE, TILE_LEVELS, cells_of_tiles, share_of_node, height_of_node
+//   gives    TILE, cells_of_tiles, share_of_node, height_of_node
 //   needs    maths/drape.glsl
 //   units    nodes counted from the land's south-west corner; shares 0..1 of its sides
 //   source   Belaiche 2010, section 2.5: tiles of a power of two
@@ -14,7 +14,6 @@
 #include "maths/drape.glsl"
 
 const int TILE = 16;
-const int TILE_LEVELS = 5;
 
 // Cells a side.
 ivec2 cells_of_tiles(ivec2 texels) {

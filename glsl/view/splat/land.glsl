@@ -18,7 +18,7 @@
 #pragma draw(mesh = "land", output = "frame:rgba16f")
 
 uniform sampler2D height;   //! input("linear")
-uniform sampler2D weights;  //! input("linear")
+uniform sampler2D weights;  //! input("linear", "mipmap")
 uniform sampler2D grass;    //! input("linear", "repeat", "mipmap")
 uniform sampler2D rock;     //! input("linear", "repeat", "mipmap")
 uniform sampler2D snow;     //! input("linear", "repeat", "mipmap")
@@ -57,7 +57,7 @@ vec4 fragment(vec3 position, float mark) {
     vec3 two = texture(rock, tile * rock_repeats).rgb;
     vec3 three = texture(snow, tile * snow_repeats).rgb;
     vec3 four = texture(path, tile * path_repeats).rgb;
-    vec4 weight = textureLod(weights, drape_uv(share, textureSize(weights, 0)), 0.0);
+    vec4 weight = weights_seen(weights, share);
     if (blend == 1) weight = weights_by_heights(weight, vec4(one.g, two.g, three.g, four.g) / texelFetch(means, ivec2(0), 0), contrast);
     vec3 shown = weight.x * one + weight.y * two + weight.z * three + weight.w * four;
     float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));

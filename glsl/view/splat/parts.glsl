@@ -27,7 +27,7 @@ vec3 shown_at(sampler2D image, vec2 place, float side) {
 vec4 kernel(ivec2 texel) {
     // Six parts wide and two high, with the result as large as four.
     float side = floor(min((float(size.x) - 6.0 * gap) / 6.0, (float(size.y) - 3.0 * gap) / 2.0));
-    vec2 whole = vec2(6.0 * side + 4.0 * gap, 2.0 * side + gap);
+    vec2 whole = vec2(6.0 * side + 5.0 * gap, 2.0 * side + gap);
     vec2 place = vec2(texel) + 0.5 - floor(0.5 * (vec2(size) - whole));
     vec3 seen = srgb_from_linear(paper);
     int column = int(floor(place.x / (side + gap)));

@@ -1,6 +1,6 @@
 // view/splat/surface.glsl -- what the draws of a splatted land share: its mesh, its cut, its light and air.
 //
-//   gives    place_of_vertex; in a draw's fragment stage surface_seen
+//   gives    place_of_vertex; in a draw's fragment stage weights_seen, surface_seen
 //   needs    maths/drape.glsl; textures come as arguments
 //   units    metres; colours linear
 //   source   none: as view/land.glsl
@@ -27,6 +27,13 @@ vec4 place_of_vertex(sampler2D field, vec2 share, float down, vec2 metres, float
 }
 
 #ifdef FRAGMENT_STAGE
+// The four weights of a pixel: those of the level of detail that suits it, brought to a sum of 1
+// again, for each level's bytes are rounded by themselves.
+vec4 weights_seen(sampler2D weights, vec2 share) {
+    vec4 found = texture(weights, drape_uv(share, textureSize(weights, 0)));
+    return found / (found.x + found.y + found.z + found.w);
+}
+
 // A pixel of the land: its texture in its light; the cut earth where `mark` is above 0, darker
 // downwards and on its eastern and western walls; the air before it.
 vec3 surface_seen(vec3 shown, sampler2D light, vec2 share, float mark, vec3 earth, vec3 air, float clear) {

@@ -28,7 +28,7 @@
 #pragma draw(mesh = "land", output = "frame:rgba16f", blend = "alpha", depth = "equal")
 
 uniform sampler2D height;   //! input("linear")
-uniform sampler2D weights;  //! input("linear")
+uniform sampler2D weights;  //! input("linear", "mipmap")
 uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
 uniform sampler2D spans;    //! input("black")
@@ -55,7 +55,7 @@ vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
 vec4 fragment(vec3 position, float mark) {
     vec2 share = position.xy / extent;
     vec3 shown = texture(colour, share * vec2(1.0, extent.y / extent.x) * repeats).rgb;
-    vec4 weight = textureLod(weights, drape_uv(share, textureSize(weights, 0)), 0.0);
+    vec4 weight = weights_seen(weights, share);
     float own = layer == 1 ? weight.y : layer == 2 ? weight.z : weight.w;
     float alpha = alphas == 1 ? own : alpha_of_layer(weight, layer);
     float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));
