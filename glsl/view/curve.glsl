@@ -1,7 +1,7 @@
 // view/curve.glsl -- rows of heights as curves, above each other or one over the other.
 //
 //   gives    frame, display-encoded
-//   needs    colour/encode.glsl; a texture whose rows are curves
+//   needs    colour/encode.glsl, maths/number.glsl; a texture whose rows are curves
 //   units    heights as they are, lowest and highest in the same; widths in pixels
 //   source   none: a picture of numbers. A pixel is covered by how far it is from the curve
 //   tested   tests/glsl/test_curve_view.py, by where curves and axes must be in the picture
@@ -9,6 +9,7 @@
 // Texel k of n stands at k / (n - 1) of the picture's width. Curves above each other stand in
 // panels of the same height, the first row on top; the lowest number is at a panel's foot.
 #include "colour/encode.glsl"
+#include "maths/number.glsl"
 #pragma kernel(output = "frame:rgba8")
 
 uniform sampler2D height;             //! input
@@ -24,13 +25,6 @@ uniform vec3 ground = vec3(1.0);              //! colour group("Colours") Behind
 uniform bool axis = true;             //! group("Axis") A line across each panel
 uniform float baseline = 0.0;         //! slider(-4, 4) step(0.01) group("Axis") The number it stands at
 uniform vec3 axis_colour = vec3(0.55);  //! colour group("Axis") Its colour
-
-// A texel that is not a number is shown in the colour that view/map gives it.
-const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
-
-bool is_number(float value) {
-    return !isnan(value) && !isinf(value);
-}
 
 float distance_to_segment(vec2 place, vec2 from, vec2 to) {
     vec2 along = to - from;

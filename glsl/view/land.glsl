@@ -2,7 +2,7 @@
 //
 //   gives    frame, linear light, over an earlier frame
 //   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun.glsl,
-//            maths/drape.glsl, texturing/detail_near.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour, a
+//            maths/drape.glsl, maths/number.glsl, texturing/detail_near.glsl, view/surface.glsl, view/vertices.glsl, view/wires.glsl; a height 0..1, a colour, a
 //            light and a detail image if there are, and for tiles what view/geomipmap/errors gives
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), figure 1.3
@@ -23,7 +23,9 @@
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/drape.glsl"
+#include "maths/number.glsl"
 #include "texturing/detail_near.glsl"
+#include "view/surface.glsl"
 #include "view/vertices.glsl"
 #include "view/wires.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
@@ -55,38 +57,15 @@ uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") A
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
 uniform int sky = 0;  //! menu("colours", "daylight") group("Sky") Whether the haze has that colour, or that of the sky of lighting/daylight
 
-// Where height, colour or light is not a number, as in view/map.
-const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
-
-// A level of detail suits the longer side of a pixel's shadow on the land, which a flat view
-// stretches; so much finer, the shorter side blurs less and nothing flickers yet.
-const float SHARPER = -0.7;
-
-bool is_number(float value) {
-    return !isnan(value) && !isinf(value);
-}
-
-// mark: 0 on the land, 1 at the skirt's foot, far below 0 around a vertex whose height is not a
-// number: far, because samples at a triangle's rim are extrapolated.
+// mark: as of place_of_vertex.
 // net: the place in the tile, its level, and how it is joined or how far it reaches.
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark, out vec4 net) {
     vec2 share = share_of_vertex(height, detail, corner, tile);
-    float found = textureLod(height, drape_uv(share, textureSize(height, 0)), 0.0).r;
-    bool broken = !is_number(found);
-    // A vertex at infinity would take its triangles with it.
-    float up = broken ? 0.0 : found * relief;
-    // Land below height 0 may lie deeper than the foot.
-    float foot = min(-skirt * max(extent.x, extent.y), up);
-    position = vec3(share * extent, mix(up, foot, corner.z));
-    mark = broken ? -1000.0 : corner.z;
+    vec4 place = place_of_vertex(height, share, corner.z, extent, relief, skirt);
+    position = place.xyz;
+    mark = place.w;
     net = vec4(corner.xy, tile.zw);
     return clip_from_world * vec4(position, 1.0);
-}
-
-// The colour of the cut: darker downwards, and darker on its eastern and western walls, so that its corners show.
-vec3 cut(vec2 share, float below) {
-    vec2 inside = min(share, 1.0 - share);
-    return earth * (inside.x < inside.y ? 0.7 : 1.0) * mix(1.0, 0.55, below);
 }
 
 #ifdef FRAGMENT_STAGE
@@ -118,8 +97,8 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
         float lines = wires_of_tile(net.xy, morphs ? 0 : level, morphs ? 0 : int(net.w + 0.5), 1.0);
         shown = mix(shown * faces, levels ? colour_of_level(level) : wire, lines);
     }
-    if (mark > 0.0) shown = cut(share, min(mark, 1.0));  // at a rim, extrapolated far past the foot
-    if (mark < -10.0 || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
+    if (mark > 0.0) shown = cut_of_land(earth, share, mark);
+    if (mark < BROKEN || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
     vec3 air = sky == 1 && wired_daylight ? horizon_of(daylight) : horizon;
     if (haze > 0.0) shown = mix(air, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
     return vec4(shown, 1.0);

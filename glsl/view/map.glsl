@@ -1,12 +1,13 @@
 // view/map.glsl -- the land from above: any texture as a flat picture, north on top.
 //
 //   gives    frame, display-encoded
-//   needs    colour/encode.glsl, colour/ramp.glsl
+//   needs    colour/encode.glsl, colour/ramp.glsl, maths/number.glsl
 //   units    texture values as they are; lowest and highest are in the same
 //   source   none: a picture of numbers
 //   tested   tests/glsl/test_view.py, against the texture's own values
 #include "colour/encode.glsl"
 #include "colour/ramp.glsl"
+#include "maths/number.glsl"
 #pragma kernel(output = "frame:rgba8")
 
 uniform sampler2D shown;              //! input("linear", "mipmap")
@@ -15,9 +16,6 @@ uniform int ramp = 0;                 //! menu("grey", "false colour") How a num
 uniform int shrunk = 0;               //! menu("mean", "nearest") How a texture larger than the picture is shown: each pixel the mean of its texels, or one of them
 uniform float lowest = 0.0;           //! slider(-2, 2) step(0.01) group("Range") The number shown darkest
 uniform float highest = 1.0;          //! slider(-2, 2) step(0.01) group("Range") The number shown brightest
-
-// A texel that is not a number is shown in a colour that no ramp has.
-const vec3 NOT_A_NUMBER = vec3(1.0, 0.0, 1.0);
 
 vec4 kernel(ivec2 texel) {
     ivec2 shown_size = textureSize(shown, 0);

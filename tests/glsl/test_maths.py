@@ -86,3 +86,20 @@ def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
     level = np.repeat(corners[:, :1], 4, axis=1)
     found = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=level, part=part)
     np.testing.assert_array_equal(found, level[:, 0].astype(np.float32))
+
+
+def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
+    place, start, end = (RNG.uniform(-5, 5, (200, 2)).astype(np.float32) for _ in range(3))
+    end[:20] = start[:20]  # pieces without length
+    found = on_gpu(
+        "maths/segment.glsl", "distance_to_segment(place, start, end)", place=place, start=start, end=end
+    )
+    share = np.linspace(0, 1, 2001)[:, None, None]
+    points = start + share * (end.astype(np.float64) - start)
+    np.testing.assert_allclose(found, np.linalg.norm(points - place, axis=-1).min(axis=0), atol=3e-3)
+
+
+def test_what_is_not_a_number_is_told(on_gpu):
+    value = np.array([0.0, -1e30, np.nan, np.inf, -np.inf], np.float32)
+    found = on_gpu("maths/number.glsl", "is_number(value) ? 1 : 0", value=value)
+    np.testing.assert_array_equal(found, [1, 1, 0, 0, 0])

@@ -1,7 +1,7 @@
 // texturing/alpha_map/path.glsl -- where a path covers the land: a smooth line through four points.
 //
 //   gives    cover, 0..1
-//   needs    maths/land.glsl, noise/periodic.glsl
+//   needs    maths/land.glsl, maths/segment.glsl, noise/periodic.glsl
 //   units    points as shares of the land, east and north; widths in metres
 //   source   Belaiche 2010, section 2.5: a texture of its own for the paths that people walk on;
 //            the line: Catmull and Rom 1974, "A Class of Local Interpolating Splines"
@@ -10,6 +10,7 @@
 // The line is drawn as short straight pieces. It begins and ends as if its first and last
 // point stood there twice.
 #include "maths/land.glsl"
+#include "maths/segment.glsl"
 #include "noise/periodic.glsl"
 #pragma kernel(output = "cover:r16f")
 
@@ -23,12 +24,6 @@ uniform float wander = 0.0;              //! slider(0, 500) step(1) unit("m") Ho
 uniform float strength = 1.0;            //! slider(0, 1) step(0.01) How much it covers
 
 const int PIECES = 12;  // from one point to the next
-
-float distance_to_piece(vec2 place, vec2 from, vec2 to) {
-    vec2 along = to - from;
-    float share = clamp(dot(place - from, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
-    return length(place - from - share * along);
-}
 
 vec2 between(vec2 before, vec2 from, vec2 to, vec2 after, float t) {
     vec2 bend = 2.0 * before - 5.0 * from + 4.0 * to - after;
@@ -52,7 +47,7 @@ float kernel(ivec2 texel) {
                 : part == 1 ? between(first, second, third, fourth, t)
                             : between(second, third, fourth, fourth, t);
         to *= extent;
-        nearest = min(nearest, distance_to_piece(place, from, to));
+        nearest = min(nearest, distance_to_segment(place, from, to));
         from = to;
     }
     float cover = verge > 0.0 ? clamp((0.5 * width - nearest) / verge + 1.0, 0.0, 1.0) : nearest <= 0.5 * width ? 1.0 : 0.0;

@@ -1,7 +1,7 @@
 // view/profile/plot.glsl -- the land's height under a line: a map with the line, and the section beside it.
 //
 //   gives    frame, display-encoded
-//   needs    colour/encode.glsl, terrain/heightfield.glsl, view/profile/digits.glsl; a height,
+//   needs    colour/encode.glsl, maths/segment.glsl, terrain/heightfield.glsl, view/profile/digits.glsl; a height,
 //            the lowest and the highest elevation under the line; a colour and a light if
 //            there are
 //   units    elevations in metres above sea level, distances along the line in metres, or in
@@ -12,6 +12,7 @@
 // The line begins at the disc and ends at the ring, on the map and under the section. Ticks
 // stand at 1, 2 or 5 times a power of ten.
 #include "colour/encode.glsl"
+#include "maths/segment.glsl"
 #include "terrain/heightfield.glsl"
 #include "view/profile/digits.glsl"
 #pragma kernel(output = "frame:rgba8")
@@ -74,12 +75,6 @@ int label_of(float k, float by, int decimals) {
     return int(floor(k * by * tens + 0.5));
 }
 
-float distance_to_piece(vec2 place, vec2 from, vec2 to) {
-    vec2 along = to - from;
-    float share = clamp(dot(place - from, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
-    return length(place - from - share * along);
-}
-
 float cover(float far, float wide) {
     return clamp(0.5 * wide + 0.5 - far, 0.0, 1.0) * min(wide, 1.0);
 }
@@ -123,7 +118,7 @@ vec4 kernel(ivec2 texel) {
     vec2 begins = at.map.xy + start * at.map.zw;
     vec2 ends = at.map.xy + finish * at.map.zw;
     if (all(greaterThanEqual(share, vec2(0.0))) && all(lessThanEqual(share, vec2(1.0)))) seen = map_at(share, at.map.z);
-    float line = distance_to_piece(place, begins, ends);
+    float line = distance_to_segment(place, begins, ends);
     seen = mix(seen, vec3(1.0), 0.8 * cover(line, width + 2.0 * s));
     seen = mix(seen, curve, cover(line, width));
     seen = mix(seen, vec3(1.0), mark(place - begins, 5.0 * s, false) + mark(place - ends, 5.0 * s, false));
@@ -158,7 +153,7 @@ vec4 kernel(ivec2 texel) {
         for (int k = -REACH; k <= REACH; k++) {
             float x = clamp(in_plot.x + float(k), 0.0, at.plot.z);
             vec2 to = vec2(x, clamp((elevation_at(x / at.plot.z) - low) * rise, -1e5, 1e5));
-            if (k > -REACH) nearest = min(nearest, distance_to_piece(in_plot, from, to));
+            if (k > -REACH) nearest = min(nearest, distance_to_segment(in_plot, from, to));
             if (k == 0 && in_plot.y < to.y) seen = mix(seen, ground, 0.55);
             from = to;
         }

@@ -1,7 +1,7 @@
 // view/splat/land.glsl -- the land, four textures mixed at every pixel by their weights.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl,
+//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl, view/surface.glsl,
 //            view/vertices.glsl; a height 0..1, weights as of texturing/alpha_map, four tiles;
 //            a light and texturing/splat/means if there are, and for tiles of the mesh what
 //            view/geomipmap/errors gives
@@ -14,6 +14,7 @@
 #include "maths/drape.glsl"
 #include "texturing/splat_weights.glsl"
 #include "view/splat/surface.glsl"
+#include "view/surface.glsl"
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
 

@@ -1,7 +1,7 @@
 // view/splat_multipass/first.glsl -- the land in its first texture, for others to be blended over it.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    view/splat/surface.glsl, view/vertices.glsl; a height 0..1, a tile; a light if there is
+//   needs    view/splat/surface.glsl, view/surface.glsl, view/vertices.glsl; a height 0..1, a tile; a light if there is
 //            one, and for tiles of the mesh what view/geomipmap/errors gives
 //   units    metres; colours linear; the tile stands `repeats` times side by side from west to east
 //   source   Belaiche 2010, section 2.6: the first of the draws
@@ -9,6 +9,7 @@
 //
 // The first layer's alpha is 1 everywhere: what it leaves to the others they take from it.
 #include "view/splat/surface.glsl"
+#include "view/surface.glsl"
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
 

@@ -1,7 +1,7 @@
 // view/splat_multipass/over.glsl -- the land again in another texture, blended over what was drawn of it.
 //
 //   gives    frame, linear light, over an earlier draw of the same mesh
-//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl,
+//   needs    maths/drape.glsl, maths/number.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl, view/surface.glsl,
 //            view/vertices.glsl; a height 0..1, weights as of texturing/alpha_map, a tile; a
 //            light if there is one, and for tiles of the mesh what view/geomipmap/errors gives
 //   units    metres; colours linear; the tile stands `repeats` times side by side from west to east
@@ -22,8 +22,10 @@
 // is the mean colour in that light. Equal depth: it draws where the first layer is seen; of two
 // triangles that tie there both draw, which is one sample in some millions, at a crest.
 #include "maths/drape.glsl"
+#include "maths/number.glsl"
 #include "texturing/splat_weights.glsl"
 #include "view/splat/surface.glsl"
+#include "view/surface.glsl"
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f", blend = "alpha", depth = "equal")
 
@@ -61,6 +63,6 @@ vec4 fragment(vec3 position, float mark) {
     float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));
     vec3 seen = surface_seen(shown, light, share, mark, earth, horizon, clear);
     // The cut earth is no mixture, nor is what is not a number.
-    if (mark > 0.0 || !is_shown(alpha) || seen == LAND_NOT_A_NUMBER) alpha = 1.0;
+    if (mark > 0.0 || !is_number(alpha) || seen == NOT_A_NUMBER) alpha = 1.0;
     return vec4(seen, alpha);
 }
