@@ -35,12 +35,18 @@ class Cache:
         self._pool = pool
         self._kept: OrderedDict[str, Kept] = OrderedDict()
         self._in_use: set[str] = set()
+        self._sizes: dict[str, int] = {}  # [bytes] of what is kept, as it was when last looked at
+        self._total = 0  # their sum
         self._latest: dict[str, tuple[str, str, int]] = {}
 
     @property
     def bytes(self) -> int:
         """Bytes held."""
-        return sum(kept.bytes for kept in self._kept.values())
+        # Only what this frame uses may have grown: mipmaps, a loop's next turn. To add up all of
+        # it at every turn would cost more than small passes do.
+        for key in self._in_use:
+            self._weigh(key)
+        return self._total
 
     def __len__(self) -> int:
         return len(self._kept)
@@ -50,6 +56,8 @@ class Cache:
 
     def begin(self) -> None:
         """Begin a frame: nothing is in use yet."""
+        for key in self._in_use:
+            self._weigh(key)
         self._in_use.clear()
 
     def get(self, key: str) -> Kept | None:
@@ -78,12 +86,14 @@ class Cache:
         if known != unfinished or before >= turn or key in self._in_use or key not in self._kept:
             return None
         (result,) = self._kept.pop(key).results.values()
+        self._weigh(key)
         return result
 
     def drop(self, key: str) -> None:
         """Forget something."""
         kept = self._kept.pop(key, None)
         self._in_use.discard(key)
+        self._weigh(key)
         if kept is not None:
             kept.let_go(self._pool)
 
@@ -94,8 +104,8 @@ class Cache:
             if total <= self.limit:
                 return
             if key not in self._in_use:
-                total -= self._kept[key].bytes
                 self.drop(key)
+                total = self._total
 
     def clear(self) -> None:
         """Drop everything."""
@@ -103,4 +113,14 @@ class Cache:
             kept.let_go(self._pool)
         self._kept.clear()
         self._in_use.clear()
+        self._sizes.clear()
+        self._total = 0
         self._latest.clear()
+
+    def _weigh(self, key: str) -> None:
+        """Take in what one key holds now."""
+        kept = self._kept.get(key)
+        now = kept.bytes if kept is not None else 0
+        self._total += now - self._sizes.pop(key, 0)
+        if now:
+            self._sizes[key] = now

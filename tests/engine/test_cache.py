@@ -1,0 +1,25 @@
+"""The cache's bookkeeping: what it says it holds is what it holds, whatever came and went."""
+
+from __future__ import annotations
+
+from playground.engine.engine import Engine
+from playground.sketch.load import load
+
+
+def held(engine: Engine) -> int:
+    return sum(kept.bytes for kept in engine.cache._kept.values())
+
+
+def test_bytes_are_those_of_what_is_kept(ctx):
+    sketch = load("jacksboro").with_values({"size": 65})
+    with Engine(ctx, cache_bytes=3 * 2**20) as engine:
+        for hour in range(6):
+            moved = sketch.with_values({"light.sun": (100.0 + hour, 20.0)})
+            engine.render(moved, size=(160, 90))  # mipmaps are made after a texture is put away
+            assert engine.cache.bytes == held(engine)
+            for turn in (3, 5, 2):
+                engine.read("diamond_square", "height", steps={"height": turn})
+                assert engine.cache.bytes == held(engine)
+        assert 0 < engine.cache.bytes <= engine.cache.limit
+        engine.cache.clear()
+        assert engine.cache.bytes == held(engine) == 0
