@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
-from playground.commands import check, doctor, export, listing, live, new, render
+from playground.commands import check, doctor, export, fly, listing, live, new, render
 from playground.commands.arguments import (
     DeviceOption,
     Renderer,
@@ -147,6 +147,7 @@ def _no_command(text: str) -> str:
 
 app.command("live", help=live.HELP)(live.live)
 app.command("render", help=render.HELP)(render.render)
+app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
 app.command("list", help=listing.HELP)(listing.list_)

@@ -24,7 +24,7 @@ LAYERS = (
     ("live",),
     ("shots",),
     ("lessons",),
-    ("capture", "templates"),
+    ("capture", "flight", "templates"),
     ("api",),
     ("engine",),
     ("gpu",),

@@ -31,7 +31,7 @@ from playground.paths import DEFAULT_SKETCH, GLSL
 from playground.sketch.find import shipped_sketches
 
 ROOT = Path(__file__).resolve().parent.parent
-COMMANDS = ["live", "render", "export", "check", "list", "doctor", "new"]
+COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
 
 PLAIN_FRAGMENT = """#version 330
 uniform vec3 iResolution;

@@ -1,0 +1,152 @@
+"""A flight: a sketch's land, a craft over it, a time of day; step by step, and a picture of any moment.
+
+A step depends on nothing but what came before it and what the hands do: not on the clock of
+the machine, not on which pictures were drawn. Only which parts are there depends on the budget,
+and never what lies under the craft, which is made before it is needed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.flight.craft import CLEARANCE, LEVEL, Controls, Craft, stepped
+from playground.flight.lens import through
+from playground.flight.parts import Parts
+from playground.flight.plot import Plot, plot_of
+from playground.flight.record import Moment
+from playground.flight.scene import Scene
+from playground.gpu.textures import read_picture
+from playground.sketch.model import Sketch
+
+if TYPE_CHECKING:
+    import moderngl
+
+RADIUS = 5.0  # [parts] seen
+PARTS_A_STEP = 1  # of a flight without a window
+START_ABOVE = 450.0  # [m] over the ground
+CACHE_BYTES = 192 * 2**20  # of the engine, beside the flight's own textures
+
+Start = tuple[float, float, float, float]
+"""Metres east, north and up, degrees from north."""
+
+
+class Flight:
+    """Flies over a sketch. Use it with ``with``, or call ``release()``; the engine stays the caller's."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        sketch: Sketch,
+        *,
+        radius: float = RADIUS,
+        start: Start | None = None,
+        samples: int | None = None,
+    ) -> None:
+        self.engine = engine
+        self.sketch = sketch
+        self.plot: Plot = plot_of(sketch, engine)
+        self.parts = Parts(engine, self.plot, radius)
+        wanted = sketch.samples if samples is None else samples
+        self.scene = Scene(engine.ctx, self.plot, max(min(wanted, engine.info.max_samples), 1))
+        self.craft = self._placed(start)
+        self._first, self._first_hour = self.craft, self.parts.hour
+        self._look()
+        self._take_daylight()
+
+    def __enter__(self) -> Flight:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def release(self) -> None:
+        """Give every texture of the flight's own back."""
+        self.parts.release()
+        self.scene.release()
+
+    # ── where one is ─────────────────────────────────────────────────────────
+
+    @property
+    def hour(self) -> float:
+        """Time of day [hours]."""
+        return self.parts.hour
+
+    @property
+    def above_ground(self) -> float:
+        """Metres over the ground, or over the sea where that is higher."""
+        return self.craft.up - max(self.parts.ground_at(self.craft.east, self.craft.north), self._sea)
+
+    @property
+    def above_sea(self) -> float:
+        """Metres over the zero of elevations."""
+        return self.craft.up + self.plot.base
+
+    @property
+    def _sea(self) -> float:
+        """The sea's height over height 0; far below where there is none."""
+        return self.plot.view.sea_level - self.plot.base if self.plot.view.sea else -math.inf
+
+    def floor(self, east: float, north: float) -> float:
+        """Return the height that the craft may not go below [m above height 0], clearance aside."""
+        return max(self.parts.ground_at(east, north), self._sea)
+
+    # ── what happens ─────────────────────────────────────────────────────────
+
+    def step(self, moment: Moment | Controls = LEVEL, parts: int = PARTS_A_STEP) -> None:
+        """Fly a sixtieth of a second, and make at most so many parts beside those under the craft."""
+        if isinstance(moment, Controls):
+            moment = Moment(moment)
+        if moment.reset:
+            self.craft = replace(self._first, steps=self.craft.steps)
+            self.set_hour(self._first_hour)
+        if moment.hour is not None:
+            self.set_hour(moment.hour)
+        self.craft = stepped(self.craft, moment.controls, self.floor)
+        self._look()
+        self.parts.tend(parts)
+
+    def set_hour(self, hour: float) -> None:
+        """Set the time of day; the light of the parts follows as they are tended."""
+        if self.plot.hour and hour % 24.0 != self.parts.hour:
+            self.parts.hour = hour % 24.0
+            self._take_daylight()
+
+    def make_all(self) -> int:
+        """Make every part that is wanted here; return how many."""
+        return self.parts.tend(self.parts.limit)
+
+    def draw(self, size: tuple[int, int], *, bare: bool = False) -> moderngl.Texture:
+        """Draw what is seen and return its texture, rgba8; it lives until the next."""
+        craft = self.craft
+        lens = through(craft, size, (self.parts.radius + 1.5) * self.plot.width)
+        eye = (craft.east, craft.north, craft.up)
+        bound = self.engine.ctx.fbo
+        try:
+            return self.scene.draw(self.parts, eye, lens, size, bare=bare)
+        finally:
+            if bound is not None:
+                bound.use()
+
+    def picture(self, size: tuple[int, int]) -> Frame:
+        """Return what is seen as a picture that saves itself."""
+        return Frame(read_picture(self.draw(size)), self.sketch.name, self.craft.seconds)
+
+    def _look(self) -> None:
+        self.parts.look(self.craft.east, self.craft.north, self.craft.heading)
+
+    def _placed(self, start: Start | None) -> Craft:
+        if start is None:
+            middle = self.plot.width / 2
+            up = self.floor(middle, middle) + START_ABOVE
+            return Craft(middle, middle, up)
+        up = max(start[2], self.floor(start[0], start[1]) + CLEARANCE)
+        return Craft(start[0], start[1], up, math.radians(start[3]) % math.tau)
+
+    def _take_daylight(self) -> None:
+        if self.plot.has_daylight:
+            sketch = self.plot.at((0, 0), self.parts.hour)
+            self.scene.take_daylight(self.engine.texture(sketch, "daylight"))

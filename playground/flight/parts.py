@@ -1,0 +1,263 @@
+"""Keep the parts of the land that lie around the eye: make what is near, drop what is far.
+
+A part is made by the engine, which runs the sketch for it: height, colour and light of the
+part and its apron. The part itself is cut out into a slot's textures, which are the
+flight's own: heights at its nodes, and its ground, colour times light. There are as many
+slots as may ever be wanted, and no more, so memory is bounded however long one flies.
+
+The order is: what is not there yet, nearest first, what is in view before the rest; then
+what is there, but lit at another time of day. What makes a part does not know the way there,
+so a part that comes again has the same bits.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.flight.cutter import Cutter
+from playground.flight.plot import FARTHEST, PartName, Plot
+from playground.gpu.textures import bytes_of, make_texture, read_texture
+
+if TYPE_CHECKING:
+    import moderngl
+
+BEHIND = 1.6
+"""How many times as far a part seems that is out of view, when it is chosen what to make."""
+_SPARE = 12  # slots more than are ever wanted at once: one may turn back without making much anew
+_GRAIN = 4  # the eye's place is taken to this share of a part when parts are chosen
+_TURNS = 32  # and its heading to this share of a circle
+
+
+@dataclass(eq=False)
+class Slot:
+    """Textures that hold one part."""
+
+    heights: moderngl.Texture  # r32f, a texel a node, 0..1 times relief
+    ground: moderngl.Texture  # rgba16f with mipmaps, colour times light
+    nodes: NDArray[np.float32]  # the heights again, for the processor: row 0 south
+    hour: float = 0.0
+    lowest: float = 0.0
+    highest: float = 0.0
+    used: int = 0  # when it was last wanted
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held, mipmaps and the processor's copy included."""
+        ground = bytes_of(self.ground.size, "rgba16f")
+        return bytes_of(self.heights.size, "r32f") + ground + ground // 3 + self.nodes.nbytes
+
+    def release(self) -> None:
+        """Give the textures back to the driver."""
+        self.heights.release()
+        self.ground.release()
+
+
+class Parts:
+    """The parts around the eye, on one engine."""
+
+    def __init__(self, engine: Engine, plot: Plot, radius: float) -> None:
+        self.engine = engine
+        self.plot = plot
+        self.radius = radius  # in parts: all whose middle is as near as that are wanted
+        self.hour = plot.first_hour()
+        self.made = 0  # parts made so far, those lit anew included
+        self.slots: dict[PartName, Slot] = {}
+        self._cutter = Cutter(engine.ctx, plot)
+        self._near = _around(radius)
+        self.limit = len(self._near) + _SPARE
+        self._spare: list[Slot] = []
+        self._all: list[Slot] = []  # those being filled included
+        self._clock = 0
+        self._chosen: tuple[int, int, int] | None = None
+        self._wanted: list[PartName] = []
+        self._open: tuple[PartName, Generator[None, None, None]] | None = None  # the part being made
+
+    # ── what is there ────────────────────────────────────────────────────────
+
+    def __len__(self) -> int:
+        return len(self.slots)
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of all slots."""
+        return sum(slot.bytes for slot in self._all)
+
+    @property
+    def wanted(self) -> tuple[PartName, ...]:
+        """The parts around the eye, the most wanted first."""
+        return tuple(self._wanted)
+
+    @property
+    def missing(self) -> int:
+        """How many of the wanted parts are not there, or are lit at another time of day."""
+        return sum(1 for _ in self._lacking())
+
+    def part_at(self, east: float, north: float) -> PartName:
+        """Return the part under a place [m]."""
+        width = self.plot.width
+        return math.floor(east / width), math.floor(north / width)
+
+    def ground_at(self, east: float, north: float) -> float:
+        """Return the highest of the four nodes around a place [m above height 0]; makes the part if need be.
+
+        It stands over the ground between them, however that is drawn.
+        """
+        part = self.part_at(east, north)
+        slot = self.slots.get(part) or self.make(part)
+        n, spacing = self.plot.intervals, self.plot.spacing
+        x = min(max(int((east - part[0] * self.plot.width) / spacing), 0), n - 1)
+        y = min(max(int((north - part[1] * self.plot.width) / spacing), 0), n - 1)
+        return float(slot.nodes[y : y + 2, x : x + 2].max()) * self.plot.relief
+
+    # ── what is to come ──────────────────────────────────────────────────────
+
+    def look(self, east: float, north: float, heading: float) -> None:
+        """Say where the eye is [m] and which way it goes [radians from north]; drops nothing yet."""
+        width = self.plot.width
+        turn = round(heading / math.tau * _TURNS) % _TURNS
+        now = (round(east / width * _GRAIN), round(north / width * _GRAIN), turn)
+        if now == self._chosen:
+            return
+        self._chosen = now
+        self._clock += 1
+        x, y = now[0] / _GRAIN, now[1] / _GRAIN
+        middle = math.floor(x), math.floor(y)
+        ahead = math.sin(turn / _TURNS * math.tau), math.cos(turn / _TURNS * math.tau)
+        offsets = self._near + middle
+        away = offsets + 0.5 - (x, y)
+        far = np.hypot(away[:, 0], away[:, 1])
+        # Within a right angle of straight ahead; around the eye itself, nothing is behind.
+        seen = (away @ ahead > 0.7 * far) | (far < 1.0)
+        order = np.lexsort((offsets[:, 0], offsets[:, 1], np.where(seen, far, BEHIND * far)))
+        kept = order[far[order] <= self.radius]
+        self._wanted = [(int(i), int(j)) for i, j in offsets[kept]]
+        for part in self._wanted:
+            if part in self.slots:
+                self.slots[part].used = self._clock
+
+    def tend(self, parts: int) -> int:
+        """Make at most so many parts; return how many were made."""
+        made = 0
+        while made < parts and (part := self._next()) is not None:
+            self.make(part)
+            made += 1
+        return made
+
+    def tend_for(self, seconds: float) -> int:
+        """Go on making parts for so long, a stage at least; return how many stages were done.
+
+        A part is made in stages, so that a picture need not wait for a whole one.
+        """
+        end, stages = time.perf_counter() + seconds, 0
+        while stages == 0 or time.perf_counter() < end:
+            if self._open is None:
+                part = self._next()
+                if part is None:
+                    break
+                self._open = part, self._stages(part)
+            if next(self._open[1], self) is self:
+                self._open = None
+            elif not self.engine.info.software:
+                self.engine.ctx.finish()  # the time is the graphics card's
+            stages += 1
+        return stages
+
+    def make(self, part: PartName) -> Slot:
+        """Make a part now, or light it anew, and return it."""
+        for _ in self._stages(part):
+            pass
+        return self.slots[part]
+
+    def _stages(self, part: PartName) -> Generator[None, None, None]:
+        """Make a part: each turn runs one pass for it, the last puts it in its place.
+
+        It is made in a slot that is not shown, so that an old light stays until the new one is whole.
+        """
+        hour = self.hour
+        sketch = self.plot.at((_held(part[0]), _held(part[1])), hour)
+        slot = self._take_slot(part)
+        self._cutter.heights(slot.heights, self.engine.texture(sketch, "height"))
+        yield
+        for index, name in enumerate(self.plot.shares):
+            self._cutter.ground(slot.ground, name, self.engine.texture(sketch, name), first=index == 0)
+            yield
+        if not self.plot.shares:
+            self._cutter.bare(slot.ground)
+        slot.ground.build_mipmaps()
+        slot.nodes = read_texture(slot.heights)
+        slot.lowest, slot.highest = float(slot.nodes.min()), float(slot.nodes.max())
+        slot.hour, slot.used = hour, self._clock
+        before = self.slots.pop(part, None)
+        if before is not None:
+            self._spare.append(before)
+        self.slots[part] = slot
+        self.made += 1
+
+    def _next(self) -> PartName | None:
+        return next(self._lacking(), None)
+
+    def _lacking(self) -> Iterator[PartName]:
+        """Yield the wanted parts that are not there, then those lit at another time of day."""
+        yield from (part for part in self._wanted if part not in self.slots)
+        if self.plot.hour:
+            yield from (p for p in self._wanted if p in self.slots and self.slots[p].hour != self.hour)
+
+    def _take_slot(self, part: PartName) -> Slot:
+        """Return a slot to fill: a spare one, a new one, or that of a part not wanted for longest."""
+        if self._spare:
+            return self._spare.pop()
+        if len(self._all) < self.limit:
+            return self._new_slot()
+
+        def worth(name: PartName) -> tuple[int, int, PartName]:
+            away = (name[0] - part[0]) ** 2 + (name[1] - part[1]) ** 2
+            return self.slots[name].used, -away, name
+
+        return self.slots.pop(min(self.slots, key=worth))
+
+    def _new_slot(self) -> Slot:
+        ctx, n = self.engine.ctx, self.plot.intervals + 1
+        heights = make_texture(ctx, (n, n), "r32f")
+        heights.filter = (ctx.LINEAR, ctx.LINEAR)
+        ground = make_texture(ctx, (self.plot.ground, self.plot.ground), "rgba16f")
+        ground.filter = (ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR)
+        ground.anisotropy = 1.0 if self.engine.info.software else 8.0
+        for texture in (heights, ground):
+            texture.repeat_x = texture.repeat_y = False
+        self._all.append(Slot(heights, ground, np.zeros((n, n), np.float32)))
+        return self._all[-1]
+
+    def release(self) -> None:
+        """Give every texture back to the driver."""
+        if self._open is not None:
+            self._open[1].close()
+        for slot in self._all:
+            slot.release()
+        self._all.clear()
+        self.slots.clear()
+        self._spare.clear()
+        self._cutter.release()
+
+
+def _around(radius: float) -> NDArray[np.int64]:
+    """Return the parts that may be wanted from anywhere in part (0, 0)."""
+    reach = math.ceil(radius) + 1
+    steps = np.arange(-reach, reach + 1)
+    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    # How far the middle of a part is from the nearest place in part (0, 0).
+    far = np.maximum(np.abs(grid) - 0.5, 0.0)
+    found: NDArray[np.int64] = grid[np.hypot(far[:, 0], far[:, 1]) <= radius]
+    return found
+
+
+def _held(number: int) -> int:
+    """Return a part's number where its nodes still fit a whole number of 32 bits: the land ends there."""
+    return min(max(number, -FARTHEST), FARTHEST)

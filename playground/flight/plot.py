@@ -1,0 +1,185 @@
+"""Read from a sketch how its land is cut into parts, or say in a sentence why it cannot be flown over.
+
+A flight asks of a sketch no more than this: a pass ``height`` whose technique has a parameter
+``part`` (whole, two numbers: which part is made), on land as wide as it is long. If it has
+``apron`` as well, so many texels on each side belong to the neighbours, and are cut off once
+the light is there. Every other pass with a parameter ``part`` is told it too. The passes
+``colour``, ``light`` and ``daylight`` are used where they are there, and so are the colours
+of the view. A parameter ``daylight.hour`` makes the time of day the pilot's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from playground.engine.engine import Engine
+from playground.errors import ParameterError, PlaygroundError, SketchError
+from playground.sketch.assign import resolve, value_of, values_of
+from playground.sketch.model import Sketch, Value
+
+PartName = tuple[int, int]
+"""Which part of the land, counted east and north."""
+
+_HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
+_PART, _APRON, _HOUR = "part", "apron", "hour"
+_FINEST = 1024  # intervals of a part, and texels of its ground
+FARTHEST = 2**20
+"""Parts east or north of the first beyond which a node's number no longer fits 32 bits."""
+
+
+@dataclass(frozen=True)
+class View:
+    """The view's colours and its sea: what a sketch does not say is as ``view/terrain`` has it."""
+
+    zenith: tuple[float, float, float] = (0.105, 0.245, 0.56)
+    horizon: tuple[float, float, float] = (0.60, 0.70, 0.80)
+    exposure: float = 0.0  # [stops]
+    tone: int = 0
+    white: float = 3.0
+    sea: bool = False
+    sea_level: float = 0.0  # [m] above the zero of elevations
+    water: tuple[float, float, float] = (0.015, 0.075, 0.11)
+    clarity: float = 12.0  # [m]
+    sky: int = 0  # 1: that of the daylight
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A sketch's land, cut into parts."""
+
+    sketch: Sketch
+    told: tuple[str, ...]  # paths of the parameters that say which part
+    intervals: int  # of a part, from node to node
+    apron: int  # [texels of the height] around it
+    spacing: float  # [m] from node to node
+    relief: float  # [m] from height 0 to 1
+    base: float  # [m] above the zero of elevations at height 0
+    ground: int  # [texels] a side of a part's lit ground
+    shares: dict[str, tuple[float, float]] = field(
+        hash=False
+    )  # pass → first texel, and texels a ground texel
+    view: View = View()
+    hour: str = ""  # path of the time of day; empty: the sketch has none
+    has_daylight: bool = False
+
+    @property
+    def width(self) -> float:
+        """Metres along a part's side."""
+        return self.intervals * self.spacing
+
+    def at(self, part: PartName, hour: float | None = None) -> Sketch:
+        """Return the sketch of one part, at a time of day."""
+        values: dict[str, object] = {path: part for path in self.told}
+        if hour is not None and self.hour:
+            values[self.hour] = hour
+        return self.sketch.with_values(values)
+
+    def first_hour(self) -> float:
+        """Return the time of day that the sketch says, in hours; 12 where it says none."""
+        if not self.hour:
+            return 12.0
+        found = value_of(self.sketch, self.hour, values_of(self.sketch))
+        return float(found) if isinstance(found, int | float) else 12.0
+
+
+def plot_of(sketch: Sketch, engine: Engine) -> Plot:
+    """Return how a sketch's land is cut into parts; raise ``SketchError`` where it cannot be flown over."""
+    names = [spec.name for spec in sketch.graph.passes]
+    if _HEIGHT not in names:
+        raise _refused(sketch, f"it has no pass named '{_HEIGHT}'")
+    leaves = values_of(sketch)
+    part = _value(sketch, f"{_HEIGHT}.{_PART}", leaves)
+    if not (isinstance(part, tuple) and len(part) == 2 and all(isinstance(n, int) for n in part)):
+        raise _refused(
+            sketch,
+            f"the technique of its pass '{_HEIGHT}' has no parameter '{_PART}' of two whole numbers, "
+            "which part of the land to make",
+        )
+    apron = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
+    apron = apron if isinstance(apron, int) else 0
+    plan = engine.plan_for(sketch, (1, 1))
+    extent, relief = plan.land.extent, plan.land.relief
+    assert extent is not None and relief is not None
+    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
+    side = sizes[_HEIGHT][0]
+    if sizes[_HEIGHT] != (side, side) or abs(extent[0] - extent[1]) > 1e-6 * extent[0]:
+        raise _refused(
+            sketch,
+            f"its land is {side} x {sizes[_HEIGHT][1]} texels on {extent[0]:g} x {extent[1]:g} m, "
+            "and parts are as wide as they are long",
+        )
+    intervals = side - 1 - 2 * apron
+    if not 2 <= intervals <= _FINEST:
+        raise _refused(
+            sketch,
+            f"{side} texels less an apron of {apron} on each side leave a part of {intervals} intervals; "
+            f"2 to {_FINEST} were expected",
+        )
+    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
+    finest = max(lit.values(), default=1)
+    shares = {name: (float(apron * times), times / finest) for name, times in lit.items()}
+    told = tuple(f"{name}.{_PART}" for name in names if _value(sketch, f"{name}.{_PART}", leaves) is not None)
+    hour = f"{_DAYLIGHT}.{_HOUR}"
+    return Plot(
+        sketch=sketch,
+        told=told,
+        intervals=intervals,
+        apron=apron,
+        spacing=extent[0] / (side - 1),
+        relief=relief,
+        base=plan.land.base_elevation or 0.0,
+        ground=intervals * finest + 1,
+        shares=shares,
+        view=_view(sketch, leaves),
+        hour=hour if _value(sketch, hour, leaves) is not None else "",
+        has_daylight=_DAYLIGHT in names,
+    )
+
+
+def _refused(sketch: Sketch, why: str) -> SketchError:
+    return SketchError(
+        f"sketch {sketch.name} cannot be flown over: {why}; the sketch 'flight' shows what it takes",
+        file=sketch.file,
+    )
+
+
+def _value(sketch: Sketch, path: str, leaves: dict[str, Value]) -> Value | None:
+    try:
+        resolve(sketch.graph, path)
+    except ParameterError:
+        return None
+    return value_of(sketch, path, leaves)
+
+
+def _size(sketch: Sketch, engine: Engine, name: str) -> tuple[int, int]:
+    plan = engine.plan_for(sketch, (1, 1), wanted=name)
+    try:
+        step = plan.step(plan.flat.ref(name, sketch.name).path)
+    except PlaygroundError as error:
+        raise _refused(sketch, str(error)) from None
+    if step is None:
+        raise _refused(sketch, f"its pass '{name}' gives no texture")
+    return step.size
+
+
+def _finer(sketch: Sketch, name: str, size: tuple[int, int], side: int, apron: int) -> int:
+    """Return how many texels of a pass lie on an interval of the height: a whole number, so that cuts fit."""
+    times, rest = divmod(size[0] - 1, side - 1)
+    if size[0] != size[1] or rest or times < 1:
+        raise _refused(
+            sketch,
+            f"its pass '{name}' has {size[0]} x {size[1]} texels where the height has {side}; "
+            f"a whole number of texels for each interval was expected, as {side} or {2 * side - 1}",
+        )
+    if apron * times * 2 + 2 > size[0] or (side - 1 - 2 * apron) * times > _FINEST:
+        raise _refused(sketch, f"its pass '{name}' is finer than {_FINEST} texels along a part")
+    return times
+
+
+def _view(sketch: Sketch, leaves: dict[str, Value]) -> View:
+    found: dict[str, Value] = {}
+    for name in View.__dataclass_fields__:
+        value = _value(sketch, f"view.{name}", leaves)
+        if value is not None:
+            found[name] = value
+    return replace(View(), **found)  # type: ignore[arg-type]

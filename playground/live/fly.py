@@ -1,0 +1,279 @@
+"""A window to fly in: hands in, steps of a sixtieth of a second, parts for some milliseconds, a picture.
+
+All parts in sight are made before the first step. From then on each picture leaves a little
+time to make parts; what is not there yet is far away, in the haze.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import imgui
+
+# isort: split
+import glfw
+
+from playground.engine.engine import Engine
+from playground.flight.craft import STEP, Controls
+from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
+from playground.flight.record import Header, Moment, Record, Recorder
+from playground.gpu.context import context_info, prefer_software
+from playground.live.hands import Keys, by_gamepad, by_keys, by_mouse, together
+from playground.live.instruments import Instruments
+from playground.live.picture import Painter
+from playground.live.status import VARIABLE
+from playground.live.window import Window
+from playground.sketch.model import Sketch
+
+MAKING = 0.005  # [s] of each picture for parts
+OPENING = 0.05  # [s] between pictures before the first step
+MOST_STEPS = 6  # of one picture: on a slower machine time goes slower, and the hands keep up
+HOURS = 0.5  # that a key moves the time of day
+_IDLE = 0.1  # [s] between turns while it is paused
+_WRITES = 0.05  # [s] between lines of the status
+
+_K = imgui.Key
+_HOLDS: tuple[tuple[str, tuple[imgui.Key, ...]], ...] = (
+    ("up", (_K.s, _K.down_arrow)),
+    ("down", (_K.w, _K.up_arrow)),
+    ("left", (_K.a, _K.left_arrow)),
+    ("right", (_K.d, _K.right_arrow)),
+    ("yaw_left", (_K.q,)),
+    ("yaw_right", (_K.e,)),
+    ("faster", (_K.left_shift, _K.right_shift, _K.page_up)),
+    ("slower", (_K.left_ctrl, _K.right_ctrl, _K.page_down)),
+)
+
+
+def run(
+    sketch: Sketch,
+    name: str,
+    *,
+    size: tuple[int, int],
+    record: str = "",
+    replay: Record | None = None,
+    radius: float | None = None,
+    software: bool = False,
+    driver: str = "auto",
+    time_limit: float | None = None,
+) -> int:
+    """Fly in a window until it is closed; return the exit status.
+
+    ``name`` is what a record calls the sketch. With a ``time_limit`` [s] the window closes
+    itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where the
+    sketch cannot be flown over, ``DataError`` where the record cannot be written.
+    """
+    if software:
+        prefer_software()
+    with ExitStack() as stack:
+        window = stack.enter_context(Window(f"{sketch.name} – flight", size))
+        engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
+        header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
+        # A processor draws four samples in four times the time of one.
+        samples = 1 if context_info(window.ctx).software else sketch.samples
+        flight = stack.enter_context(
+            Flight(engine, sketch, radius=header.radius, start=header.start, samples=samples)
+        )
+        recorder = None
+        if record:
+            values = {path: _plain(value) for path, value in sketch.overrides}
+            recorder = stack.enter_context(
+                Recorder(Path(record).expanduser(), replace(header, values=values))
+            )
+        live = Fly(window, flight, recorder, iter(replay) if replay else None)
+        stack.callback(live.painter.release)
+        try:
+            live.run(time_limit)
+        except KeyboardInterrupt:
+            return 130
+    return 0
+
+
+def _plain(value: object) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+class Fly:
+    """The window and the flight, turn by turn."""
+
+    def __init__(
+        self, window: Window, flight: Flight, recorder: Recorder | None, replay: Iterator[Moment] | None
+    ) -> None:
+        self.window = window
+        self.flight = flight
+        self.recorder = recorder
+        self.replay = replay
+        self.painter = Painter(window.ctx)
+        self.instruments = Instruments(recording=recorder is not None, replaying=replay is not None)
+        self.paused = False
+        self.draws = 0
+        self._ready = False
+        self._owed = 0.0  # [s] that have passed and were not flown yet
+        self._last = time.perf_counter()
+        self._hour: float | None = None  # asked for, with the next step
+        self._reset = False
+        self._buttons: tuple[int, ...] = ()
+        self._status = Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
+        self._written = 0.0
+
+    def run(self, time_limit: float | None = None) -> None:
+        """Go on until the window is closed, or so many seconds have passed."""
+        end = math.inf if time_limit is None else time.perf_counter() + time_limit
+        while self.window.open and time.perf_counter() < end:
+            resting = self._ready and self.paused and not self.flight.parts.missing
+            self.window.wait(_IDLE if resting else 0.0)
+            if self.window.pixels == (0, 0):
+                self.window.wait(_IDLE)
+                self._last = time.perf_counter()
+                continue
+            self._turn()
+
+    def _turn(self) -> None:
+        window, flight = self.window, self.flight
+        window.begin()
+        self._take_keys()
+        now = time.perf_counter()
+        passed, self._last = now - self._last, now
+        if not self._ready:
+            flight.parts.tend_for(OPENING)
+            self._ready = flight.parts.missing == 0
+        else:
+            if not self.paused:
+                self._fly(passed)
+            flight.parts.tend_for(MAKING)
+        size = window.pixels
+        picture = flight.draw(size) if self._ready else None
+        self.draws += 1
+        self.instruments.draw(flight, window.theme, ready=self._ready, paused=self.paused)
+        window.screen.use()
+        window.screen.viewport = (0, 0, *size)
+        window.ctx.clear(0.06, 0.065, 0.07, 1.0)
+        if picture is not None:
+            self.painter.paint(picture, window.screen, (0, 0, *size))
+        window.end()
+        self._write_status()
+
+    def _fly(self, passed: float) -> None:
+        """Fly as many steps as time has passed, or as many as a slow machine may."""
+        self._owed = min(self._owed + passed, MOST_STEPS * STEP)
+        hands = self._hands() if self.replay is None else Controls()
+        while self._owed >= STEP:
+            self._owed -= STEP
+            moment = Moment(hands, self._hour, self._reset)
+            if self.replay is not None:
+                found = next(self.replay, None)
+                if found is None:
+                    self.paused, self.instruments.ended = True, True
+                    return
+                moment = found
+            self._hour, self._reset = None, False
+            if self.recorder is not None:
+                self.recorder.add(moment)
+            self.flight.step(moment, 0)
+
+    # ── hands ────────────────────────────────────────────────────────────────
+
+    def _hands(self) -> Controls:
+        io = imgui.get_io()
+        down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
+        found = [by_keys(Keys(**down))]
+        if imgui.is_mouse_down(0) or io.mouse_wheel:
+            gone = imgui.get_mouse_drag_delta(0, 0.0)
+            # A notch of the wheel is one picture long: it counts for several steps.
+            found.append(by_mouse(gone.x, gone.y, 4 * io.mouse_wheel, imgui.get_main_viewport().size.y))
+        pad = self._gamepad()
+        if pad is not None:
+            found.append(by_gamepad(list(pad.axes)))
+        return together(*found)
+
+    def _gamepad(self) -> Any:
+        """Return the state of the first gamepad, None where there is none."""
+        for number in range(glfw.JOYSTICK_1, glfw.JOYSTICK_LAST + 1):
+            if glfw.joystick_is_gamepad(number):
+                return glfw.get_gamepad_state(number)
+        return None
+
+    def _take_keys(self) -> None:
+        """Do what was pressed since the last turn; each once."""
+        pressed = _pressed()
+        pad = self._gamepad()
+        if pad is not None:
+            held = tuple(int(b) for b in pad.buttons)
+            fresh = {n for n, b in enumerate(held) if b and not (self._buttons[n : n + 1] or (0,))[0]}
+            self._buttons = held
+            pressed |= {name for number, name in _PAD.items() if number in fresh}
+        if "quit" in pressed:
+            self.window.ask_to_close()
+        if "help" in pressed:
+            self.instruments.help = not self.instruments.help
+        if "pause" in pressed:
+            self.paused = not self.paused
+        if self.replay is not None:
+            return
+        if "reset" in pressed:
+            self._reset, self.paused = True, False
+        for name, hours in (("earlier", -HOURS), ("later", HOURS)):
+            if name in pressed and self.flight.plot.hour:
+                asked = self.flight.hour if self._hour is None else self._hour
+                self._hour = (asked + hours) % 24.0
+                self.paused = False
+
+    def _write_status(self) -> None:
+        """Add a line for a test that follows, at most twenty a second."""
+        now = time.perf_counter()
+        if self._status is None or now - self._written < _WRITES:
+            return
+        self._written = now
+        craft = self.flight.craft
+        line = {
+            "draws": self.draws,
+            "ready": self._ready,
+            "paused": self.paused,
+            "help": self.instruments.help,
+            "hour": self.flight.hour,
+            "steps": craft.steps,
+            "up": craft.up,
+            "pitch": craft.pitch,
+            "roll": craft.roll,
+            "heading": craft.heading,
+            "throttle": craft.throttle,
+            "parts": len(self.flight.parts),
+            "missing": self.flight.parts.missing,
+        }
+        with self._status.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line) + "\n")
+
+
+_PRESSES: dict[imgui.Key, str] = {
+    _K.escape: "quit",
+    _K.f1: "help",
+    _K.p: "pause",
+    _K.space: "pause",
+    _K.r: "reset",
+    _K.left_bracket: "earlier",
+    _K.right_bracket: "later",
+    _K.comma: "earlier",
+    _K.period: "later",
+}
+# GLFW's standard mapping: bumpers, back, start.
+_PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
+
+
+def _pressed() -> set[str]:
+    found = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
+    if any(chr(c) == "?" for c in _typed()):
+        found.add("help")
+    return found
+
+
+def _typed() -> list[int]:
+    """Return the characters typed since the last turn: where ? stands depends on the keyboard."""
+    return [int(c) for c in imgui.get_io().input_queue_characters]

@@ -1,0 +1,78 @@
+"""Turn what hands do on keys, a mouse or a gamepad into the controls of a craft."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from playground.flight.craft import Controls
+
+REST = 0.14
+"""Of a gamepad's stick: nearer to its middle it is at rest."""
+FULL = 0.3
+"""Of the window's height: so far from where the button went down, the mouse is a full stick."""
+
+
+@dataclass(frozen=True)
+class Keys:
+    """Which of the keys that fly are down."""
+
+    up: bool = False  # nose up
+    down: bool = False
+    left: bool = False
+    right: bool = False
+    yaw_left: bool = False
+    yaw_right: bool = False
+    faster: bool = False
+    slower: bool = False
+
+
+def by_keys(keys: Keys) -> Controls:
+    """Return what keys ask for: all or nothing."""
+
+    def pair(more: bool, less: bool) -> int:
+        return 100 * (more - less)
+
+    return Controls(
+        pair(keys.faster, keys.slower),
+        pair(keys.up, keys.down),
+        pair(keys.right, keys.left),
+        pair(keys.yaw_right, keys.yaw_left),
+    )
+
+
+def by_mouse(across: float, down: float, wheel: float, height: float) -> Controls:
+    """Return what a mouse asks for that went so far [pixels] since its button went down; down is nose up."""
+    if height <= 0:
+        return Controls()
+    reach = FULL * height
+    roll, pitch = round(100 * across / reach), round(100 * down / reach)
+    return Controls(round(100 * wheel), pitch, roll, 0).within()
+
+
+def by_gamepad(axes: Sequence[float]) -> Controls:
+    """Return what a gamepad asks for.
+
+    ``axes`` as GLFW's standard mapping has them: left stick across and down, right stick
+    across and down, left and right trigger, all -1..1. The left stick back is nose up; the
+    right trigger is faster, the left one slower.
+    """
+    if len(axes) < 6:
+        return Controls()
+    across, down, turn = (_away(axes[n]) for n in (0, 1, 2))
+    faster, slower = ((1 + axes[n]) / 2 for n in (5, 4))
+    throttle = _away(faster - slower)
+    return Controls(*(round(100 * n) for n in (throttle, down, across, turn))).within()
+
+
+def together(*hands: Controls) -> Controls:
+    """Return what several ask for at once."""
+    sums = (sum(axis) for axis in zip(*(h.values for h in hands), strict=True))
+    return Controls(*sums).within()
+
+
+def _away(value: float) -> float:
+    """Return a stick's way past its rest, -1..1; fine near the middle."""
+    size = max(abs(value) - REST, 0.0) / (1 - REST)
+    return math.copysign(size * math.sqrt(min(size, 1.0)), value)

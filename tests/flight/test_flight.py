@@ -1,0 +1,224 @@
+"""A whole flight: what is recorded comes again, pictures have no holes, memory stays within its bound."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import DataError
+from playground.flight.craft import STEP, Controls
+from playground.flight.flight import Flight
+from playground.flight.frames import count_frames, fly_again, write_frames
+from playground.flight.record import Header, Moment, Record, Recorder, read_record
+from playground.gpu.textures import read_picture
+from playground.images.files import read_png
+
+SIZE = (160, 90)
+
+
+def weave(seconds: float, start=None, hour=None) -> Record:
+    """Return a flight that weaves between the hills."""
+    rng = np.random.default_rng(11)
+    lines, steps = [], round(seconds / STEP)
+    while steps > 0:
+        count = min(int(rng.integers(5, 40)), steps)
+        hands = Controls(*(int(n) for n in rng.integers(-60, 61, 4)))
+        lines.append((count, Moment(hands, hour if len(lines) == 2 else None)))
+        steps -= count
+    return Record(Header("small", SIZE, {}, 2.0, start), tuple(lines))
+
+
+# ── records ──────────────────────────────────────────────────────────────────
+
+
+def test_what_is_recorded_is_read_again(tmp_path):
+    moments = [Moment(Controls(10, -20, 30, 0))] * 50 + [Moment(Controls(), hour=17.5)]
+    moments += [Moment(Controls())] * 9 + [Moment(Controls(100, 100, -100, 7), reset=True, hour=3.0)]
+    header = Header("flight", (320, 180), {"daylight.hour": 8.0}, 3.0, (1.5, -2.0, 900.0, 90.0))
+    with Recorder(tmp_path / "a.jsonl", header) as recorder:
+        for moment in moments:
+            recorder.add(moment)
+    record = read_record(tmp_path / "a.jsonl")
+    assert record.header == header and list(record) == moments and record.steps == 61
+    rows = (tmp_path / "a.jsonl").read_text().splitlines()
+    assert len(rows) == 7 and json.loads(rows[1]) == [50, 10, -20, 30, 0]
+
+
+GOOD = Header("flight").line()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is no flight: its first line"),
+        ("hello\n", "is no flight"),
+        ('{"a": 1}\n', "is no flight"),
+        (GOOD.replace('"version": 1', '"version": 9'), "of version 9; this playground reads version 1"),
+        (GOOD.replace(str(STEP), "0.1"), "steps of 0.1 s"),
+        (GOOD.replace("[640, 360]", "[640]"), "first line should have"),
+        (GOOD + "\n[1, 0, 0]\n", r":2: \[1, 0, 0\]: expected \[steps, throttle"),
+        (GOOD + "\n[1, 0, 0, 0, 0]\n[0, 0, 0, 0, 0]\n", ":3: .*1 to 86400 steps"),
+        (GOOD + "\n[1, 0, 0, 101, 0]\n", "from -100 to 100"),
+        (GOOD + "\n[1, 0, 0.5, 0, 0]\n", "in whole numbers"),
+        (GOOD + '\n{"hours": 3}\n', "expected"),
+        (GOOD + '\n{"hour": 1e999}\n', "expected"),
+        (GOOD + "\n[1, 0, 0,\n", "is no JSON"),
+        (GOOD + "\n[86400, 0, 0, 0, 0]" * 26, "longer than ten hours"),
+    ],
+)
+def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, said):
+    path = tmp_path / "bad.jsonl"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=said) as caught:
+        read_record(path)
+    assert str(caught.value).count("\n") == 0 and "bad.jsonl" in str(caught.value)
+
+
+def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
+    with pytest.raises(DataError, match="cannot be read"):
+        read_record(tmp_path / "none.jsonl")
+    (tmp_path / "png.jsonl").write_bytes(b"\x89PNG\xff\xfe")
+    with pytest.raises(DataError, match="is no text"):
+        read_record(tmp_path / "png.jsonl")
+    with pytest.raises(DataError, match="cannot be written"):
+        Recorder(tmp_path / "no" / "folder.jsonl", Header("flight"))
+
+
+# ── replay ───────────────────────────────────────────────────────────────────
+
+
+def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
+    ctx, land_of, tmp_path
+):
+    record, sketch = weave(4.0, hour=15.0), land_of(daylight=True)
+    seen = []
+    with Engine(ctx, cache_bytes=2 * 2**20) as warm:
+        for _ in range(2):  # the second time, parts are in the engine's memory
+            pictures = write_frames(warm, sketch, record, tmp_path / str(len(seen)), every=80)
+            seen.append([path.read_bytes() for path in pictures])
+    with Engine(ctx, cache_bytes=1) as cold:
+        rare = write_frames(cold, sketch, record, tmp_path / "rare", every=240)
+    assert seen[0] == seen[1] and len(seen[0]) == count_frames(record, 80) == 4
+    assert [path.name for path in rare] == ["frame-000000.png", "frame-000240.png"]
+    assert [path.read_bytes() for path in rare] == [seen[0][0], seen[0][3]]
+    picture, _ = read_png(rare[0])
+    assert picture.shape == (90, 160, 4) and len({p for p in seen[0]}) == 4
+
+
+def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, land_of, tmp_path):
+    """Live, parts come by time and not by number: the way flown does not know of it."""
+    sketch, record = land_of(), weave(6.0)
+    with (
+        Flight(small_engine, sketch, radius=2.0) as flight,
+        Recorder(tmp_path / "a.jsonl", Header("small", SIZE, {}, 2.0)) as recorder,
+    ):
+        for number, moment in enumerate(record):
+            recorder.add(moment)
+            flight.step(moment, 0)
+            if number % 7 == 0:
+                flight.parts.tend_for(0.0)
+        flown = flight.craft
+    ends = [f.craft for f in fly_again(small_engine, sketch, read_record(tmp_path / "a.jsonl"))]
+    assert len(ends) == 2 and ends[-1] == flown and flown.steps == 360
+
+
+def test_reset_goes_back_to_the_start(small_engine, land_of):
+    with Flight(small_engine, land_of(daylight=True), radius=1.0) as flight:
+        first = flight.craft
+        for _ in range(30):
+            flight.step(Moment(Controls(50, 50, 50, 50), hour=20.0), 0)
+        assert flight.hour == 20.0 and flight.craft.east != first.east
+        flight.step(Moment(Controls(), reset=True), 0)
+        assert flight.hour == 9.0 and flight.craft.steps == 31
+        assert math.hypot(flight.craft.east - first.east, flight.craft.north - first.north) < 3
+
+
+def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, land_of):
+    """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are kept."""
+    sketch = land_of(intervals=8, apron=2, spacing=300.0)
+    steps = 600 * 60
+    hands = [(steps // 3, Moment(Controls(100))), (steps // 3, Moment(Controls(100, 0, 4)))]
+    record = Record(Header("small", SIZE, {}, 1.0), (*hands, (steps // 3, Moment(Controls(100, 2)))))
+    flights = fly_again(small_engine, sketch, record)
+    flight = next(flights)
+    slots = flight.parts.limit
+    flight = next(flights)
+    assert flight.craft.steps == steps and flight.craft.seconds == pytest.approx(600.0)
+    assert flight.parts.made > 100 and len(flight.parts._all) <= slots < 30
+    assert flight.parts.bytes == len(flight.parts._all) * next(iter(flight.parts.slots.values())).bytes
+    assert small_engine.cache.bytes <= small_engine.cache.limit
+    assert small_engine.pool.bytes <= small_engine.pool.limit
+    assert small_engine.runs["height.detail"] <= 3
+    flights.close()
+
+
+# ── pictures ─────────────────────────────────────────────────────────────────
+
+
+@pytest.fixture
+def flight(small_engine, land_of):
+    with Flight(small_engine, land_of(), radius=3.0) as made:
+        made.make_all()
+        yield made
+
+
+def rows_below_horizon(flight, size):
+    """Return, for each pixel, how far the ray through it goes to height 0 [m]; inf above the horizon."""
+    from playground.flight.lens import through
+
+    lens = through(flight.craft, size, 50_000.0)
+    x, y = np.meshgrid(
+        (np.arange(size[0]) + 0.5) / size[0] * 2 - 1, 1 - (np.arange(size[1]) + 0.5) / size[1] * 2
+    )
+    away = np.stack([x, y, np.ones_like(x), np.ones_like(x)], -1) @ lens.near_from_clip.T.astype(float)
+    away = away[..., :3] / away[..., 3:]
+    away /= np.linalg.norm(away, axis=-1, keepdims=True)
+    down = np.where(away[..., 2] < -1e-6, away[..., 2], -1e-6)
+    return np.where(away[..., 2] < -1e-6, flight.craft.up / -down, np.inf) * np.hypot(
+        away[..., 0], away[..., 1]
+    )
+
+
+def test_there_is_no_hole_below_the_horizon_near_the_eye(flight):
+    """Drawn over magenta, at every attitude: none of it where a ray meets height 0 within the parts made."""
+    holes = looked = drawn = 0
+    for number, moment in enumerate(weave(20.0)):
+        flight.step(moment, 1)
+        if number % 60:
+            continue
+        picture = read_picture(flight.draw(SIZE, bare=True)).astype(int)
+        magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
+        near = rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width
+        holes += np.count_nonzero(magenta & near)
+        looked += np.count_nonzero(near)
+        drawn += flight.scene.drawn
+    assert holes == 0 and looked > 20_000 and drawn > 40
+
+
+def test_the_hole_finder_finds_a_hole(flight):
+    part = flight.parts.part_at(flight.craft.east, flight.craft.north)
+    ahead = (part[0], part[1] + 1)
+    flight.parts.slots.pop(ahead)
+    picture = read_picture(flight.draw(SIZE, bare=True)).astype(int)
+    magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
+    assert np.count_nonzero(magenta & (rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width)) > 50
+
+
+def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, land_of):
+    with Flight(small_engine, land_of(), radius=3.0) as flight:
+        assert len(flight.parts) <= 1
+        picture = read_picture(flight.draw(SIZE)).astype(int)
+        lowest = picture[60:, :, :3]
+        assert lowest.sum(axis=-1).min() > 60
+        assert not ((picture[..., 0] > 200) & (picture[..., 1] < 60)).any()
+
+
+def test_nearer_land_has_more_triangles_and_none_behind_is_drawn(flight):
+    flight.draw(SIZE)
+    whole = len(flight.parts.wanted) * 2 * flight.plot.intervals**2
+    assert 0 < flight.scene.triangles < whole / 2
+    assert 0 < flight.scene.drawn < 0.7 * len(flight.parts.wanted)
