@@ -190,7 +190,7 @@ def _open(
     from playground.live.fly import run
 
     # What a record names must be found again from another folder.
-    whole = str(find(name)) if Path(name).exists() else name
+    whole = str(find(name).absolute()) if Path(name).exists() else name
     status = run(
         found,
         whole,

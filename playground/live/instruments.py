@@ -13,8 +13,8 @@ _MARGIN = 14.0
 _WINDS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
 HELP: tuple[tuple[str, str], ...] = (
-    ("S or ↓,  W or ↑", "nose up, nose down"),
-    ("A or ←,  D or →", "bank left, bank right"),
+    ("S or Down,  W or Up", "nose up, nose down"),
+    ("A or Left,  D or Right", "bank left, bank right"),
     ("Q,  E", "turn left, turn right"),
     ("Shift,  Ctrl", "faster, slower (also Page Up, Page Down)"),
     ("mouse, left button held", "the stick; the wheel is the throttle"),

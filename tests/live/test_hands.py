@@ -1,0 +1,51 @@
+"""What keys, a mouse and a gamepad ask of a craft; no window is needed."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.flight.craft import Controls
+from playground.live.hands import FULL, REST, Keys, by_gamepad, by_keys, by_mouse, together
+from playground.live.instruments import HELP, clock
+
+
+def test_keys_ask_for_all_or_nothing_and_opposite_ones_for_nothing():
+    assert by_keys(Keys()) == Controls()
+    assert by_keys(Keys(up=True, right=True)) == Controls(0, 100, 100, 0)
+    assert by_keys(Keys(up=True, down=True, yaw_left=True, faster=True)) == Controls(100, 0, 0, -100)
+
+
+def test_the_mouse_is_a_stick_around_where_its_button_went_down():
+    assert by_mouse(0, 0, 0, 400) == Controls()
+    full = FULL * 400
+    assert by_mouse(full, full / 2, 0, 400) == Controls(0, 50, 100, 0)
+    assert by_mouse(-9 * full, 0, 1, 400) == Controls(100, 0, -100, 0)
+    assert by_mouse(10, 10, 0, 0) == Controls(), "a window without height"
+
+
+def test_a_gamepad_at_rest_asks_for_nothing_and_pushed_out_for_all():
+    rest = [REST, -REST / 2, 0.01, 0.0, -1.0, -1.0]
+    assert by_gamepad(rest) == Controls()
+    assert by_gamepad([1.0, 1.0, -1.0, 0.0, -1.0, 1.0]) == Controls(100, 100, 100, -100)
+    assert by_gamepad([-1.0, -1.0, 0.0, 0.0, 1.0, -1.0]) == Controls(-100, -100, -100, 0)
+    assert by_gamepad([]) == Controls()
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_gamepad_s_stick_is_even_and_rises(axis):
+    found = []
+    for way in (-1.0, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0):
+        axes = [0.0, 0.0, 0.0, 0.0, -1.0, -1.0]
+        axes[axis] = way
+        found.append(sum(by_gamepad(axes).values))
+    assert found == sorted(found) and found == [-n for n in found[::-1]]
+
+
+def test_several_hands_add_up_and_stay_within_bounds():
+    assert together(Controls(0, 60, 0, 0), Controls(0, 60, -30, 0)) == Controls(0, 100, -30, 0)
+    assert together(Controls()) == Controls()
+
+
+def test_the_clock_and_the_help():
+    assert [clock(h) for h in (0.0, 9.5, 23.999)] == ["00:00", "09:30", "00:00"]
+    assert all(key.isascii() and meaning.isascii() for key, meaning in HELP), "the font has no arrows"
