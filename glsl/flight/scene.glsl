@@ -1,6 +1,6 @@
 // flight/scene.glsl -- what is seen from the air: sky, air in between, water over the ground, and the last curve.
 //
-//   gives    Backdrop, air_between, backdrop_towards, air_share, under_water, close_ground, presented
+//   gives    Backdrop, eased, air_between, backdrop_towards, air_share, under_water, close_ground, presented
 //   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, colour/tone.glsl, colour/encode.glsl
 //   units    directions are unit vectors, x east, y north, z up; metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
@@ -23,9 +23,15 @@ struct Backdrop {
     vec3 horizon;
 };
 
+// Around the sun the sky is ten times as bright as elsewhere, and would wash out all land below
+// it. An eye gets used to it, a picture does not: the brightest parts are brought down to 4.
+vec3 eased(vec3 light) {
+    return light / (1.0 + dot(light, vec3(0.2126, 0.7152, 0.0722)) / 4.0);
+}
+
 // What air far away adds on the way there.
 vec3 air_between(sampler2D daylight, Backdrop sky, vec3 towards) {
-    return sky.natural && is_daylight(daylight) ? air_towards(daylight, towards) : sky.horizon;
+    return sky.natural && is_daylight(daylight) ? eased(air_towards(daylight, towards)) : sky.horizon;
 }
 
 // The sky, with the sun in it where there is daylight; below the horizon, the air there. A
@@ -39,7 +45,8 @@ vec3 backdrop_towards(sampler2D daylight, Backdrop sky, vec3 towards, float pixe
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     float disc = clamp((radians(0.2665) - distance(towards, from.direction)) / pixel + 0.5, 0.0, 1.0);
     float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
-    return mix(seen, max(from.sun * min(46750.0, 60.0 / max(lit, 1e-9)), seen), towards.z < 0.0 ? 0.0 : disc);
+    vec3 sun = max(from.sun * min(46750.0, 60.0 / max(lit, 1e-9)), seen);
+    return mix(eased(seen), sun, towards.z < 0.0 ? 0.0 : disc);
 }
 
 // How much of what lies so far away the air hides; all of it from `end` on.

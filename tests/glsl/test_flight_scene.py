@@ -26,6 +26,14 @@ def test_under_water_the_ground_goes_and_at_a_flat_angle_the_air_is_mirrored(on_
     np.testing.assert_allclose(flat, np.tile([0, 0, 1], (4, 1)), atol=1e-6)
 
 
+def test_the_brightest_sky_is_brought_down_and_keeps_its_order_and_its_hue(on_gpu):
+    light = np.geomspace(1e-3, 1e3, 60)
+    found = on_gpu(FILE, "eased(vec3(l, 0.5 * l, 2.0 * l))", l=light)
+    assert (np.diff(found[:, 0]) > 0).all() and (found[light < 0.01, 0] > 0.99 * light[light < 0.01]).all()
+    np.testing.assert_allclose(found / found[:, :1], np.tile([1, 0.5, 2], (60, 1)), rtol=1e-5)
+    assert (found @ [0.2126, 0.7152, 0.0722]).max() < 4.0
+
+
 def test_grain_around_a_half_changes_nothing(on_gpu):
     half = (np.array([0.5]),) * 4
     coarse = np.stack(half, -1)
