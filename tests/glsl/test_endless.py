@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.sketch.load import load
 
 WHOLE = 2**32
 PASSES = """
@@ -236,3 +237,19 @@ def test_the_ground_follows_height_and_slope(any_engine, part_of):
     assert snow[height < 750].max() == 0 and snow[(height > 1250) & (slope < 30)].min() > 0.9
     assert rock[(slope > 50) & (height < 700)].mean() > 0.9
     assert wood[height > 720].max() == 0
+
+
+# ── figure 5.15 ──────────────────────────────────────────────────────────────
+
+
+def test_the_principle_s_picture_lights_the_middle_part_alone(any_engine):
+    """Grey all around, coloured in the middle third; the same heights under both."""
+    picture = any_engine.read(load("flight_principle"), "diagram")[..., :3]
+    spread = picture.max(axis=-1) - picture.min(axis=-1)
+    right = spread[38:338, 306:606]
+    parts = right.reshape(3, 100, 3, 100)[:, 8:92, :, 8:92].mean(axis=(1, 3))
+    middle = parts[1, 1]
+    parts[1, 1] = 0.0
+    assert middle > 0.05 and parts.max() < 0.02
+    marked = (picture[..., 0] > 3 * picture[..., 2]) & (picture[..., 0] > 0.5)
+    assert marked[138, 410:500].mean() > 0.9 and marked[38, 310:600].mean() > 0.9
