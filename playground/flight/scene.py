@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 LEVEL_AT = (0.35, 1.2, 2.6)
 """Parts away from the eye from which each next level is drawn."""
+SKIRT = 2.0
+"""How far a part's skirt hangs down, over a triangle's side: so much or less is cut from an edge."""
 GRAIN = 700.0
 """[m] that the grain of the ground near by repeats after, about."""
 AIRS = 64  # directions that the air's colour is worked out for
@@ -186,7 +188,7 @@ class Scene:
         heights.use(0)
         ground.use(1)
         _set(self._land, corner=(float(corner[0]), float(corner[1]), -eye_up), flat_land=slot is None)
-        _set(self._land, skirt=2.0 * self.plot.spacing * step)
+        _set(self._land, skirt=SKIRT * self.plot.spacing * step)
         array.render(self.ctx.TRIANGLES)
         self.drawn += 1
         self.triangles += count

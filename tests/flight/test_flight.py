@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -206,6 +207,27 @@ def test_the_hole_finder_finds_a_hole(flight):
     picture = read_picture(flight.draw(SIZE, bare=True)).astype(int)
     magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
     assert np.count_nonzero(magenta & (rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width)) > 50
+
+
+@pytest.mark.parametrize("skirt", [None, 0.0])
+def test_no_crack_shows_between_levels_and_without_skirts_some_would(
+    small_engine, land_of, monkeypatch, skirt
+):
+    """Rough land, seen from low over many borders of two levels; heights 0 to 900 m over 60 m of spacing."""
+    if skirt is not None:
+        monkeypatch.setattr("playground.flight.scene.SKIRT", skirt)
+    rough = {"height.rough": 1.0, "height.valleys": 1.0, "height.gain": 0.9}
+    cracks = 0
+    with Flight(small_engine, land_of(**rough), radius=3.0) as flight:
+        flight.make_all()
+        for turn in range(6):
+            flight.craft = replace(
+                flight.craft, up=700.0 + 150 * (turn % 3), heading=turn * 1.05, pitch=-0.25
+            )
+            picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
+            magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
+            cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))
+    assert cracks == 0 if skirt is None else cracks > 10
 
 
 def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, land_of):
