@@ -192,6 +192,20 @@ def test_light_of_a_part_is_that_of_one_large_land_where_shadows_fit_the_apron(a
     assert (small >= large - 2e-3).all(), "they are missed, and none is made up"
 
 
+@pytest.mark.parametrize("elevation", [25.0, 9.0, 4.0])
+def test_with_a_reach_of_the_apron_light_is_the_same_from_any_part_however_low_the_sun(
+    any_engine, part_of, elevation
+):
+    """Every texel then sees as far, whichever part it is lit with: no border shows."""
+    given = {"light.sun": (120.0, elevation), "light.reach": 24}
+    small = inside(any_engine.read(part_of((2, 5), 64, 24, **given), "light"), 24)
+    large = inside(any_engine.read(part_of((2, 5), 64, 152, **given), "light"), 152)
+    assert 0.02 < (large[..., 3] < 0.99).mean(), "there are shadows"
+    np.testing.assert_allclose(small, large, atol=3e-3)
+    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.reach": 0}), "light")
+    assert (inside(endless, 152) <= large + 3e-3).all(), "a reach only takes shadows away"
+
+
 def test_heights_stay_within_0_and_1_and_use_most_of_it(any_engine, part_of):
     land = any_engine.read(part_of((1, 0), 512, 0, **{"height.hills": 128}), "height")
     assert 0.0 <= land.min() < 0.12 and 0.6 < land.max() <= 1.0

@@ -32,6 +32,7 @@ uniform float delta_r = 0.01;            //! slider(0, 2) step(0.001) group("Con
 uniform int growth = 0;                  //! menu("per unit of path", "per step") group("Cone") What delta_r is counted by; the thesis counts steps, however long they are
 uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
+uniform int reach = 0;                   //! slider(0, 4096) group("March") unit("texels") Land farther than this throws no shadow, and in the last quarter less of one; 0: all of it does
 uniform int reading = 0;                 //! menu("interpolated", "cut down") group("March") Heights between texels, or of the texel that a place is cut down to, as in the thesis
 
 // The free part of a cone of that radius, whose middle is so high over the land.
@@ -41,6 +42,9 @@ float free_part(float clearance, float radius) {
 
 // The free part of the cone over a walk of so many steps, at most `part`.
 float seen(Walk walk, int count, float part, float grows, bool on_lines) {
+    float whole_reach = float(reach) / stride;
+    float last_counted = reach > 0 ? 0.75 * whole_reach : 1e9;
+    float fades = reach > 0 ? 4.0 / whole_reach : 0.0;
     int k = 1;
     while (k <= count) {
         int to;
@@ -48,7 +52,10 @@ float seen(Walk walk, int count, float part, float grows, bool on_lines) {
         for (; k < to; k++) {
             float t = float(k);
             float land = height_at_step(height, walk, k, reading, on_lines) * relief;
-            part = min(part, free_part(walk.foot + t * walk.climb - land, t * grows));
+            // For a part of a larger land: what its texture does not hold must not count for some texels only.
+            float left_out = clamp((t - last_counted) * fades, 0.0, 1.0);
+            float open = free_part(walk.foot + t * walk.climb - land, t * grows);
+            part = min(part, open + (1.0 - open) * left_out);
             if (part == 0.0) return 0.0;
         }
     }
@@ -66,6 +73,7 @@ float kernel(ivec2 texel) {
     float grows = delta_r * walk.path / (growth == 1 ? stride : 1.0);
     // With a delta_r over the sun's own climb the cone's lower side goes down, and the walk to the land's edge.
     int count = steps_below(walk, walk.climb - grows, texelFetch(range, ivec2(0), 0).g * relief);
+    if (reach > 0) count = min(count, int(float(reach) / stride));
     // Under the zenith the cone stands over the texel itself, which only a very wide one notices.
     float whole = length(light.xy) < 1e-6 ? free_part(light.z, delta_r) : 1.0;
     // Two loops, of which one has no steps: software renderers take both ways of an if inside one.
