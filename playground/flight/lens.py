@@ -47,7 +47,8 @@ def through(craft: Craft, size: tuple[int, int], farthest: float) -> Lens:
     rows.append(matrix[3] + matrix[2])
     pixel = math.radians(FIELD_OF_VIEW) / size[1]
     inverse = np.linalg.inv(matrix)
-    return Lens(matrix.astype(np.float32), inverse.astype(np.float32), np.array(rows), pixel)
+    with np.errstate(under="ignore"):  # a right angle's cosine is 0, or nearly
+        return Lens(matrix.astype(np.float32), inverse.astype(np.float32), np.array(rows), pixel)
 
 
 def axes(craft: Craft) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -1,0 +1,65 @@
+"""A flight gives all of it back: textures, programs, meshes and surfaces."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import moderngl
+import pytest
+
+from playground.engine.engine import Engine
+from playground.flight.craft import Controls
+from playground.flight.flight import Flight
+from playground.flight.record import Moment
+
+MADE = ("texture", "framebuffer", "renderbuffer", "depth_renderbuffer", "buffer", "vertex_array", "program")
+KINDS = (
+    moderngl.Texture,
+    moderngl.Framebuffer,
+    moderngl.Renderbuffer,
+    moderngl.Buffer,
+    moderngl.VertexArray,
+    moderngl.Program,
+)
+
+
+@pytest.fixture
+def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Count moderngl objects that are made and not yet released."""
+    count: Counter[str] = Counter()
+    for name in MADE:
+        real = getattr(moderngl.Context, name)
+
+        def made(self, *arguments, _real=real, **named):
+            found = _real(self, *arguments, **named)
+            count[type(found).__name__] += 1
+            return found
+
+        monkeypatch.setattr(moderngl.Context, name, made)
+    for kind in KINDS:
+        real = kind.release
+
+        def gone(self, _real=real, _kind=kind.__name__):
+            if not isinstance(getattr(self, "mglo", None), moderngl.InvalidObject):
+                count[_kind] -= 1
+            _real(self)
+
+        monkeypatch.setattr(kind, "release", gone)
+    return count
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_after_a_flight_nothing_of_it_is_left(ctx, land_of, alive, samples):
+    with Engine(ctx, cache_bytes=2**20) as engine:
+        engine.texture(land_of(daylight=True), "light")
+        with Flight(engine, land_of(daylight=True), radius=1.5, samples=samples) as flight:
+            before = dict(alive)
+            for number in range(40):
+                flight.step(
+                    Moment(Controls(100, 0, 40, 0), hour=8.0 + number / 4 if number % 9 == 0 else None)
+                )
+                if number % 10 == 0:
+                    flight.draw((64 + number, 36))
+            flight.parts.tend_for(0.0)  # a part is half made
+            assert sum(alive.values()) > sum(before.values())
+    assert {kind: number for kind, number in alive.items() if number} == {}
