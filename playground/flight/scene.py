@@ -32,6 +32,14 @@ AIRS = 64  # directions that the air's colour is worked out for
 MAGENTA = (1.0, 0.0, 1.0)
 
 
+def sight(radius: float) -> float:
+    """Return how far one sees [parts] where parts are wanted whose middle is as near as ``radius``.
+
+    From their middle to their farthest corner is 0.71 parts, and the eye's place is known to 0.18.
+    """
+    return max(radius - 0.89, 0.5)
+
+
 class Scene:
     """Draws on one context, into textures of its own."""
 
@@ -147,7 +155,7 @@ class Scene:
         self._set_sky(program, lens)
         view = plot.view
         _set(program, heights=0, ground=1, spacing=plot.spacing, relief=plot.relief)
-        _set(program, width=plot.width, end=(parts.radius - 0.5) * plot.width, clear=bare)
+        _set(program, width=plot.width, end=sight(parts.radius) * plot.width, clear=bare)
         _set(program, sea=view.sea, sea_level=view.sea_level - plot.base, eye_up=eye[2])
         _set(program, air_table=4, towards_sun=self._towards_sun, grain=3)
         _set(program, grain_times=max(round(plot.width / GRAIN), 1))

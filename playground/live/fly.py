@@ -35,6 +35,7 @@ from playground.sketch.model import Sketch
 
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step
+DRAWN = 640 * 360  # [pixels] that a processor draws in time; a larger window shows them larger
 MOST_STEPS = 6  # of one picture: on a slower machine time goes slower, and the hands keep up
 HOURS = 0.5  # that a key moves the time of day
 _IDLE = 0.1  # [s] between turns while it is paused
@@ -150,7 +151,7 @@ class Fly:
                 self._fly(passed)
             flight.parts.tend_for(MAKING)
         size = window.pixels
-        picture = flight.draw(size) if self._ready else None
+        picture = flight.draw(self._drawn(size)) if self._ready else None
         self.draws += 1
         self.instruments.draw(flight, window.theme, ready=self._ready, paused=self.paused)
         window.screen.use()
@@ -160,6 +161,13 @@ class Fly:
             self.painter.paint(picture, window.screen, (0, 0, *size))
         window.end()
         self._write_status()
+
+    def _drawn(self, size: tuple[int, int]) -> tuple[int, int]:
+        """Return how large the picture is drawn that fills a window of that size [pixels]."""
+        if not self.flight.engine.info.software:
+            return size
+        share = min(math.sqrt(DRAWN / (size[0] * size[1])), 1.0)
+        return max(round(size[0] * share), 1), max(round(size[1] * share), 1)
 
     def _fly(self, passed: float) -> None:
         """Fly as many steps as time has passed, or as many as a slow machine may."""

@@ -15,6 +15,7 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import Flight
 from playground.flight.frames import count_frames, fly_again, write_frames
 from playground.flight.record import Header, Moment, Record, Recorder, read_record
+from playground.flight.scene import sight
 from playground.gpu.textures import read_picture
 from playground.images.files import read_png
 
@@ -237,6 +238,25 @@ def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, land_of
         lowest = picture[60:, :, :3]
         assert lowest.sum(axis=-1).min() > 60
         assert not ((picture[..., 0] > 200) & (picture[..., 1] < 60)).any()
+
+
+def test_where_the_land_ends_nothing_is_seen_of_it(flight):
+    """Parts wholly beyond what one sees may shine as they like; any part nearer would be noticed."""
+    flight.craft = replace(flight.craft, up=1100.0, pitch=-0.35, heading=0.4)
+    width, here = flight.plot.width, np.array([flight.craft.east, flight.craft.north])
+    whole = read_picture(flight.draw(SIZE)).astype(int)
+    nearest = {
+        part: np.hypot(*np.maximum(np.abs((np.array(part) + 0.5) * width - here) - width / 2, 0))
+        for part in flight.parts.slots
+    }
+    beyond = [p for p, away in nearest.items() if away >= 0.98 * sight(flight.parts.radius) * width]
+    changes = []
+    for shining in (beyond, [p for p, away in nearest.items() if 0 < away < 1.5 * width]):
+        for part in shining:
+            flight.parts.slots[part].ground.write(np.full((17, 17, 4), 9.0, np.float16).tobytes())
+            flight.parts.slots[part].ground.build_mipmaps()
+        changes.append(np.abs(read_picture(flight.draw(SIZE)).astype(int) - whole).max())
+    assert len(beyond) >= 4 and changes[0] <= 1 and changes[1] > 50
 
 
 def test_nearer_land_has_more_triangles_and_none_behind_is_drawn(flight):
