@@ -15,8 +15,8 @@ from playground.commands.arguments import (
     Renderer,
     SetOption,
     SizeOption,
-    SketchArgument,
     SoftwareOption,
+    complete_sketch,
     help_text,
     read_driver,
     read_pixels,
@@ -37,13 +37,21 @@ HELP = help_text(
     "playground fly flight --set daylight.hour=17.5",
     "playground fly --record evening.jsonl",
     "playground fly --replay evening.jsonl",
-    "playground fly --replay evening.jsonl --frames pictures --every 30 --size 1280x720",
+    "playground fly --replay evening.jsonl --frames pictures --every 30",
 )
 
 
 def fly(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: Annotated[
+        str,
+        typer.Argument(
+            help=f"A shipped sketch's name, or the path of a sketch. Without it, {DEFAULT_FLIGHT}.",
+            metavar="SKETCH",
+            show_default=False,
+            autocompletion=complete_sketch,
+        ),
+    ] = "",
     size: SizeOption = None,
     settings: SetOption = None,
     record: Annotated[

@@ -192,7 +192,8 @@ class Parts:
         if not self.plot.shares:
             self._cutter.bare(slot.ground)
         slot.ground.build_mipmaps()
-        slot.nodes = read_texture(slot.heights)
+        # What is no number is drawn at height 0, and stood on there.
+        slot.nodes = np.nan_to_num(read_texture(slot.heights), nan=0.0, posinf=0.0, neginf=0.0)
         slot.lowest, slot.highest = float(slot.nodes.min()), float(slot.nodes.max())
         slot.hour, slot.used = hour, self._clock
         before = self.slots.pop(part, None)

@@ -84,6 +84,7 @@ uniform sampler2D air_table;
 uniform vec2 towards_sun;
 void main() {
     float up = texelFetch(heights, flat_land ? ivec2(0) : ivec2(node.xy), 0).r * relief;
+    if (isnan(up) || isinf(up)) up = 0.0;
     depth = sea ? sea_level - up : -1.0;
     float surface = sea ? max(up, sea_level) : up;
     away = corner + vec3(node.xy * spacing, surface - node.z * skirt);

@@ -18,6 +18,7 @@ from playground.flight.record import Header, Moment, Record, Recorder, read_reco
 from playground.flight.scene import sight
 from playground.gpu.textures import read_picture
 from playground.images.files import read_png
+from playground.sketch.load import load
 
 SIZE = (160, 90)
 
@@ -264,3 +265,30 @@ def test_nearer_land_has_more_triangles_and_none_behind_is_drawn(flight):
     whole = len(flight.parts.wanted) * 2 * flight.plot.intervals**2
     assert 0 < flight.scene.triangles < whole / 2
     assert 0 < flight.scene.drawn < 0.7 * len(flight.parts.wanted)
+
+
+OWN = """// mine.glsl -- waves without end, and a hole where nothing is a number.
+#include "terrain/parts.glsl"
+#pragma kernel(output = "height:r32f")
+uniform ivec2 part = ivec2(0);  //! Which part of the land
+float kernel(ivec2 texel) {
+    ivec2 node = node_of(texel, part, 0, size);
+    if (node == ivec2(21, 40)) return uintBitsToFloat(0x7fc00000u);
+    return 0.5 + 0.4 * sin(float(node.x) * 0.31) * cos(float(node.y) * 0.23);
+}
+"""
+
+
+def test_one_s_own_land_can_be_flown_over_and_a_hole_in_it_brings_nobody_down(small_engine, tmp_path):
+    (tmp_path / "mine.glsl").write_text(OWN, encoding="utf-8")
+    text = (
+        'format = 1\nsize = 17\nextent = 640.0\nrelief = 200.0\n[[pass]]\nname = "height"\nuse = "./mine"\n'
+    )
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    with Flight(small_engine, load(tmp_path / "own.toml"), radius=2.0, start=(840.0, 1450, 0, 0)) as flight:
+        flight.make_all()
+        assert np.isnan(small_engine.read(flight.plot.at((1, 2)), "height")[8, 5])
+        for _ in range(120):
+            flight.step(Controls(0, -100, 0, 0))
+            assert flight.craft.up > flight.floor(flight.craft.east, flight.craft.north) >= 0.0
+        assert flight.craft.north > 1660 and read_picture(flight.draw(SIZE))[..., :3].std() > 5
