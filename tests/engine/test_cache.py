@@ -13,7 +13,7 @@ def held(engine: Engine) -> int:
 def test_bytes_are_those_of_what_is_kept(ctx):
     sketch = load("jacksboro").with_values({"size": 65})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:
-        for hour in range(6):
+        for hour in range(3):
             moved = sketch.with_values({"light.sun": (100.0 + hour, 20.0)})
             engine.render(moved, size=(160, 90))  # mipmaps are made after a texture is put away
             assert engine.cache.bytes == held(engine)

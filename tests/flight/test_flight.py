@@ -23,7 +23,7 @@ from playground.sketch.load import load
 SIZE = (160, 90)
 
 
-def weave(seconds: float, start=None, hour=None) -> Record:
+def weave(seconds: float, hour: float | None = None, radius: float = 2.0) -> Record:
     """Return a flight that weaves between the hills."""
     rng = np.random.default_rng(11)
     lines, steps = [], round(seconds / STEP)
@@ -32,7 +32,7 @@ def weave(seconds: float, start=None, hour=None) -> Record:
         hands = Controls(*(int(n) for n in rng.integers(-60, 61, 4)))
         lines.append((count, Moment(hands, hour if len(lines) == 2 else None)))
         steps -= count
-    return Record(Header("small", SIZE, {}, 2.0, start), tuple(lines))
+    return Record(Header("small", SIZE, {}, radius), tuple(lines))
 
 
 # ── records ──────────────────────────────────────────────────────────────────
@@ -97,7 +97,7 @@ def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
 def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
     ctx, land_of, tmp_path
 ):
-    record, sketch = weave(4.0, hour=15.0), land_of(daylight=True)
+    record, sketch = weave(4.0, 15.0, 1.2), land_of(daylight=True)
     seen = []
     with Engine(ctx, cache_bytes=2 * 2**20) as warm:
         for _ in range(2):  # the second time, parts are in the engine's memory
