@@ -188,7 +188,8 @@ def _open(
     found = load(name)
     if known:
         found = found.with_values(known.header.values)
-    found = found.with_values(with_whole_paths(found, values))
+    values = with_whole_paths(found, values)
+    found = found.with_values(values)
     if record and not Path(record).expanduser().parent.is_dir():
         raise DataError(f"there is no folder '{Path(record).parent}' to write into", file=record)
     if not where_to_show(os.environ, sys.platform):
@@ -202,6 +203,7 @@ def _open(
     status = run(
         found,
         whole,
+        values=values,
         size=size or (known.header.size if known else DEFAULT_PICTURE),
         record=record,
         replay=known,

@@ -10,7 +10,7 @@ import json
 import math
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -26,7 +26,7 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
-from playground.live.hands import Keys, by_gamepad, by_keys, by_mouse, together
+from playground.live.hands import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
 from playground.live.picture import Painter
 from playground.live.status import VARIABLE
@@ -59,6 +59,7 @@ def run(
     name: str,
     *,
     size: tuple[int, int],
+    values: Mapping[str, object] | None = None,
     record: str = "",
     replay: Record | None = None,
     radius: float | None = None,
@@ -68,9 +69,10 @@ def run(
 ) -> int:
     """Fly in a window until it is closed; return the exit status.
 
-    ``name`` is what a record calls the sketch. With a ``time_limit`` [s] the window closes
-    itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where the
-    sketch cannot be flown over, ``DataError`` where the record cannot be written.
+    ``name`` is what a record calls the sketch, ``values`` what was set of it. With a
+    ``time_limit`` [s] the window closes itself. Raises ``ContextError`` where no window can be
+    opened, ``SketchError`` where the sketch cannot be flown over, ``DataError`` where the
+    record cannot be written.
     """
     if software:
         prefer_software()
@@ -85,9 +87,8 @@ def run(
         )
         recorder = None
         if record:
-            values = {path: _plain(value) for path, value in sketch.overrides}
             recorder = stack.enter_context(
-                Recorder(Path(record).expanduser(), replace(header, values=values))
+                Recorder(Path(record).expanduser(), replace(header, values=dict(values or {})))
             )
         live = Fly(window, flight, recorder, iter(replay) if replay else None)
         stack.callback(live.painter.release)
@@ -96,10 +97,6 @@ def run(
         except KeyboardInterrupt:
             return 130
     return 0
-
-
-def _plain(value: object) -> Any:
-    return list(value) if isinstance(value, tuple) else value
 
 
 class Fly:
@@ -122,6 +119,7 @@ class Fly:
         self._hour: float | None = None  # asked for, with the next step
         self._reset = False
         self._buttons: tuple[int, ...] = ()
+        self._wheel = Wheel()
         self._status = Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
         self._written = 0.0
 
@@ -175,7 +173,7 @@ class Fly:
         hands = self._hands() if self.replay is None else Controls()
         while self._owed >= STEP:
             self._owed -= STEP
-            moment = Moment(hands, self._hour, self._reset)
+            moment = Moment(together(hands, self._wheel.next()), self._hour, self._reset)
             if self.replay is not None:
                 found = next(self.replay, None)
                 if found is None:
@@ -190,13 +188,12 @@ class Fly:
     # ── hands ────────────────────────────────────────────────────────────────
 
     def _hands(self) -> Controls:
-        io = imgui.get_io()
+        self._wheel.turn(imgui.get_io().mouse_wheel)
         down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
         found = [by_keys(Keys(**down))]
-        if imgui.is_mouse_down(0) or io.mouse_wheel:
+        if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
-            # A notch of the wheel is one picture long: it counts for several steps.
-            found.append(by_mouse(gone.x, gone.y, 4 * io.mouse_wheel, imgui.get_main_viewport().size.y))
+            found.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
         pad = self._gamepad()
         if pad is not None:
             found.append(by_gamepad(list(pad.axes)))

@@ -10,6 +10,8 @@ from playground.flight.craft import Controls
 
 REST = 0.14
 """Of a gamepad's stick: nearer to its middle it is at rest."""
+NOTCH = 10
+"""Steps of full throttle that a notch of the wheel is: six hundredths of all there is."""
 FULL = 0.3
 """Of the window's height: so far from where the button went down, the mouse is a full stick."""
 
@@ -42,13 +44,34 @@ def by_keys(keys: Keys) -> Controls:
     )
 
 
-def by_mouse(across: float, down: float, wheel: float, height: float) -> Controls:
+def by_mouse(across: float, down: float, height: float) -> Controls:
     """Return what a mouse asks for that went so far [pixels] since its button went down; down is nose up."""
     if height <= 0:
         return Controls()
     reach = FULL * height
-    roll, pitch = round(100 * across / reach), round(100 * down / reach)
-    return Controls(round(100 * wheel), pitch, roll, 0).within()
+    return Controls(0, round(100 * down / reach), round(100 * across / reach), 0).within()
+
+
+class Wheel:
+    """The mouse's wheel as a throttle: a notch is held for some steps, for it takes no time itself."""
+
+    def __init__(self) -> None:
+        self._owed = 0.0  # steps, with the sign of their way
+
+    def turn(self, notches: float) -> None:
+        """Take in so many notches; one the other way ends what is left."""
+        if notches * self._owed < 0:
+            self._owed = 0.0
+        self._owed += notches * NOTCH
+
+    def next(self) -> Controls:
+        """Return what the next step is to do."""
+        if abs(self._owed) < 1:
+            self._owed = 0.0
+            return Controls()
+        way = 1 if self._owed > 0 else -1
+        self._owed -= way
+        return Controls(throttle=100 * way)
 
 
 def by_gamepad(axes: Sequence[float]) -> Controls:

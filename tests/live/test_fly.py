@@ -143,7 +143,7 @@ def open_app(tmp_path: Path) -> Iterator[Callable[..., App]]:
 
 
 def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], tmp_path: Path) -> None:
-    app = open_app("sketch.toml", "--record", "a.jsonl", "--radius", "1.5")
+    app = open_app("sketch.toml", "--record", "a.jsonl", "--radius", "1.5", "--set", "relief=800")
     first = app.wait(lambda now: now["ready"] and now["steps"] > 0)
     assert first["missing"] == 0 and first["parts"] >= 9
 
@@ -158,6 +158,9 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     app.wait(lambda now: now["roll"] < -0.2)
     app.do("mouseup", 1)
 
+    level = app.now()["throttle"]
+    app.do("click", 5)
+    app.wait(lambda now: now["throttle"] < level - 0.04)
     app.do("key", "bracketright")
     app.wait(lambda now: now["hour"] == 10.5 and now["missing"] == 0)
     app.do("key", "p")
@@ -187,6 +190,7 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     assert {m.hour for m in flown} >= {10.5} and sum(m.reset for m in flown) == 1
     assert Controls(roll=100) in {m.controls for m in flown}
     assert Path(record.header.sketch) == tmp_path / "sketch.toml" and record.header.radius == 1.5
+    assert record.header.values == {"relief": "800"}
 
 
 def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., App], tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from playground.flight.craft import Controls
-from playground.live.hands import FULL, REST, Keys, by_gamepad, by_keys, by_mouse, together
+from playground.live.hands import FULL, NOTCH, REST, Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import HELP, clock
 
 
@@ -16,11 +16,21 @@ def test_keys_ask_for_all_or_nothing_and_opposite_ones_for_nothing():
 
 
 def test_the_mouse_is_a_stick_around_where_its_button_went_down():
-    assert by_mouse(0, 0, 0, 400) == Controls()
+    assert by_mouse(0, 0, 400) == Controls()
     full = FULL * 400
-    assert by_mouse(full, full / 2, 0, 400) == Controls(0, 50, 100, 0)
-    assert by_mouse(-9 * full, 0, 1, 400) == Controls(100, 0, -100, 0)
-    assert by_mouse(10, 10, 0, 0) == Controls(), "a window without height"
+    assert by_mouse(full, full / 2, 400) == Controls(0, 50, 100, 0)
+    assert by_mouse(-9 * full, 0, 400) == Controls(0, 0, -100, 0)
+    assert by_mouse(10, 10, 0) == Controls(), "a window without height"
+
+
+def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_it():
+    wheel = Wheel()
+    wheel.turn(1.0)
+    found = [wheel.next().throttle for _ in range(NOTCH + 2)]
+    assert found == [100] * NOTCH + [0, 0]
+    wheel.turn(3.0)
+    wheel.turn(-1.0)
+    assert [wheel.next().throttle for _ in range(NOTCH + 1)] == [-100] * NOTCH + [0]
 
 
 def test_a_gamepad_at_rest_asks_for_nothing_and_pushed_out_for_all():
