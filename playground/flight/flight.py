@@ -128,7 +128,7 @@ class Flight:
         try:
             return self.scene.draw(self.parts, eye, lens, size, bare=bare)
         finally:
-            if bound is not None:
+            if bound is not None and _is_alive(bound):
                 bound.use()
 
     def picture(self, size: tuple[int, int]) -> Frame:
@@ -150,3 +150,9 @@ class Flight:
         if self.plot.has_daylight:
             sketch = self.plot.at((0, 0), self.parts.hour)
             self.scene.take_daylight(self.engine.texture(sketch, "daylight"))
+
+
+def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:
+    import moderngl
+
+    return not isinstance(framebuffer.mglo, moderngl.InvalidObject)

@@ -46,6 +46,7 @@ class Slot:
     hour: float = 0.0
     lowest: float = 0.0
     highest: float = 0.0
+    mean: tuple[float, ...] = (0.1, 0.1, 0.1, 1.0)  # of its ground
     used: int = 0  # when it was last wanted
 
     @property
@@ -192,6 +193,8 @@ class Parts:
         if not self.plot.shares:
             self._cutter.bare(slot.ground)
         slot.ground.build_mipmaps()
+        last = slot.ground.read(level=self.plot.ground.bit_length() - 1, alignment=1)
+        slot.mean = tuple(float(n) for n in np.frombuffer(last, np.float16))
         # What is no number is drawn at height 0, and stood on there.
         slot.nodes = np.nan_to_num(read_texture(slot.heights), nan=0.0, posinf=0.0, neginf=0.0)
         slot.lowest, slot.highest = float(slot.nodes.min()), float(slot.nodes.max())

@@ -75,7 +75,9 @@ class Scene:
         self._surface: Surface | None = None
 
     def take_daylight(self, texture: moderngl.Texture) -> None:
-        """Keep a copy of what ``daylight`` gives; it is small."""
+        """Keep a copy of what ``daylight`` gives; it is small. Something else of that name is left alone."""
+        if texture.components != 4 or texture.dtype not in ("f2", "f4") or texture.width < 2:
+            return
         self._form = np.float16 if texture.dtype == "f2" else np.float32
         self._daylight.release()
         form = "rgba16f" if texture.dtype == "f2" else "rgba32f"
@@ -162,10 +164,12 @@ class Scene:
         _set(program, water=view.water, clarity=view.clarity)
         names = sorted(parts.wanted)
         found = [parts.slots.get(name) for name in names]
-        mean = [s for s in found if s is not None]
-        low_up = min((s.lowest for s in mean), default=0.3) * plot.relief
-        middle = float(np.mean([s.nodes[0, 0] for s in mean])) if mean else 0.3
-        self._flat.write(np.array([middle], np.float32).tobytes())
+        there = [s for s in found if s is not None]
+        low_up = min((s.lowest for s in there), default=0.3) * plot.relief
+        middle = float(np.mean([s.nodes[0, 0] for s in there])) if there else 0.3
+        if there and len(there) < len(found):
+            self._flat.write(np.array([middle], np.float32).tobytes())
+            self._mean.write(np.mean([s.mean for s in there], axis=0).astype(np.float16).tobytes())
         corner = np.array(names, np.float64).reshape(-1, 2) * plot.width - eye[:2]
         below = np.array([s.lowest * plot.relief if s else low_up for s in found])
         above = np.array([s.highest * plot.relief if s else middle * plot.relief for s in found])

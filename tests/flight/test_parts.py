@@ -49,6 +49,7 @@ def test_a_part_is_cut_out_of_what_the_sketch_makes(parts):
     np.testing.assert_array_equal(found, height)
     np.testing.assert_array_equal(slot.nodes, height)
     np.testing.assert_allclose(ground[..., :3], lit, rtol=2e-3, atol=1e-4)
+    np.testing.assert_allclose(slot.mean[:3], lit.mean(axis=(0, 1)), rtol=0.15)
 
 
 def test_colour_finer_than_the_height_is_cut_where_it_stands(small_engine, land_of, tmp_path):
