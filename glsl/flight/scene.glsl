@@ -18,7 +18,7 @@
 #include "lighting/daylight_sky.glsl"
 
 struct Backdrop {
-    bool natural;   // the sky of lighting/daylight, or the two colours
+    bool natural;   // the sky of lighting/daylight, which then there must be, or the two colours
     vec3 zenith;
     vec3 horizon;
 };
@@ -31,13 +31,13 @@ vec3 eased(vec3 light) {
 
 // What air far away adds on the way there.
 vec3 air_between(sampler2D daylight, Backdrop sky, vec3 towards) {
-    return sky.natural && is_daylight(daylight) ? eased(air_towards(daylight, towards)) : sky.horizon;
+    return sky.natural ? eased(air_towards(daylight, towards)) : sky.horizon;
 }
 
 // The sky, with the sun in it where there is daylight; below the horizon, the air there. A
 // pixel is so many radians high.
 vec3 backdrop_towards(sampler2D daylight, Backdrop sky, vec3 towards, float pixel) {
-    if (!sky.natural || !is_daylight(daylight)) {
+    if (!sky.natural) {
         return mix(sky.horizon, sky.zenith, 1.0 - exp(-3.0 * max(towards.z, 0.0)));
     }
     // A little above the horizon is what the air is taken from: there they meet.

@@ -74,6 +74,11 @@ class Scene:
         self._take_air()
         self._surface: Surface | None = None
 
+    @property
+    def _natural(self) -> bool:
+        """Whether sky and air are those of a daylight: the view asks for it, and there is one."""
+        return self.plot.view.sky == 1 and self._daylight.width > 1
+
     def take_daylight(self, texture: moderngl.Texture) -> None:
         """Keep a copy of what ``daylight`` gives; it is small. Something else of that name is left alone."""
         if texture.components != 4 or texture.dtype not in ("f2", "f4") or texture.width < 2:
@@ -96,7 +101,7 @@ class Scene:
         self.ctx.clear_samplers(0, 3)
         self._daylight.use(2)
         view = self.plot.view
-        _set(self._airs, daylight=2, natural=view.sky == 1, zenith=view.zenith, horizon=view.horizon)
+        _set(self._airs, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
         self._arrays[self._airs.glo].render(self.ctx.TRIANGLES, vertices=3)
 
     def draw(
@@ -216,7 +221,7 @@ class Scene:
 
     def _set_sky(self, program: moderngl.Program, lens: Lens) -> None:
         view = self.plot.view
-        _set(program, daylight=2, natural=view.sky == 1, zenith=view.zenith, horizon=view.horizon)
+        _set(program, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
         _set(program, pixel=lens.pixel, clip_from_near=lens.clip_from_near.T.ravel().tolist())
         _set(program, near_from_clip=lens.near_from_clip.T.ravel().tolist())
 

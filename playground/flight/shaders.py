@@ -119,7 +119,7 @@ void main() {
     vec2 times = share * grain_times;
     shown *= close_ground(texture(grain, times), texture(grain, times * 5.0));
     if (depth > 0.0) {
-        vec3 lit = water * (natural && is_daylight(daylight) ? level_light(daylight) : vec3(1.0));
+        vec3 lit = water * (natural ? level_light(daylight) : vec3(1.0));
         shown = under_water(shown, depth, -away / far, lit, clarity, air);
     }
     if (!clear) shown = mix(shown, air, air_share(length(away.xy), end));
