@@ -91,7 +91,8 @@ class App:
         self.process = subprocess.Popen(command, env=self.environment, cwd=folder, stderr=self.said)
 
     def now(self) -> dict[str, Any]:
-        lines = self.status.read_text("utf-8").splitlines() if self.status.exists() else []
+        text = self.status.read_text("utf-8") if self.status.exists() else ""
+        lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
         return json.loads(lines[-1]) if lines else {"ready": False, "steps": 0}
 
     def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:

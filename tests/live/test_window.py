@@ -129,7 +129,8 @@ class App:
         self.wait(lambda now: now["draws"] > 0)
 
     def now(self) -> dict[str, Any]:
-        lines = self.status.read_text(encoding="utf-8").splitlines() if self.status.exists() else []
+        text = self.status.read_text(encoding="utf-8") if self.status.exists() else ""
+        lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
         return json.loads(lines[-1]) if lines else {"draws": 0, "error": "", "picture": ""}
 
     def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
