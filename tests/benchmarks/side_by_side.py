@@ -51,7 +51,7 @@ class Clock:
     """How runs are timed."""
 
     rounds: int
-    processor: bool  # processor time over processors, the least of the rounds; else the wall's, the median
+    processor: bool  # processor time over processors; else the wall's
 
     def times(self, comparison: Comparison) -> dict[str, float]:
         """Return the milliseconds of each; they take turns, after one unmeasured turn."""
@@ -67,13 +67,11 @@ class Clock:
                 shared = CORES if self.processor and name not in comparison.alone else 1
                 if turn:
                     found[name].append((end - start) * 1e3 / shared)
-        best = min if self.processor else statistics.median
-        return {name: best(times) for name, times in found.items()}
+        return {name: statistics.median(times) for name, times in found.items()}
 
     def __str__(self) -> str:
-        if self.processor:
-            return f"milliseconds of processor time over processors, least of {self.rounds}"
-        return f"milliseconds, medians of {self.rounds}"
+        over = " of processor time over processors" if self.processor else ""
+        return f"milliseconds{over}, medians of {self.rounds}"
 
 
 def run_all(
