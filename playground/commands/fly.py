@@ -84,7 +84,7 @@ def fly(
         str,
         typer.Option(
             "--radius",
-            help="How many parts one sees, 1 to 16; 5 unless told.",
+            help="How many parts one sees, 1.5 to 16; 5 unless told.",
             metavar="PARTS",
             show_default=False,
         ),
@@ -121,8 +121,10 @@ def read_radius(text: str) -> float | None:
         found = float(text)
     except ValueError:
         found = 0.0
-    if not 1 <= found <= 16:
-        raise ParameterError(f"--radius {text}: expected a number of parts, 1 to 16")
+    from playground.flight.record import FARTHEST, NEAREST
+
+    if not NEAREST <= found <= FARTHEST:
+        raise ParameterError(f"--radius {text}: expected a number of parts, {NEAREST:g} to {FARTHEST:g}")
     return found
 
 

@@ -64,7 +64,7 @@ class Cutter:
         self.ctx.blend_func = self.ctx.DEFAULT_BLENDING
 
     def bare(self, target: moderngl.Texture) -> None:
-        """Fill with white: the sketch has neither colour nor light."""
+        """Fill with grey: the sketch has neither colour nor light."""
         self._surface(target).clear(0.7, 0.7, 0.7, 1.0)
 
     def release(self) -> None:

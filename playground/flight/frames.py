@@ -28,6 +28,8 @@ def fly_again(
         yield flight
         for number, moment in enumerate(record, 1):
             flight.step(moment, PARTS_A_STEP)
+            if moment.hour is not None or moment.reset:
+                flight.make_all()  # no picture shows two times of day
             if (every and number % every == 0) or (not every and number == record.steps):
                 yield flight
 
@@ -49,6 +51,7 @@ def write_frames(
     if every < 1:
         raise ParameterError(f"every {every} steps: expected a whole number from 1")
     target = prepared(folder)
+    _refuse_others(target, {f"frame-{n * every:06d}.png" for n in range(count_frames(record, every))})
     written = []
     for flight in fly_again(engine, sketch, record, every=every):
         path = target / f"frame-{flight.craft.steps:06d}.png"
@@ -56,6 +59,15 @@ def write_frames(
         written.append(path)
         done()
     return written
+
+
+def _refuse_others(folder: Path, expected: set[str]) -> None:
+    """Raise ``DataError`` where pictures of another flight would stand among those of this one."""
+    others = sorted({path.name for path in folder.glob("frame-*.png")} - expected)
+    if others:
+        raise DataError(
+            f"holds {others[0]} of another flight; choose a folder without such pictures", file=str(folder)
+        )
 
 
 def count_frames(record: Record, every: int) -> int:

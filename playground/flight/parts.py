@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.errors import SketchError
 from playground.flight.cutter import Cutter
 from playground.flight.plot import FARTHEST, PartName, Plot
 from playground.gpu.textures import bytes_of, make_texture, read_texture
@@ -29,6 +30,8 @@ from playground.gpu.textures import bytes_of, make_texture, read_texture
 if TYPE_CHECKING:
     import moderngl
 
+MOST_BYTES = 2 * 2**30
+"""Of all parts kept at once."""
 BEHIND = 1.6
 """How many times as far a part seems that is out of view, when it is chosen what to make."""
 _SPARE = 12  # slots more than are ever wanted at once: one may turn back without making much anew
@@ -71,9 +74,10 @@ class Parts:
         self.hour = plot.first_hour()
         self.made = 0  # parts made so far, those lit anew included
         self.slots: dict[PartName, Slot] = {}
-        self._cutter = Cutter(engine.ctx, plot)
         self._near = _around(radius)
         self.limit = len(self._near) + _SPARE
+        _refuse_hunger(plot, radius, self.limit)
+        self._cutter = Cutter(engine.ctx, plot)
         self._spare: list[Slot] = []
         self._all: list[Slot] = []  # those being filled included
         self._clock = 0
@@ -249,6 +253,21 @@ class Parts:
         self.slots.clear()
         self._spare.clear()
         self._cutter.release()
+
+
+def _refuse_hunger(plot: Plot, radius: float, slots: int) -> None:
+    """Raise ``SketchError`` where the parts that one sees would take more than ``MOST_BYTES``."""
+    nodes, ground = (plot.intervals + 1) ** 2, plot.ground**2 * 8
+    each = 2 * 4 * nodes + ground + ground // 3
+    if each * slots <= MOST_BYTES:
+        return
+    fits = [r / 2 for r in range(3, 33) if each * (len(_around(r / 2)) + _SPARE) <= MOST_BYTES]
+    way = f"; --radius {fits[-1]:g} would fit" if fits else "; smaller parts would be less"
+    raise SketchError(
+        f"sketch {plot.sketch.name}: {slots} parts of {each / 2**20:.0f} MiB, as many as one sees within "
+        f"{radius:g}, are more than {MOST_BYTES / 2**30:g} GiB{way}",
+        file=plot.sketch.file,
+    )
 
 
 def _around(radius: float) -> NDArray[np.int64]:

@@ -21,7 +21,7 @@ PartName = tuple[int, int]
 """Which part of the land, counted east and north."""
 
 _HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
-_PART, _APRON, _HOUR = "part", "apron", "hour"
+_PART, _APRON, _HOUR, _REACH = "part", "apron", "hour", "reach"
 _FINEST = 1024  # intervals of a part, and texels of its ground
 FARTHEST = 2**20
 """Parts east or north of the first beyond which a node's number no longer fits 32 bits."""
@@ -97,6 +97,17 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
         )
     apron = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
     apron = apron if isinstance(apron, int) else 0
+    # What is made with another apron would not fit: one for all.
+    aprons = [f"{name}.{_APRON}" for name in names]
+    others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
+    sketch = sketch.with_values(dict.fromkeys(others, apron))
+    reach = _value(sketch, f"{_LIGHT}.{_REACH}", leaves)
+    if isinstance(reach, int | float) and reach > apron > 0:
+        raise _refused(
+            sketch,
+            f"shadows reach {reach:g} texels ({_LIGHT}.{_REACH}), and there are only {apron} beside a part "
+            f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_REACH}={apron}",
+        )
     plan = engine.plan_for(sketch, (1, 1))
     extent, relief = plan.land.extent, plan.land.relief
     assert extent is not None and relief is not None

@@ -2,11 +2,13 @@
 
 A line of controls is ``[steps, throttle, pitch, roll, yaw]``, in hundredths, for so many
 steps alike; ``{"hour": 17.5}`` sets the time of day before the next step, and
-``{"reset": true}`` goes back to the start. The file can be read while it is being written.
+``{"reset": true}`` goes back to the start. The file can be read while it is being written, and
+after a flight that ended in the middle of a line: that line is left out.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,8 +20,10 @@ from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 
 FORMAT, VERSION = "playground flight", 1
+NEAREST, FARTHEST = 1.5, 16.0  # [parts] seen: nearer, the end of the land would show
 LONGEST = 60 * 60 * 24  # [steps] of one line, and lines are so few that no file takes for ever
-_MOST_STEPS = 60 * 60 * 60 * 10
+SAVED_EVERY = 60  # [steps] alike after which they are written, lest a flight that ends badly be lost
+_MOST_STEPS = 60 * 60 * 60 * 100
 
 
 @dataclass(frozen=True)
@@ -58,17 +62,26 @@ class Moment:
 
 
 class Recorder:
-    """Writes a flight; steps alike become one line. Use it with ``with``, or call ``close()``."""
+    """Writes a flight; steps alike become one line. Use it with ``with``, or call ``close()``.
+
+    Raises ``DataError`` where there is a file already, or none can be written.
+    """
 
     def __init__(self, path: str | Path, header: Header) -> None:
-        self.path = Path(path)
+        self.path = Path(path).expanduser()
+        self._alike = (0, Controls())
         try:
+            if self.path.is_file() and self.path.stat().st_size > 0:
+                raise DataError("is there already; a flight is written to a new file", file=str(path))
             self._file: IO[str] = self.path.open("w", encoding="utf-8")
         except OSError as error:
-            raise DataError(f"cannot be written: {error.strerror}", file=str(path)) from None
-        self._file.write(header.line() + "\n")
-        self._file.flush()
-        self._alike = (0, Controls())
+            raise self._unwritten(error) from None
+        try:
+            self._write(header.line())
+        except DataError:
+            with contextlib.suppress(OSError):
+                self._file.close()
+            raise
 
     def __enter__(self) -> Recorder:
         return self
@@ -81,27 +94,39 @@ class Recorder:
     def add(self, moment: Moment) -> None:
         """Write down one step."""
         count, last = self._alike
-        if moment.hour is not None or moment.reset or moment.controls != last or count >= LONGEST:
+        if moment.hour is not None or moment.reset or moment.controls != last or count >= SAVED_EVERY:
             self._flush()
             count = 0
             if moment.reset:
-                self._file.write('{"reset": true}\n')
+                self._write('{"reset": true}')
             if moment.hour is not None:
-                self._file.write(json.dumps({"hour": moment.hour}) + "\n")
+                self._write(json.dumps({"hour": moment.hour}))
         self._alike = (count + 1, moment.controls)
 
     def close(self) -> None:
         """Write what is left, and close the file."""
         if not self._file.closed:
-            self._flush()
-            self._file.close()
+            try:
+                self._flush()
+            finally:
+                with contextlib.suppress(OSError):  # what could not be written has been said
+                    self._file.close()
 
     def _flush(self) -> None:
         count, controls = self._alike
-        if count:
-            self._file.write(json.dumps([count, *controls.values]) + "\n")
-            self._file.flush()
         self._alike = (0, controls)
+        if count:
+            self._write(json.dumps([count, *controls.values]))
+
+    def _write(self, line: str) -> None:
+        try:
+            self._file.write(line + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise self._unwritten(error) from None
+
+    def _unwritten(self, error: OSError) -> DataError:
+        return DataError(f"cannot be written: {error.strerror}", file=str(self.path))
 
 
 @dataclass(frozen=True)
@@ -133,6 +158,8 @@ def read_record(path: str | Path) -> Record:
     except UnicodeDecodeError:
         raise DataError("is no text; expected a flight as --record writes it", file=str(path)) from None
     rows = text.split("\n")
+    if len(rows) > 1 and rows[-1] and not _is_json(rows[-1]):
+        rows.pop()  # cut while it was written
     header = _header(_json(rows[0], path, 1), path)
     lines: list[tuple[int, Moment]] = []
     hour: float | None = None
@@ -164,14 +191,22 @@ def read_record(path: str | Path) -> Record:
                 line=number,
             )
         if total > _MOST_STEPS:
-            raise DataError("is longer than ten hours", file=str(path), line=number)
+            raise DataError("is longer than a hundred hours", file=str(path), line=number)
     return Record(header, tuple(lines))
+
+
+def _is_json(row: str) -> bool:
+    try:
+        json.loads(row)
+    except (ValueError, RecursionError):
+        return False
+    return True
 
 
 def _json(row: str, path: str | Path, number: int) -> Any:
     try:
         return json.loads(row)
-    except ValueError:
+    except (ValueError, RecursionError):
         if number == 1:
             raise _no_record(path) from None
         raise DataError(f"{row.strip()[:60]}: is no JSON", file=str(path), line=number) from None
@@ -202,7 +237,7 @@ def _header(found: Any, path: str | Path) -> Header:
         and all(_is_whole(n) and 1 <= n <= 16384 for n in size)
         and isinstance(values, dict)
         and _is_number(found.get("radius"))
-        and 1 <= found["radius"] <= 16
+        and NEAREST <= found["radius"] <= FARTHEST
         and (start is None or (isinstance(start, list) and len(start) == 4 and all(map(_is_number, start))))
     )
     if not good or not isinstance(size, list) or not isinstance(values, dict):

@@ -22,6 +22,7 @@ from imgui_bundle import imgui
 import glfw
 
 from playground.engine.engine import Engine
+from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
@@ -181,9 +182,18 @@ class Fly:
                     return
                 moment = found
             self._hour, self._reset = None, False
-            if self.recorder is not None:
-                self.recorder.add(moment)
+            self._record(moment)
             self.flight.step(moment, 0)
+
+    def _record(self, moment: Moment) -> None:
+        """Write a step down; where that fails, say so and fly on."""
+        if self.recorder is None:
+            return
+        try:
+            self.recorder.add(moment)
+        except DataError as error:
+            self.recorder, self.instruments.recording = None, False
+            self.instruments.trouble = f"no longer recorded: {error.diagnostics[0].message}"
 
     # ── hands ────────────────────────────────────────────────────────────────
 

@@ -35,6 +35,7 @@ class Instruments:
         self.recording = recording
         self.replaying = replaying
         self.ended = False  # a replay has come to its end
+        self.trouble = ""  # why nothing is recorded any more
 
     def draw(self, flight: Flight, theme: Theme, *, ready: bool, paused: bool) -> None:
         """Draw everything for this turn."""
@@ -55,6 +56,7 @@ class Instruments:
 
     def _states(self, paused: bool) -> tuple[tuple[str, bool], ...]:
         return (
+            (self.trouble, bool(self.trouble)),
             ("recording", self.recording),
             ("end of the replay", self.ended),
             ("replay", self.replaying and not self.ended),

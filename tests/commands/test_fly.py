@@ -31,7 +31,7 @@ HEADER = {
     "sketch": "land.toml",
     "size": [64, 36],
     "step": 1 / 60,
-    "radius": 1.0,
+    "radius": 1.5,
     "values": {"height.seed": 9},
     "start": None,
 }
@@ -72,7 +72,7 @@ def test_a_record_becomes_pictures_whose_paths_are_printed(folder: Path) -> None
         (["--replay", "a.jsonl", "--every", "3"], "--every needs --frames"),
         (["--replay", "a.jsonl", "--frames", "new", "--every", "0"], "--every 0: expected a whole number"),
         (["--replay", "a.jsonl", "--frames", "new", "--every", "-2"], "--every -2: expected"),
-        (["--radius", "40"], "--radius 40: expected a number of parts, 1 to 16"),
+        (["--radius", "40"], "--radius 40: expected a number of parts, 1.5 to 16"),
         (["--radius", "3", "--replay", "a.jsonl"], "cannot change a recorded flight"),
         (["--replay", "none.jsonl"], "none.jsonl: cannot be read"),
         (["--replay", "land.toml"], "is no flight"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,6 +52,35 @@ def test_what_is_recorded_is_read_again(tmp_path):
     assert len(rows) == 7 and json.loads(rows[1]) == [50, 10, -20, 30, 0]
 
 
+def test_what_was_flown_is_in_the_file_a_second_later_though_nobody_closes_it(tmp_path):
+    """A flight may end by a signal or a crash; steps alike wait no longer than others."""
+    recorder = Recorder(tmp_path / "a.jsonl", Header("flight"))
+    for _ in range(150):
+        recorder.add(Moment(Controls(30)))
+    assert read_record(tmp_path / "a.jsonl").steps == 120
+    recorder.close()
+    assert list(read_record(tmp_path / "a.jsonl")) == [Moment(Controls(30))] * 150
+
+
+def test_a_line_that_was_cut_while_it_was_written_is_left_out(tmp_path):
+    path = tmp_path / "cut.jsonl"
+    path.write_text(GOOD + "\n[30, 0, 0, 0, 0]\n[3, 0, 0", encoding="utf-8")
+    assert read_record(path).steps == 30
+
+
+def test_a_file_that_is_there_is_never_written_over(tmp_path):
+    (tmp_path / "mine.toml").write_text("precious")
+    with pytest.raises(DataError, match="is there already; a flight is written to a new file"):
+        Recorder(tmp_path / "mine.toml", Header("flight"))
+    assert (tmp_path / "mine.toml").read_text() == "precious"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
+def test_a_full_disk_is_said_with_the_file_s_name():
+    with pytest.raises(DataError, match="/dev/full: cannot be written: No space left"):
+        Recorder("/dev/full", Header("flight"))
+
+
 GOOD = Header("flight").line()
 
 
@@ -70,7 +100,8 @@ GOOD = Header("flight").line()
         (GOOD + '\n{"hours": 3}\n', "expected"),
         (GOOD + '\n{"hour": 1e999}\n', "expected"),
         (GOOD + "\n[1, 0, 0,\n", "is no JSON"),
-        (GOOD + "\n[86400, 0, 0, 0, 0]" * 26, "longer than ten hours"),
+        (GOOD + "\n[86400, 0, 0, 0, 0]" * 251 + "\n", "longer than a hundred hours"),
+        (GOOD + "\n" + "[" * 100_000 + "\n", "is no JSON"),
     ],
 )
 def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, said):
@@ -130,7 +161,7 @@ def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, 
 
 
 def test_reset_goes_back_to_the_start(small_engine, land_of):
-    with Flight(small_engine, land_of(daylight=True), radius=1.0) as flight:
+    with Flight(small_engine, land_of(daylight=True), radius=1.5) as flight:
         first = flight.craft
         for _ in range(30):
             flight.step(Moment(Controls(50, 50, 50, 50), hour=20.0), 0)

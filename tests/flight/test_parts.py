@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -186,3 +187,23 @@ def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, land_of, tmp_
     with pytest.raises(SketchError, match="cannot be flown over: ") as caught:
         plot_of(load(path), small_engine)
     assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_every_pass_is_told_the_height_s_apron(small_engine, land_of):
+    """A colour made with another would not meet its neighbour's."""
+    sketch = land_of(intervals=16, apron=8).with_values({"colour.apron": 3})
+    plot = plot_of(sketch, small_engine)
+    assert dict(plot.at((0, 0)).overrides)["colour.apron"] == 8
+
+
+def test_shadows_that_reach_beyond_the_apron_are_refused(small_engine, land_of):
+    sketch = land_of(intervals=16, apron=8).with_values({"light.reach": 9})
+    with pytest.raises(SketchError, match=r"shadows reach 9 texels .* only 8 .* set light.reach=8"):
+        plot_of(sketch, small_engine)
+    assert plot_of(sketch.with_values({"light.reach": 8}), small_engine).apron == 8
+
+
+def test_parts_that_would_fill_the_memory_are_refused_before_any_is_made(small_engine, land_of):
+    plot = replace(plot_of(land_of(), small_engine), intervals=1024, ground=2049)
+    with pytest.raises(SketchError, match=r"are more than 2 GiB; --radius 2 would fit"):
+        Parts(small_engine, plot, 16.0)

@@ -196,7 +196,7 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
 
 def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., App], tmp_path: Path) -> None:
     header = {"format": "playground flight", "version": 1, "sketch": "sketch.toml", "size": [640, 360]}
-    header |= {"step": 1 / 60, "radius": 1.0, "values": {}, "start": None}
+    header |= {"step": 1 / 60, "radius": 1.5, "values": {}, "start": None}
     rows = [json.dumps(header), "[40, 0, 0, 100, 0]", '{"hour": 16.0}', "[30, 0, 40, 0, 0]"]
     (tmp_path / "b.jsonl").write_text("\n".join(rows), encoding="utf-8")
     app = open_app("--replay", "b.jsonl")

@@ -32,7 +32,7 @@ uniform float delta_r = 0.01;            //! slider(0, 2) step(0.001) group("Con
 uniform int growth = 0;                  //! menu("per unit of path", "per step") group("Cone") What delta_r is counted by; the thesis counts steps, however long they are
 uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
-uniform int reach = 0;                   //! slider(0, 4096) group("March") unit("texels") Land farther than this throws no shadow, and in the last quarter less of one; 0: all of it does
+uniform int reach = 0;                   //! slider(0, 4096) group("March") unit("texels") In the march, land farther than this throws no shadow, and in the last quarter less of one; 0: all of it does
 uniform int reading = 0;                 //! menu("interpolated", "cut down") group("March") Heights between texels, or of the texel that a place is cut down to, as in the thesis
 
 // The free part of a cone of that radius, whose middle is so high over the land.
