@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from playground.flight.craft import Controls
 from playground.flight.record import read_record
 
-ROOT = Path(__file__).resolve().parents[2]
+from .screen import ON_LINUX, Program, Screen
+
 WIDTH, HEIGHT = 640, 360
-LIMIT = 25.0  # [s] for anything to happen on a slow machine
 SKETCH = """format = 1
 title = "A small land without end"
 size = 33
@@ -49,85 +45,21 @@ samples = 1
 set = { sky = "daylight", tone = "film", exposure = 0.6 }
 """
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Xvfb is for Linux"),
-]
+pytestmark = ON_LINUX
 
 
-def needed(program: str) -> str:
-    found = shutil.which(program)
-    if found is None:
-        message = f"{program} is not installed (Debian: apt install xvfb xdotool)"
-        if os.environ.get("CI"):
-            pytest.fail(message)
-        pytest.skip(message)
-    return found
-
-
-class App:
+class App(Program):
     """A flight in a window, on an X server of its own."""
 
     def __init__(self, folder: Path, *arguments: str) -> None:
-        self.folder = folder
-        read, write = os.pipe()
-        screen = ["-displayfd", str(write), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", str(folder)]
-        self.server = subprocess.Popen(
-            [needed("Xvfb"), *screen, "-nolisten", "tcp"], pass_fds=[write], stderr=subprocess.DEVNULL
-        )
-        os.close(write)
-        with os.fdopen(read) as answer:
-            self.display = f":{answer.readline().strip()}"
-        self.status = folder / "status.jsonl"
         (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-        gone = ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")
-        self.environment = {k: v for k, v in os.environ.items() if k not in gone}
-        self.environment |= {"DISPLAY": self.display, "PLAYGROUND_STATUS": str(self.status)}
-        self.environment["PYTHONPATH"] = os.pathsep.join(
-            filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")])
-        )
-        self.said = (folder / "stderr.txt").open("w+b")
         command = [sys.executable, "-m", "playground", "fly", *arguments, "--size", f"{WIDTH}x{HEIGHT}"]
-        self.process = subprocess.Popen(command, env=self.environment, cwd=folder, stderr=self.said)
-
-    def now(self) -> dict[str, Any]:
-        text = self.status.read_text("utf-8") if self.status.exists() else ""
-        lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
-        return json.loads(lines[-1]) if lines else {"ready": False, "steps": 0}
-
-    def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-        end = time.monotonic() + LIMIT
-        while time.monotonic() < end:
-            assert self.process.poll() is None, f"the window died: {self.complaint()}"
-            now = self.now()
-            if until(now):
-                return now
-            time.sleep(0.02)
-        pytest.fail(f"it did not happen; last seen: {self.now()}; {self.complaint()}")
-
-    def do(self, *words: object) -> None:
-        command = [needed("xdotool"), *map(str, words)]
-        subprocess.run(command, env=self.environment, check=True, timeout=10)
-
-    def pixels(self) -> NDArray[np.uint8]:
-        """Return what is on the screen: (height, width, 3), top row first. The file is an X window dump."""
-        raw = (self.folder / "Xvfb_screen0").read_bytes()
-        header = np.frombuffer(raw, ">u4", 25)
-        width, height, line, start = header[4], header[5], header[12], header[0] + 12 * header[19]
-        rows = np.frombuffer(raw, np.uint8, height * line, start).reshape(height, line // 4, 4)
-        return rows[:, :width, 2::-1].copy()
-
-    def complaint(self) -> str:
-        self.said.seek(0)
-        return self.said.read().decode("utf-8", "replace")
+        super().__init__(Screen(folder, WIDTH, HEIGHT), folder, command, folder)
 
     def close(self) -> None:
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait(10)
-        self.said.close()
-        self.server.terminate()
-        self.server.wait(10)
+        """End it, and its screen."""
+        super().close()
+        self.screen.close()
 
 
 @pytest.fixture
@@ -148,28 +80,28 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     first = app.wait(lambda now: now["ready"] and now["steps"] > 0)
     assert first["missing"] == 0 and first["parts"] >= 9
 
-    app.do("keydown", "d")
+    app.screen.do("keydown", "d")
     app.wait(lambda now: now["roll"] > 0.3 and now["heading"] > 0.02)
-    app.do("keyup", "d", "keydown", "Down")
+    app.screen.do("keyup", "d", "keydown", "Down")
     app.wait(lambda now: now["pitch"] > 0.15)
-    app.do("keyup", "Down", "keydown", "Shift_L")
+    app.screen.do("keyup", "Down", "keydown", "Shift_L")
     app.wait(lambda now: now["throttle"] > first["throttle"] + 0.1)
-    app.do("keyup", "Shift_L")
-    app.do("mousemove", 300, 150, "mousedown", 1, "mousemove", 220, 150)
+    app.screen.do("keyup", "Shift_L")
+    app.screen.do("mousemove", 300, 150, "mousedown", 1, "mousemove", 220, 150)
     app.wait(lambda now: now["roll"] < -0.2)
-    app.do("mouseup", 1)
+    app.screen.do("mouseup", 1)
 
     level = app.now()["throttle"]
-    app.do("click", 5)
+    app.screen.do("click", 5)
     app.wait(lambda now: now["throttle"] < level - 0.04)
-    app.do("key", "bracketright")
+    app.screen.do("key", "bracketright")
     app.wait(lambda now: now["hour"] == 10.5 and now["missing"] == 0)
-    app.do("key", "p")
+    app.screen.do("key", "p")
     still = app.wait(lambda now: now["paused"])["steps"]
-    app.do("key", "shift+slash")
+    app.screen.do("key", "shift+slash")
     app.wait(lambda now: now["help"])
     time.sleep(0.3)
-    shown = app.pixels()
+    shown = app.screen.pixels()
     assert app.now()["steps"] == still, "nothing moves while it is paused"
     sky, plate = shown[20:40, 20:100].reshape(-1, 3), shown[HEIGHT // 2, 200:440].reshape(-1, 3)
     assert sky[:, 2].mean() > sky[:, 0].mean() + 20, "the sky is blue"
@@ -178,12 +110,12 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
         from PIL import Image
 
         Image.fromarray(shown).save(os.environ["FLY_PICTURE"])
-    app.do("key", "F1", "key", "p")
+    app.screen.do("key", "F1", "key", "p")
     app.wait(lambda now: not now["help"] and now["steps"] > still + 5)
-    app.do("key", "r")
+    app.screen.do("key", "r")
     app.wait(lambda now: now["hour"] == 10.0 and abs(now["roll"]) < 0.2)
-    app.do("key", "Escape")
-    assert app.process.wait(LIMIT) == 0, app.complaint()
+    app.screen.do("key", "Escape")
+    assert app.ended() == 0, app.complaint()
 
     record = read_record(tmp_path / "a.jsonl")
     flown = list(record)
@@ -202,5 +134,5 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
     app = open_app("--replay", "b.jsonl")
     now = app.wait(lambda now: now["ready"] and now["paused"])
     assert now["steps"] == 70 and now["hour"] == 16.0 and now["roll"] > 0.3
-    app.do("key", "Escape")
-    assert app.process.wait(LIMIT) == 0, app.complaint()
+    app.screen.do("key", "Escape")
+    assert app.ended() == 0, app.complaint()

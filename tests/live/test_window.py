@@ -6,24 +6,21 @@ itself comes as JSON lines (``playground.live.status``).
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-ROOT = Path(__file__).resolve().parents[2]
+from .screen import ON_LINUX, ROOT, Program, Screen
+
 WIDTH, HEIGHT = 800, 500
 PANEL = 330  # pixels at scale 1
-LIMIT = 25.0  # [s] for anything to happen on a slow machine
 RUN = """
 import sys
 from playground.live.app import run
@@ -52,119 +49,30 @@ camera = { azimuth = 200, elevation = 50, distance = 900 }
 set = { grid = 65 }
 """
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Xvfb is for Linux"),
-]
+pytestmark = ON_LINUX
 
 
-def needed(program: str) -> str:
-    found = shutil.which(program)
-    if found is None:
-        message = f"{program} is not installed (Debian: apt install xvfb xdotool)"
-        if os.environ.get("CI"):
-            pytest.fail(message)
-        pytest.skip(message)
-    return found
-
-
-class Screen:
-    """An X server with nothing on it but what a test opens."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        read, write = os.pipe()
-        arguments = ["-displayfd", str(write), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", str(folder)]
-        self.server = subprocess.Popen(
-            [needed("Xvfb"), *arguments, "-nolisten", "tcp"], pass_fds=[write], stderr=subprocess.DEVNULL
-        )
-        os.close(write)
-        with os.fdopen(read) as answer:
-            self.display = f":{answer.readline().strip()}"
-        self.xdotool = needed("xdotool")
-
-    def pixels(self) -> NDArray[np.uint8]:
-        """Return what is on the screen: (height, width, 3), top row first. The file is an X window dump."""
-        raw = (self.folder / "Xvfb_screen0").read_bytes()
-        header = np.frombuffer(raw, ">u4", 25)
-        width, height, line, start = header[4], header[5], header[12], header[0] + 12 * header[19]
-        rows = np.frombuffer(raw, np.uint8, height * line, start).reshape(height, line // 4, 4)
-        return rows[:, :width, 2::-1].copy()
-
-    def do(self, *words: object) -> None:
-        environment = {**os.environ, "DISPLAY": self.display}
-        subprocess.run([self.xdotool, *map(str, words)], env=environment, check=True, timeout=10)
-
-    def close(self) -> None:
-        self.server.terminate()
-        self.server.wait(10)
-
-
-class App:
+class App(Program):
     """The window, running in a process of its own on a sketch in a folder."""
 
     def __init__(self, screen: Screen, folder: Path) -> None:
-        self.screen = screen
         self.sketch = folder / "sketch"
         self.pictures = folder / "pictures"
-        self.status = folder / "status.jsonl"
         (self.sketch / "inc").mkdir(parents=True)
         self.pictures.mkdir()
         for name, text in {"land.glsl": LAND, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
             (self.sketch / name).write_text(text, encoding="utf-8")
-        environment = {
-            k: v for k, v in os.environ.items() if k not in ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")
-        }
-        environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
-        environment["PYTHONPATH"] = os.pathsep.join(
-            filter(None, [str(ROOT), environment.get("PYTHONPATH", "")])
-        )
-        self.said = (folder / "stderr.txt").open("w+b")
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", RUN, str(self.sketch)],
-            env=environment,
-            cwd=self.pictures,
-            stderr=self.said,
-        )
+        super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.sketch)], self.pictures)
         self.wait(lambda now: now["draws"] > 0)
-
-    def now(self) -> dict[str, Any]:
-        text = self.status.read_text(encoding="utf-8") if self.status.exists() else ""
-        lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
-        return json.loads(lines[-1]) if lines else {"draws": 0, "error": "", "picture": ""}
-
-    def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-        end = time.monotonic() + LIMIT
-        while time.monotonic() < end:
-            assert self.process.poll() is None, f"the window died: {self.complaint()}"
-            now = self.now()
-            if until(now):
-                time.sleep(0.1)  # what was drawn reaches the screen
-                return now
-            time.sleep(0.02)
-        pytest.fail(f"it did not happen; last seen: {self.now()}; {self.complaint()}")
 
     def picture(self) -> NDArray[np.uint8]:
         """Return the picture's part of the screen, without what notices and errors cover."""
         return self.screen.pixels()[60:220, PANEL + 10 : PANEL + 250]
 
-    def complaint(self) -> str:
-        self.said.seek(0)
-        return self.said.read().decode("utf-8", "replace")
-
-    def ended(self) -> int:
-        return self.process.wait(LIMIT)
-
-    def close(self) -> None:
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait(10)
-        self.said.close()
-
 
 @pytest.fixture(scope="module")
 def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"))
+    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH, HEIGHT)
     yield made
     made.close()
 
