@@ -115,7 +115,8 @@ class Scene:
     ) -> moderngl.Texture:
         """Draw a picture and return its texture, rgba8, encoded; it lives until the next.
 
-        ``bare`` leaves out sky, air and what stands in for missing parts, and puts magenta there, to look for holes.
+        ``bare`` leaves out sky, air and what stands in for missing parts, and puts magenta
+        there, to look for holes.
         """
         surface = self._surface_of(size)
         surface.many.use()
