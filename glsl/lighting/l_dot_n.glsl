@@ -25,9 +25,8 @@ uniform int normal = 0;                  //! menu("central differences", "one tr
 
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec2 place = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
-    vec2 slope = relief * slope_at(height, place, metres, normal);
+    vec2 slope = relief * (matches_height ? slope_of_node(height, texel, metres, normal) : slope_at(height, place_on(grid, texel, size), metres, normal));
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     float received = gain * sun_on(normal_of_slope(slope), from.direction);
     return vec4(from.sun * received + from.sky * ambient, 1.0);

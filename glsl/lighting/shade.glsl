@@ -49,14 +49,14 @@ vec3 read_at(sampler2D field, ivec2 texel) {
 
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
-    vec2 place = place_on(grid, texel, size);
-    vec2 slope = relief * slope_at(height, place, spacing_of(grid, extent), normal);
+    vec2 metres = spacing_of(grid, extent);
+    vec2 slope = relief * (matches_height ? slope_of_node(height, texel, metres, normal) : slope_at(height, place_on(grid, texel, size), metres, normal));
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     vec3 light = from.direction;
     float received = max(0.0, dot(normal_of_slope(slope), light));
     // Where nothing is wired to say so, a sun below the horizon is hidden.
     if (light.z < 0.0 && !wired_visibility) received = 0.0;
-    float visible = wired_visibility ? read_at(visibility, texel).r : 1.0;
+    float visible = matches_visibility ? texelFetch(visibility, texel, 0).r : wired_visibility ? read_at(visibility, texel).r : 1.0;
     if (received <= 0.0) visible = 0.0;
     vec3 sky = from.sky * ambient;
     if (wired_sky_factor) sky *= read_at(sky_factor, texel);

@@ -23,7 +23,7 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Kernel, Parameter, Sampling, Value
-from playground.sketch.words import TOWARDS, WIRED
+from playground.sketch.words import MATCHES, TOWARDS, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
@@ -83,6 +83,7 @@ class Binder:
         for declared in kernel.inputs:
             result, texture, output = inputs.get(declared.name, Wired())
             program.set(f"{WIRED}{declared.name}", texture is not None)
+            program.set(f"{MATCHES}{declared.name}", texture is not None and texture.size == step.size)
             if declared.name not in program:
                 continue
             if texture is None:

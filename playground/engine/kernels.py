@@ -22,7 +22,7 @@ from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.wiring import initial_names
-from playground.sketch.words import WIRED
+from playground.sketch.words import MATCHES, WIRED
 
 if TYPE_CHECKING:
     import moderngl
@@ -114,8 +114,14 @@ class Kernels:
             for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         ]
-        for name in (i.name for i in kernel.inputs if kernel.reads(f"{WIRED}{i.name}")):
-            choices.append((f"{WIRED}{name}", int(job.inputs.get(name, Wired()).texture is not None)))
+        for name in (i.name for i in kernel.inputs):
+            texture = job.inputs.get(name, Wired()).texture
+            if kernel.reads(f"{WIRED}{name}"):
+                choices.append((f"{WIRED}{name}", int(texture is not None)))
+            if kernel.reads(f"{MATCHES}{name}"):
+                choices.append(
+                    (f"{MATCHES}{name}", int(texture is not None and texture.size == job.step.size))
+                )
         return self.programs.get(kernel, driver, (*choices, *more))
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:

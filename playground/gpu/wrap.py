@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from playground.errors import ShaderError
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import GIVEN, TOWARDS, WIRED
+from playground.sketch.words import GIVEN, MATCHES, TOWARDS, WIRED
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -141,7 +141,8 @@ def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expec
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
     found = [(kind, name) for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
-    found += [("bool", f"{WIRED}{i.name}") for i in kernel.inputs if kernel.reads(f"{WIRED}{i.name}")]
+    asked = [f"{begins}{i.name}" for i in kernel.inputs for begins in (WIRED, MATCHES)]
+    found += [("bool", name) for name in asked if kernel.reads(name)]
     found += [
         ("vec3", f"{TOWARDS}{p.name}")
         for p in kernel.parameters

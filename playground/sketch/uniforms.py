@@ -17,7 +17,7 @@ from playground.sketch.annotation import calls as read_calls
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
-from playground.sketch.words import GIVEN, GLSL_WORDS, PREFIX, RESERVED, TOWARDS, WIRED
+from playground.sketch.words import GIVEN, GLSL_WORDS, MATCHES, PREFIX, RESERVED, TOWARDS, WIRED
 
 _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
@@ -84,7 +84,7 @@ def read_uniforms(
 
 def is_given(name: str) -> bool:
     """Say whether a name is one that the engine gives, or calls."""
-    return name in GIVEN or name in RESERVED or name.startswith(("previous_", WIRED, TOWARDS))
+    return name in GIVEN or name in RESERVED or name.startswith(("previous_", WIRED, MATCHES, TOWARDS))
 
 
 def check_name(name: str, line: Line, what: str) -> None:

@@ -30,9 +30,9 @@ GIVEN: dict[str, tuple[str, str]] = {
 RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment"})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 
-WIRED, TOWARDS = "wired_", "towards_"
-"""What begins a given name for each input (bool: something is wired to it) and each direction
-(vec3: the unit vector towards it); declared where a text names it."""
+WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
+"""What begins a given name for each input (bool: something is wired to it; it has the size of this
+pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""
 
 _KEYWORDS = """
 attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly

@@ -92,7 +92,22 @@ def test_kernels_draws_and_companions_are_told(each_engine, folder, form):
             assert (told[..., 3] == wired).all()
 
 
-@pytest.mark.parametrize("name", ["wired_wind", "towards_sun", "wired_", "towards_anything"])
+SIZES = """#pragma kernel(output = "told:rg32f")
+uniform sampler2D wind;  //! input("black")
+vec2 kernel(ivec2 texel) { return vec2(matches_wind ? 1.0 : 0.0, wired_wind ? 1.0 : 0.0); }
+"""
+
+
+def test_whether_an_input_has_the_size_of_the_pass(each_engine, folder):
+    folder.write("asks.glsl", SIZES)
+    folder.write("blows.glsl", WIND)
+    for size, told in (("", (1, 1)), ("size = 9\n", (0, 1)), ("size = [17, 9]\n", (0, 1))):
+        sketch = folder.sketch(f'[[pass]]\nname = "wind"\nuse = "./blows"\n{size}{PASS}')
+        assert tuple(each_engine.read(sketch, "asked")[3, 2]) == told
+    assert tuple(each_engine.read(folder.sketch(PASS), "asked")[0, 0]) == (0, 0)
+
+
+@pytest.mark.parametrize("name", ["matches_wind", "wired_wind", "towards_sun", "wired_", "towards_anything"])
 def test_their_names_are_taken(folder, name):
     body = f"uniform float {name} = 1.0;\nfloat kernel(ivec2 texel) {{ return {name}; }}\n"
     with pytest.raises(ShaderError, match=f"'{name}' is given to every kernel"):
