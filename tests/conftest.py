@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +16,16 @@ from playground.gpu.context import open_context
 pytest_plugins = ["playground.shots.plugin", "pytester"]
 
 ROOT = Path(__file__).resolve().parent.parent
+OBJECTS = (
+    moderngl.Texture,
+    moderngl.Framebuffer,
+    moderngl.Renderbuffer,
+    moderngl.Buffer,
+    moderngl.VertexArray,
+    moderngl.Program,
+    moderngl.ComputeShader,
+    moderngl.Sampler,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -55,3 +66,31 @@ def any_engine(ctx: moderngl.Context) -> Iterator[Engine]:
     """Give an engine that chooses its drivers itself."""
     with Engine(ctx) as made:
         yield made
+
+
+@pytest.fixture
+def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Count moderngl objects that are made and not yet released."""
+    count: Counter[str] = Counter()
+    names = {"texture": "Texture", "framebuffer": "Framebuffer", "renderbuffer": "Renderbuffer"}
+    names |= {"depth_renderbuffer": "Renderbuffer", "buffer": "Buffer", "vertex_array": "VertexArray"}
+    names |= {"program": "Program", "compute_shader": "ComputeShader", "sampler": "Sampler"}
+    for function, kind in names.items():
+        real = getattr(moderngl.Context, function)
+
+        def made(self, *arguments, _real=real, _kind=kind, **named):
+            found = _real(self, *arguments, **named)
+            count[_kind] += 1
+            return found
+
+        monkeypatch.setattr(moderngl.Context, function, made)
+    for kind in OBJECTS:
+        real = kind.release
+
+        def gone(self, _real=real, _kind=kind.__name__):
+            if not isinstance(getattr(self, "mglo", None), moderngl.InvalidObject):
+                count[_kind] -= 1
+            _real(self)
+
+        monkeypatch.setattr(kind, "release", gone)
+    return count

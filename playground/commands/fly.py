@@ -121,10 +121,12 @@ def read_radius(text: str) -> float | None:
         found = float(text)
     except ValueError:
         found = 0.0
-    from playground.flight.record import FARTHEST, NEAREST
+    from playground.flight.record import LEAST_RADIUS, MOST_RADIUS
 
-    if not NEAREST <= found <= FARTHEST:
-        raise ParameterError(f"--radius {text}: expected a number of parts, {NEAREST:g} to {FARTHEST:g}")
+    if not LEAST_RADIUS <= found <= MOST_RADIUS:
+        raise ParameterError(
+            f"--radius {text}: expected a number of parts, {LEAST_RADIUS:g} to {MOST_RADIUS:g}"
+        )
     return found
 
 

@@ -20,7 +20,7 @@ from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 
 FORMAT, VERSION = "playground flight", 1
-NEAREST, FARTHEST = 1.5, 16.0  # [parts] seen: nearer, the end of the land would show
+LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] seen: nearer, the end of the land would show
 LONGEST = 60 * 60 * 24  # [steps] of one line, and lines are so few that no file takes for ever
 SAVED_EVERY = 60  # [steps] alike after which they are written, lest a flight that ends badly be lost
 _MOST_STEPS = 60 * 60 * 60 * 100
@@ -237,7 +237,7 @@ def _header(found: Any, path: str | Path) -> Header:
         and all(_is_whole(n) and 1 <= n <= 16384 for n in size)
         and isinstance(values, dict)
         and _is_number(found.get("radius"))
-        and NEAREST <= found["radius"] <= FARTHEST
+        and LEAST_RADIUS <= found["radius"] <= MOST_RADIUS
         and (start is None or (isinstance(start, list) and len(start) == 4 and all(map(_is_number, start))))
     )
     if not good or not isinstance(size, list) or not isinstance(values, dict):

@@ -28,7 +28,6 @@ SKIRT = 2.0
 """How far a part's skirt hangs down, over a triangle's side: so much or less is cut from an edge."""
 GRAIN = 700.0
 """[m] that the grain of the ground near by repeats after, about."""
-AIRS = 64  # directions that the air's colour is worked out for
 MAGENTA = (1.0, 0.0, 1.0)
 
 
@@ -66,7 +65,7 @@ class Scene:
         )
         self._form: type = np.float32
         self._grain = _grain(ctx)
-        self._air = make_texture(ctx, (AIRS, 1), "rgba16f")
+        self._air = make_texture(ctx, (shaders.AIRS, 1), "rgba16f")
         self._air.filter = (ctx.LINEAR, ctx.LINEAR)
         self._air.repeat_x = self._air.repeat_y = False
         self._ring = make_framebuffer(ctx, [self._air])
@@ -96,7 +95,7 @@ class Scene:
         level = float(np.hypot(east, north))
         self._towards_sun = (east / level, north / level) if level > 1e-9 else (0.0, 1.0)
         self._ring.use()
-        self._ring.viewport = (0, 0, AIRS, 1)
+        self._ring.viewport = (0, 0, shaders.AIRS, 1)
         self.ctx.enable_only(0)
         self.ctx.clear_samplers(0, 3)
         self._daylight.use(2)

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import moderngl
 
-_VERSION = "#version 330\n"
+AIRS = 64
+"""Directions that the air's colour is worked out for."""
+
+_VERSION = f"#version 330\nconst float AIRS = {AIRS}.0;\n"
 _GIVEN = """
 uniform sampler2D daylight;
 uniform bool natural;
@@ -45,7 +48,7 @@ void main() {
     // From what lies straight away from the sun to what lies towards it: the air depends on no more.
     vec2 sun = texelFetch(daylight, ivec2(0), 0).xy;
     sun = length(sun) > 1e-9 ? normalize(sun) : vec2(0.0, 1.0);
-    float aside = (gl_FragCoord.x - 0.5) / 63.0 * 2.0 - 1.0;
+    float aside = (gl_FragCoord.x - 0.5) / (AIRS - 1.0) * 2.0 - 1.0;
     vec2 towards = aside * sun + sqrt(max(1.0 - aside * aside, 0.0)) * vec2(-sun.y, sun.x);
     frame = vec4(air_between(daylight, Backdrop(natural, zenith, horizon), vec3(towards, 0.03)), 1.0);
 }
@@ -90,7 +93,7 @@ void main() {
     away = corner + vec3(node.xy * spacing, surface - node.z * skirt);
     share = node.xy * spacing / width;
     float aside = dot(away.xy, towards_sun) / max(length(away.xy), 1e-6);
-    air = textureLod(air_table, vec2((0.5 + 0.5 * aside) * (63.0 / 64.0) + 0.5 / 64.0, 0.5), 0.0).rgb;
+    air = textureLod(air_table, vec2(((0.5 + 0.5 * aside) * (AIRS - 1.0) + 0.5) / AIRS, 0.5), 0.0).rgb;
     gl_Position = clip_from_near * vec4(away, 1.0);
 }
 """

@@ -82,7 +82,9 @@ class Painting:
     def toggle(self) -> None:
         """Take the brush, or put it down."""
         if not self.target:
-            self.session.notes.append("this sketch has no mask to paint on; texturing/alpha_map/mask is one")
+            self.session.notes.append(
+                'this sketch has no mask to paint on: none of its files has the word "paint"'
+            )
         self._taken = bool(self.target) and not self._taken
         if not NARROWEST * self.side <= self.brush.radius <= WIDEST * self.side:
             self.brush = replace(self.brush, radius=USUAL * self.side)
@@ -185,7 +187,7 @@ class Painting:
         session = self.session
         if self._last is None and self._heights[0] != session.draws:
             ref = height_seen(session.plan) if session.plan is not None else ""
-            self._heights = session.draws, session.values_of(ref) if ref else None
+            self._heights = session.draws, session.read_values(ref) if ref else None
         return self._heights[1]
 
 

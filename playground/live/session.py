@@ -321,10 +321,10 @@ class Session:
         if self.map is None or self.sketch is None:
             return
         self._revision += 1
-        values = self.values_of(self.map.ref)
+        values = self.read_values(self.map.ref)
         self.map = fitted(self.map, values) if values is not None else None
 
-    def values_of(self, ref: str) -> NDArray[np.float32] | None:
+    def read_values(self, ref: str) -> NDArray[np.float32] | None:
         """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
         if self.sketch is None:
             return None

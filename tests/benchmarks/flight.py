@@ -1,11 +1,12 @@
 """Fly over the shipped land for a while and print what it costs: ``python tests/benchmarks/flight.py``.
 
-A picture is 640 x 360 at one sample, as in a window that the processor draws. Parts are made
+A picture is 640 x 360 (``--size W H``) at one sample, as in a window that the processor draws. Parts are made
 in stages beside the pictures, as there.
 """
 
 from __future__ import annotations
 
+import argparse
 import statistics
 import sys
 import time
@@ -29,9 +30,15 @@ def milliseconds(work, engine):
 
 
 def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("W", "H"), help="pixels")
+    width, height = parser.parse_args().size
+    size = width, height
     ctx = open_context()
     with Engine(ctx, cache_bytes=CACHE_BYTES, owns_context=True) as engine:
-        print(f"{engine.info.renderer}; pictures of {SIZE[0]} x {SIZE[1]}, 1 sample")
+        print(f"{engine.info.renderer}; pictures of {width} x {height}, 1 sample")
         with Flight(engine, load("flight"), samples=1) as flight:
             first = milliseconds(lambda: flight.parts.tend(1), engine)
             count = 0
@@ -42,7 +49,7 @@ def main() -> int:
 
             each = milliseconds(rest, engine) / max(count, 1)
             print(f"a part: {each:.1f} ms (the first, with what all share and compiling: {first:.0f} ms)")
-            still = [milliseconds(lambda: flight.draw(SIZE), engine) for _ in range(20)]
+            still = [milliseconds(lambda: flight.draw(size), engine) for _ in range(20)]
             print(f"a picture while nothing is made: {statistics.median(still):.1f} ms")
             frames, drawn, stages = [], [], []
             for number in range(PICTURES):
@@ -52,7 +59,7 @@ def main() -> int:
                     for _ in range(4):
                         flight.step(hands, 0)
                     stages.append(flight.parts.tend_for(0.005))
-                    flight.draw(SIZE)
+                    flight.draw(size)
 
                 frames.append(milliseconds(turn, engine))
                 drawn.append(flight.scene.drawn)

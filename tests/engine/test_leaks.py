@@ -19,16 +19,6 @@ from playground.engine.engine import Engine
 from playground.images.files import write_png
 
 ROOT = Path(__file__).resolve().parents[2]
-KINDS = (
-    moderngl.Texture,
-    moderngl.Framebuffer,
-    moderngl.Renderbuffer,
-    moderngl.Buffer,
-    moderngl.VertexArray,
-    moderngl.Program,
-    moderngl.ComputeShader,
-    moderngl.Sampler,
-)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float bumps = 3.0; //! slider(0, 1000)
 uniform sampler2D image;   //! file("p.png")
@@ -70,34 +60,6 @@ ADD = """#pragma kernel(output = "height:r32f")
 uniform sampler2D before; //! input
 float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r * 0.9; }
 """
-
-
-@pytest.fixture
-def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
-    """Count moderngl objects that are made and not yet released."""
-    count: Counter[str] = Counter()
-    names = {"texture": "Texture", "framebuffer": "Framebuffer", "renderbuffer": "Renderbuffer"}
-    names |= {"depth_renderbuffer": "Renderbuffer", "buffer": "Buffer", "vertex_array": "VertexArray"}
-    names |= {"program": "Program", "compute_shader": "ComputeShader", "sampler": "Sampler"}
-    for function, kind in names.items():
-        real = getattr(moderngl.Context, function)
-
-        def made(self, *arguments, _real=real, _kind=kind, **named):
-            found = _real(self, *arguments, **named)
-            count[_kind] += 1
-            return found
-
-        monkeypatch.setattr(moderngl.Context, function, made)
-    for kind in KINDS:
-        real = kind.release
-
-        def gone(self, _real=real, _kind=kind.__name__):
-            if not isinstance(getattr(self, "mglo", None), moderngl.InvalidObject):
-                count[_kind] -= 1
-            _real(self)
-
-        monkeypatch.setattr(kind, "release", gone)
-    return count
 
 
 def total(count: Counter[str]) -> dict[str, int]:

@@ -2,50 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
-import moderngl
 import pytest
 
 from playground.engine.engine import Engine
 from playground.flight.craft import Controls
 from playground.flight.flight import Flight
 from playground.flight.record import Moment
-
-MADE = ("texture", "framebuffer", "renderbuffer", "depth_renderbuffer", "buffer", "vertex_array", "program")
-KINDS = (
-    moderngl.Texture,
-    moderngl.Framebuffer,
-    moderngl.Renderbuffer,
-    moderngl.Buffer,
-    moderngl.VertexArray,
-    moderngl.Program,
-)
-
-
-@pytest.fixture
-def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
-    """Count moderngl objects that are made and not yet released."""
-    count: Counter[str] = Counter()
-    for name in MADE:
-        real = getattr(moderngl.Context, name)
-
-        def made(self, *arguments, _real=real, **named):
-            found = _real(self, *arguments, **named)
-            count[type(found).__name__] += 1
-            return found
-
-        monkeypatch.setattr(moderngl.Context, name, made)
-    for kind in KINDS:
-        real = kind.release
-
-        def gone(self, _real=real, _kind=kind.__name__):
-            if not isinstance(getattr(self, "mglo", None), moderngl.InvalidObject):
-                count[_kind] -= 1
-            _real(self)
-
-        monkeypatch.setattr(kind, "release", gone)
-    return count
 
 
 @pytest.mark.parametrize("samples", [1, 4])

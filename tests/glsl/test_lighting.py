@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from .lands import HILLS
+
 HALF = 2.0**-11
 BOTH = pytest.mark.parametrize("method", ["l_dot_n", "ray_cast"])
 
@@ -17,33 +19,6 @@ PLANE = """
 uniform vec2 rise = vec2(0.0);   // heights a texel
 uniform float base = 0.0;
 float kernel(ivec2 texel) { return base + dot(vec2(texel), rise); }
-"""
-ROUGH = """
-#include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f")
-uniform float scale = 1.0;
-uniform float base = 0.0;
-uniform int turned = 0;   //! menu("no", "quarter", "mirrored")
-float value(ivec2 texel) {
-    float total = 0.0;
-    for (int k = 0; k < 4; k++) {
-        float cell = float(16 >> k);
-        vec2 place = vec2(texel) / cell;
-        ivec2 low = ivec2(place);
-        vec2 part = place - vec2(low);
-        part = part * part * (3.0 - 2.0 * part);
-        float south = mix(random(low, uint(k)), random(low + ivec2(1, 0), uint(k)), part.x);
-        float north = mix(random(low + ivec2(0, 1), uint(k)), random(low + 1, uint(k)), part.x);
-        total += mix(south, north, part.y) * cell / 30.0;
-    }
-    return total;
-}
-float kernel(ivec2 texel) {
-    ivec2 from = texel;
-    if (turned == 1) from = ivec2(texel.y, size.x - 1 - texel.x);
-    if (turned == 2) from.x = size.x - 1 - texel.x;
-    return base + scale * value(from);
-}
 """
 WALL = """
 #pragma kernel(output = "height:r32f")
@@ -180,7 +155,7 @@ def test_a_slope_turned_away_is_dark(engine, lit, method):
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (0, 30), (211, 8)], ids=str)
 def test_rough_land_is_shaded_by_its_own_normals(engine, lit, method, sun):
-    sketch = lit(ROUGH, method, sun, size=[65, 49], extent=[640, 960], relief=300.0)
+    sketch = lit(HILLS, method, sun, size=[65, 49], extent=[640, 960], relief=300.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     light = engine.read(sketch, "light").astype(np.float64)
     truth = shade(heights, sun_vector(*sun), (10.0, 20.0))
@@ -192,7 +167,7 @@ def test_rough_land_is_shaded_by_its_own_normals(engine, lit, method, sun):
 @BOTH
 def test_lifting_the_land_changes_nothing(engine, lit, method):
     lights = [
-        engine.read(lit(ROUGH, method, (135, 25), relief=300.0, given={"base": base}), "light")
+        engine.read(lit(HILLS, method, (135, 25), relief=300.0, given={"base": base}), "light")
         for base in (0.0, 3.0, -2.0)
     ]
     for other in lights[1:]:
@@ -204,9 +179,9 @@ def test_lifting_the_land_changes_nothing(engine, lit, method):
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
 def test_turned_land_under_a_turned_sun_has_turned_light(engine, lit, method, sun):
-    straight = engine.read(lit(ROUGH, method, sun, relief=300.0), "light")
+    straight = engine.read(lit(HILLS, method, sun, relief=300.0), "light")
     turned = engine.read(
-        lit(ROUGH, method, (sun[0] - 90, sun[1]), relief=300.0, given={"turned": "quarter"}), "light"
+        lit(HILLS, method, (sun[0] - 90, sun[1]), relief=300.0, given={"turned": "quarter"}), "light"
     )
     y, x = np.mgrid[0:65, 0:65]
     assert_same_light(turned, straight[64 - x, y])
@@ -215,26 +190,26 @@ def test_turned_land_under_a_turned_sun_has_turned_light(engine, lit, method, su
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
 def test_mirrored_land_under_a_mirrored_sun_has_mirrored_light(engine, lit, method, sun):
-    straight = engine.read(lit(ROUGH, method, sun, relief=300.0), "light")
+    straight = engine.read(lit(HILLS, method, sun, relief=300.0), "light")
     mirrored = engine.read(
-        lit(ROUGH, method, (-sun[0], sun[1]), relief=300.0, given={"turned": "mirrored"}), "light"
+        lit(HILLS, method, (-sun[0], sun[1]), relief=300.0, given={"turned": "mirrored"}), "light"
     )
     assert_same_light(mirrored, straight[:, ::-1])
 
 
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
 def test_the_thesis_one_triangle_is_not_symmetric(any_engine, lit, sun):
-    straight = any_engine.read(lit(ROUGH, "l_dot_n", sun, relief=300.0, normal="one triangle"), "light")
+    straight = any_engine.read(lit(HILLS, "l_dot_n", sun, relief=300.0, normal="one triangle"), "light")
     given = {"turned": "mirrored"}
     mirrored = any_engine.read(
-        lit(ROUGH, "l_dot_n", (-sun[0], sun[1]), relief=300.0, normal="one triangle", given=given), "light"
+        lit(HILLS, "l_dot_n", (-sun[0], sun[1]), relief=300.0, normal="one triangle", given=given), "light"
     )
     assert np.abs(mirrored - straight[:, ::-1]).max() > 0.05
 
 
 def test_the_one_triangle_is_the_thesis_triangle(engine, lit):
     sun = (135, 25)
-    sketch = lit(ROUGH, "l_dot_n", sun, relief=300.0, extent=640.0, normal="one triangle")
+    sketch = lit(HILLS, "l_dot_n", sun, relief=300.0, extent=640.0, normal="one triangle")
     h = engine.read(sketch, "height").astype(np.float64) * 300
     south_west, south_east, north_east = h[:-2, :-2], h[:-2, 2:], h[2:, 2:]
     flat = np.zeros_like(south_west)
@@ -250,14 +225,14 @@ def test_the_one_triangle_is_the_thesis_triangle(engine, lit):
 @BOTH
 @pytest.mark.parametrize("elevation", [-0.01, -5.0, -90.0])
 def test_a_sun_below_the_horizon_leaves_the_sky_only(engine, lit, method, elevation):
-    sketch = lit(ROUGH, method, (135, elevation), relief=3000.0, ambient=0.25, sky_colour=(0.5, 1.0, 2.0))
+    sketch = lit(HILLS, method, (135, elevation), relief=3000.0, ambient=0.25, sky_colour=(0.5, 1.0, 2.0))
     light = engine.read(sketch, "light")[..., :3]
     np.testing.assert_array_equal(light, np.broadcast_to(np.float32([0.125, 0.25, 0.5]), light.shape))
 
 
 @BOTH
 def test_a_sun_on_the_horizon_lights_what_faces_it(engine, lit, method):
-    light = engine.read(lit(ROUGH, method, (90, 0), relief=300.0), "light")
+    light = engine.read(lit(HILLS, method, (90, 0), relief=300.0), "light")
     assert np.isfinite(light).all() and light[..., 0].max() > 0.1
     flat = engine.read(lit(PLANE, method, (90, 0)), "light")
     np.testing.assert_array_equal(flat[..., :3], 0)
@@ -283,25 +258,25 @@ def test_gain_is_not_cut_at_1_and_is_2_by_default(engine, lit, method, make_sket
 @BOTH
 @pytest.mark.parametrize("size", [[1, 1], [2, 2], [1, 20], [20, 1]], ids=str)
 def test_tiny_lands_are_numbers(engine, lit, method, size):
-    light = engine.read(lit(ROUGH, method, (135, 25), size=size), "light")
+    light = engine.read(lit(HILLS, method, (135, 25), size=size), "light")
     assert np.isfinite(light).all()
 
 
 @BOTH
 def test_a_land_without_relief_is_flat(engine, lit, method):
-    light = engine.read(lit(ROUGH, method, (135, 30), relief=0.0), "light")
+    light = engine.read(lit(HILLS, method, (135, 30), relief=0.0), "light")
     np.testing.assert_allclose(light[..., 0], 0.5, rtol=HALF)
 
 
 @BOTH
 def test_a_finer_light_map_agrees_where_they_meet(engine, lit, method):
     values = {"size": [65, 49], "extent": [640, 960], "relief": 300.0}
-    same = engine.read(lit(ROUGH, method, (135, 25), **values), "light")
+    same = engine.read(lit(HILLS, method, (135, 25), **values), "light")
     fine = engine.read(
-        lit(ROUGH, method, (135, 25), light_size='["2*size.x-1", "2*size.y-1"]', **values), "light"
+        lit(HILLS, method, (135, 25), light_size='["2*size.x-1", "2*size.y-1"]', **values), "light"
     )
     np.testing.assert_array_equal(fine[::2, ::2], same)
-    coarse = engine.read(lit(ROUGH, method, (135, 25), light_size="[33, 25]", **values), "light")
+    coarse = engine.read(lit(HILLS, method, (135, 25), light_size="[33, 25]", **values), "light")
     np.testing.assert_array_equal(coarse, same[::2, ::2])
 
 
@@ -320,7 +295,7 @@ def test_a_light_map_of_any_size_sees_the_same_slopes(engine, lit, method):
 @pytest.mark.parametrize("stride", [1.0, 0.5, 2.0, 0.75])
 @pytest.mark.parametrize("sun", [(135, 25), (90, 15), (0, 5), (317, 40), (45, 10), (222.5, 60)], ids=str)
 def test_shadows_are_those_of_a_slow_march(engine, lit, sun, stride):
-    sketch = lit(ROUGH, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, stride=stride)
+    sketch = lit(HILLS, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, stride=stride)
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     visible = engine.read(sketch, "light")[..., 3]
     direction = sun_vector(*sun)
@@ -336,7 +311,7 @@ def test_shadows_are_those_of_a_slow_march(engine, lit, sun, stride):
 @pytest.mark.parametrize(("scale", "base"), [(3.0, -1.0), (0.5, 10.0), (1.0, -20.0)])
 def test_heights_beyond_0_to_1_throw_their_shadows(engine, lit, scale, base):
     sun = (120, 20)
-    sketch = lit(ROUGH, "ray_cast", sun, extent=640.0, relief=200.0, given={"scale": scale, "base": base})
+    sketch = lit(HILLS, "ray_cast", sun, extent=640.0, relief=200.0, given={"scale": scale, "base": base})
     heights = engine.read(sketch, "height").astype(np.float64) * 200
     visible = engine.read(sketch, "light")[..., 3]
     room = clearance(heights, sun_vector(*sun), np.array([10.0, 10.0]))
@@ -376,15 +351,15 @@ def test_a_wall_throws_its_shadow_in_metres_to_the_north_and_south(engine, lit, 
 
 
 def test_under_the_zenith_there_is_no_shadow(engine, lit):
-    light = engine.read(lit(ROUGH, "ray_cast", (77, 90), relief=3000.0), "light")
+    light = engine.read(lit(HILLS, "ray_cast", (77, 90), relief=3000.0), "light")
     np.testing.assert_array_equal(light[..., 3], 1)
     assert light[..., 0].min() > 0
 
 
 def test_its_light_is_that_of_l_dot_n_or_none(engine, lit):
     values = {"size": 65, "relief": 300.0}
-    ray = engine.read(lit(ROUGH, "ray_cast", (135, 15), **values), "light")
-    plain = engine.read(lit(ROUGH, "l_dot_n", (135, 15), **values), "light")
+    ray = engine.read(lit(HILLS, "ray_cast", (135, 15), **values), "light")
+    plain = engine.read(lit(HILLS, "l_dot_n", (135, 15), **values), "light")
     shadow = ray[..., 3] == 0
     assert 0.05 < shadow.mean() < 0.95
     np.testing.assert_array_equal(ray[~shadow, :3], plain[~shadow, :3])
@@ -395,7 +370,7 @@ def test_a_lower_sun_never_takes_a_shadow_away(any_engine, lit):
     """A ray that is lower everywhere is blocked wherever the higher one is."""
     values = {"size": 129, "relief": 300.0, "extent": 1280.0}
     shadows = [
-        any_engine.read(lit(ROUGH, "ray_cast", (135, e), **values), "light")[..., 3] == 0
+        any_engine.read(lit(HILLS, "ray_cast", (135, e), **values), "light")[..., 3] == 0
         for e in (40, 25, 15, 5)
     ]
     for high, low in pairwise(shadows):
@@ -405,7 +380,7 @@ def test_a_lower_sun_never_takes_a_shadow_away(any_engine, lit):
 def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit):
     values = {"size": 65, "relief": 300.0, "extent": 640.0}
     ways = [
-        any_engine.read(lit(ROUGH, "ray_cast", (30, 25), reading=r, **values), "light")
+        any_engine.read(lit(HILLS, "ray_cast", (30, 25), reading=r, **values), "light")
         for r in ("interpolated", "cut down")
     ]
     assert 0 < (ways[0][..., 3] != ways[1][..., 3]).mean() < 0.2
@@ -413,7 +388,7 @@ def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit
 
 @pytest.mark.parametrize("form", ["march", "sweep"])
 def test_moving_the_sun_leaves_the_land_and_what_is_known_of_it_alone(any_engine, lit, form):
-    sketch = lit(ROUGH, "ray_cast", (135, 25), form=form)
+    sketch = lit(HILLS, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
     assert {"height", "light.tops", "light.range.whole"} < set(any_engine.ran)
     any_engine.read(sketch.with_values({"light.sun": (140, 25)}), "light")
@@ -488,7 +463,7 @@ float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
     """Texels of the light on texels of the land stand beside others that do not."""
     sun = (135, 25)
-    sketch = lit(ROUGH, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
+    sketch = lit(HILLS, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     places = np.meshgrid(np.linspace(0, 64, 97), np.linspace(0, 64, 129), indexing="ij")
     slopes = [map_coordinates(s, places, order=1) for s in np.gradient(heights, 10.0)]
