@@ -109,30 +109,24 @@ def test_only_live_has_a_window():
 
 
 FRESH = """
-import sys, time
-start = time.perf_counter()
+import sys
 import playground
-spent = time.perf_counter() - start
-slow = {"moderngl", "glfw", "numpy", "imgui_bundle", "PIL", "pyrr", "typer", "rich"}
+slow = {"moderngl", "glcontext", "glfw", "numpy", "imgui_bundle", "PIL", "pyrr", "typer", "rich"}
 heavy = sorted(slow & set(sys.modules))
-print(spent, ",".join(heavy), playground.__version__)
+print(",".join(heavy), playground.__version__)
 """
 
 
-def test_importing_opens_nothing_and_takes_no_time():
-    best = 1e9
-    for _ in range(3):
-        done = subprocess.run(
-            [sys.executable, "-c", FRESH],
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        spent, heavy, _version = done.stdout.rstrip("\n").split(" ")
-        assert heavy == "", f"importing playground imports {heavy}"
-        best = min(best, float(spent))
-    assert best < 0.15
+def test_importing_loads_nothing_that_is_slow():
+    done = subprocess.run(
+        [sys.executable, "-c", FRESH],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    heavy, _version = done.stdout.rstrip("\n").split(" ")
+    assert heavy == "", f"importing playground imports {heavy}"
 
 
 def test_every_public_name_comes_from_the_home_that_it_is_said_to_have():

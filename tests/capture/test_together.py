@@ -45,7 +45,7 @@ except DataError as error:
 def test_a_disk_that_fills_up_leaves_nothing_half_written(tmp_path: Path):
     done = subprocess.run(
         [sys.executable, "-c", FULL],
-        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=30,
+        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
     )  # fmt: skip
     assert done.stdout == "land.obj: cannot be written: File too large\n", done.stderr
     assert not list(tmp_path.iterdir())

@@ -82,7 +82,7 @@ def said(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
 def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(folder: Path):
     done = subprocess.run(
         [sys.executable, "-m", "playground", "export", "rise", "--to", "a.r16", "--to", "a.glb"],
-        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=60,
+        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout == "a.r16\na.r16.json\na.glb\n"

@@ -54,7 +54,7 @@ def in_a_child(script: str, *arguments: str, **environment: str) -> subprocess.C
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=180,
     )
 
 

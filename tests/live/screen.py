@@ -17,7 +17,7 @@ import pytest
 from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parents[2]
-LIMIT = 25.0  # [s] for anything to happen on a slow machine
+LIMIT = 90.0  # [s] for anything to happen on a slow machine
 
 ON_LINUX = [
     pytest.mark.live,
@@ -62,7 +62,7 @@ class Screen:
     def do(self, *words: object) -> None:
         """Move the mouse, press keys: what xdotool is told."""
         environment = {**os.environ, "DISPLAY": self.display}
-        subprocess.run([self.xdotool, *map(str, words)], env=environment, check=True, timeout=10)
+        subprocess.run([self.xdotool, *map(str, words)], env=environment, check=True, timeout=180)
 
     def close(self) -> None:
         """End the server."""

@@ -182,10 +182,10 @@ def test_log2_is_exact_up_to_the_largest_power(n):
     ],
 )
 def test_what_is_no_expression_is_one_sentence_and_quick(text):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ExpressionError):
         evaluate(text, NAMES)
-    assert time.perf_counter() - start < 0.2
+    assert time.process_time() - start < 5.0  # [s] of this process; what means harm takes hours
 
 
 def test_rubbish_raises_nothing_else():
@@ -259,9 +259,9 @@ def test_check_looks_into_both_branches():
     nested = "1"
     for _ in range(24):
         nested = f"({nested} if 1 else 2)"
-    start = time.perf_counter()
+    start = time.process_time()
     check(nested, NAMES)
-    assert time.perf_counter() - start < 0.2
+    assert time.process_time() - start < 5.0  # [s] of this process; twice at each level would be hours
 
 
 @pytest.mark.parametrize(
