@@ -92,6 +92,7 @@ def small_engine(ctx: moderngl.Context, driver: str) -> Iterator[Engine]:
 
 
 @pytest.mark.parametrize("driver", ["fragment", "compute"])
+@pytest.mark.slow
 def test_five_hundred_renders_keep_no_more_than_fifty(ctx, sketch, alive, driver):
     with small_engine(ctx, driver) as engine:
         for i in range(50):
@@ -103,6 +104,7 @@ def test_five_hundred_renders_keep_no_more_than_fifty(ctx, sketch, alive, driver
         assert resident() - memory < 6 * 2**20
 
 
+@pytest.mark.slow
 def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
     with small_engine(ctx, "fragment") as engine:
         seen = []
@@ -115,6 +117,7 @@ def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
         assert len(engine.runner.programs) <= 65
 
 
+@pytest.mark.slow
 def test_changing_sizes_and_meshes_are_bounded(ctx, sketch, alive):
     with small_engine(ctx, "fragment") as engine:
         seen = []

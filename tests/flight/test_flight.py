@@ -171,6 +171,7 @@ def test_reset_goes_back_to_the_start(small_engine, land_of):
         assert math.hypot(flight.craft.east - first.east, flight.craft.north - first.north) < 3
 
 
+@pytest.mark.slow
 def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, land_of):
     """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are kept."""
     sketch = land_of(intervals=8, apron=2, spacing=300.0)

@@ -23,6 +23,7 @@ HOME = Path(__file__).parent / "pictures"
 EVERY = 150
 
 
+@pytest.mark.slow
 def test_the_tour_looks_as_it_should(ctx: moderngl.Context, request: pytest.FixtureRequest) -> None:
     record = read_record(HOME / "tour.jsonl")
     with Engine(ctx, cache_bytes=CACHE_BYTES) as engine:
