@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.cache import Cache
+from playground.engine.drawn import Drawn
 from playground.engine.execution import Execution
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker
@@ -72,7 +73,9 @@ class Engine:
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.runner = Runner(ctx, self.info, self.pool)
+        self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self._keys = KeyMaker()
+        self._drawn = Drawn()
         self._timer: Timer | None = None
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
@@ -105,6 +108,7 @@ class Engine:
             return
         self._make_current()
         self._released = self._owns_context
+        self.results = {}
         self.cache.clear()
         self.pool.clear()
         self.runner.release()
@@ -208,13 +212,24 @@ class Engine:
         for turn in range(node.whole + 1):
             yield turn, self.read(found, repeated, size=size, time=time, steps={repeated: turn})
 
+    def drawn(self) -> str:
+        """Return a hash of what the last frame's picture was drawn from; "" before the first.
+
+        The same on every machine: see ``engine.drawn``.
+        """
+        plan = self._plan
+        if plan is None:
+            return ""
+        ref = next(iter(plan.flat.outputs["view"].values()))
+        return self._drawn.hash_of(plan, ref, self._form, self._given_for, _continued(plan))
+
     # ── running ──────────────────────────────────────────────────────────────
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
         self._plan = plan
-        self.ran, self.texels, self.times = [], 0, {}
+        self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.cache.begin()
         self.runner.begin(plan)
         continued = _continued(plan)
@@ -237,6 +252,7 @@ class Engine:
             # What stays bound here is bound again by later calls, so it may not be one that goes.
             (bound if bound is not None and _is_alive(bound) else self._default).use()
         self.cache.trim()
+        self.results = execution.results
         return execution.results[ref.path].textures[ref.output]
 
     def _make(

@@ -45,9 +45,13 @@ class Keys:
 
 
 class KeyMaker:
-    """Makes the keys of plans; remembers what kernels' texts say."""
+    """Makes the keys of plans; remembers what kernels' texts say.
 
-    def __init__(self) -> None:
+    ``text`` gives what counts of a kernel's text.
+    """
+
+    def __init__(self, text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical) -> None:
+        self._text = text
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
 
     def keys_of(
@@ -74,7 +78,7 @@ class KeyMaker:
             return known[1]
         while len(self._texts) >= _MAX_TEXTS:
             self._texts.pop(next(iter(self._texts)))
-        found = _read_text(kernel)
+        found = _read_text(kernel, self._text(kernel))
         self._texts[id(kernel)] = (kernel, found)  # held, so that its identity stays its own
         return found
 
@@ -87,7 +91,7 @@ class _Text:
     used: frozenset[str]  # names that stand in the text besides their declaration, or in its header
 
 
-def _read_text(kernel: Kernel) -> _Text:
+def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a companion's is not
@@ -110,7 +114,7 @@ def _read_text(kernel: Kernel) -> _Text:
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":
         used |= set(mesh_parameters(kernel.registry))
-    return _Text(_digest([header, kernel.source.canonical]), frozenset(used))
+    return _Text(_digest([header, text]), frozenset(used))
 
 
 class _Made:

@@ -25,16 +25,13 @@ from typing import NoReturn
 
 import pytest
 
-from playground.errors import ContextError, DataError, PlaygroundError, counted
+from playground.errors import ContextError, PlaygroundError, counted
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
-from playground.shots.compare import compare
-from playground.shots.references import drawn_by, reference_path, stale_references, write_reference
+from playground.shots.references import REFERENCE_RENDERER, drawn_by, stale_references, write_reference
 from playground.shots.studio import Studio
 from playground.shots.suite import Outcome, ShotCase, check, save_pictures
 from playground.sketch.model import Sketch
-
-REFERENCE_RENDERER = "llvmpipe"
 
 _SAID = "shots"  # the user property that carries a line for the summary, from a worker of xdist too
 
@@ -80,17 +77,10 @@ class Shots:
         """Take a shot; fail the test unless a reference matches, or ``--shots-update`` writes one."""
         renderer = self._reference_renderer()
         try:
-            frame = self.studio.take(case)
-            try:
-                outcome = check(case, frame, renderer)
-            except DataError:  # a reference that cannot be read can be written anew
-                if not self.updating:
-                    raise
-                path = reference_path(case.sketch, case.shot.name, renderer.slug)
-                outcome = Outcome(case, frame, compare(frame.array, None), path, renderer)
+            outcome = check(case, self.studio.take(case), renderer)
             if outcome.ok:
                 return
-            if self.updating and outcome.comparison.verdict != "blank":
+            if self.updating and outcome.word not in ("blank", "nan", "gl-error"):
                 self._write(outcome)
                 return
             message = self._explained(outcome)
@@ -124,8 +114,10 @@ class Shots:
 
     def _write(self, outcome: Outcome) -> None:
         case = outcome.case
-        written, removed = write_reference(case.sketch, case.shot.name, outcome.renderer, outcome.frame.array)
-        self._say(f"wrote {shown(written)}  ({outcome.comparison})")
+        written, removed = write_reference(
+            case.sketch, case.shot.name, outcome.renderer, outcome.frame.array, outcome.fingerprint.drawn
+        )
+        self._say(f"wrote {shown(written)}  ({outcome.sentence})")
         for path in removed:
             self._say(f"removed {shown(path)}  (it let the picture before this one pass)")
 
@@ -133,13 +125,13 @@ class Shots:
         self.node.user_properties.append((_SAID, line))
 
     def _explained(self, outcome: Outcome) -> str:
-        lines = [f"{outcome.case}: {outcome.comparison}", f"    reference   {shown(outcome.path)}"]
+        lines = [f"{outcome.case}: {outcome.sentence}", f"    reference   {shown(outcome.path)}"]
         files = save_pictures(outcome, self.output)
         lines += [f"    {word:<11} {path.absolute()}" for word, path in files.items()]
         if outcome.other_build:
             lines.append(f"    drawn by    {drawn_by(outcome.renderer)}")
             lines.append(f"    reference   by {outcome.other_build}")
-        if outcome.comparison.verdict != "blank":
+        if outcome.word not in ("blank", "nan", "gl-error"):
             lines.append(f"    accept it   pytest --shots-update {shlex.quote(self.node.nodeid)}")
         return "\n".join(lines)
 

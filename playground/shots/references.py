@@ -4,9 +4,8 @@
 beside the sketch for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures
 that may match (another build of the same renderer, say).
 
-A reference carries texts: who drew it and what it shows. Pictures are compared by pixels
-alone; the texts explain a difference. There is no date in them, so that writing the same
-picture again gives the same file.
+A reference carries texts: its fingerprint, and which shot of which sketch it shows. There is no
+date in them, so that writing the same picture again gives the same file.
 """
 
 from __future__ import annotations
@@ -20,13 +19,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground import paths
-from playground._version import __version__
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import read_png, write_png
+from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.sketch.model import Sketch
 
 FOLDER = "screenshots"
+
+REFERENCE_RENDERER = "llvmpipe"
+"""Slug of the renderer that every shot has references of: it is the same on every machine."""
 
 _NUMBERED = re.compile(r"(?P<shot>[^.]+)(?:\.(?P<number>[2-9]|[1-9][0-9]+))?\.png")
 
@@ -37,7 +39,12 @@ class Reference:
 
     path: Path
     pixels: NDArray[np.uint8]  # (height, width, 4), top row first, sRGB and alpha
-    text: dict[str, str]  # what the file says of itself: renderer, version, vendor, tool, sketch, shot
+    text: dict[str, str]  # what the file says of itself: its fingerprint's parts, sketch, shot
+
+    @property
+    def fingerprint(self) -> Fingerprint:
+        """What it comes from, as far as the file says."""
+        return read_fingerprint(self.text)
 
     @property
     def drawn_by(self) -> str:
@@ -70,7 +77,11 @@ def reference_path(sketch: Sketch, shot: str, renderer: str) -> Path:
 
 def accepted(sketch: Sketch, shot: str, renderer: str) -> list[Path]:
     """List the reference files that are there for a shot, ``<shot>.png`` first; none if it is missing."""
-    folder = reference_path(sketch, shot, renderer).parent
+    return accepted_in(reference_path(sketch, shot, renderer).parent, shot)
+
+
+def accepted_in(folder: Path, shot: str) -> list[Path]:
+    """List the reference files for a shot that are in a folder, ``<shot>.png`` first."""
     found: list[tuple[int, Path]] = []
     for path in folder.glob("*.png"):
         name = _NUMBERED.fullmatch(path.name)
@@ -86,31 +97,41 @@ def read_reference(path: Path) -> Reference:
 
 
 def write_reference(
-    sketch: Sketch, shot: str, renderer: ContextInfo, pixels: NDArray[np.uint8]
+    sketch: Sketch, shot: str, renderer: ContextInfo, pixels: NDArray[np.uint8], drawn: str = ""
 ) -> tuple[Path, list[Path]]:
-    """Write ``<shot>.png``, whole or not at all, and remove the further ones that were accepted.
+    """Write a shot's first reference for its renderer, and remove the further ones that were accepted.
+
+    ``drawn`` is the hash of what was drawn, "" if that is not known. Otherwise as
+    `write_reference_in`.
+    """
+    folder = reference_path(sketch, shot, renderer.slug).parent
+    fingerprint = fingerprint_of(renderer, (pixels.shape[1], pixels.shape[0]), drawn)
+    return write_reference_in(folder, shot, fingerprint, pixels, sketch.name)
+
+
+def write_reference_in(
+    folder: Path, shot: str, fingerprint: Fingerprint, pixels: NDArray[np.uint8], sketch: str = ""
+) -> tuple[Path, list[Path]]:
+    """Write ``<shot>.png`` into a folder, whole or not at all, and remove ``<shot>.2.png`` and so on.
 
     Those would otherwise let the old picture pass for ever. Returns what was written and
     what was removed. Raises ``DataError`` where the folder cannot be written to.
     """
-    path = reference_path(sketch, shot, renderer.slug)
-    text = {
-        "renderer": renderer.renderer,
-        "version": renderer.version,
-        "vendor": renderer.vendor,
-        "tool": f"terrain-shader-playground {__version__}",
-        "sketch": sketch.name,
-        "shot": shot,
-    }
+    path = folder / f"{shot}.png"
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=path.parent) from error
-    write_png(path, pixels, text=text)
-    further = [other for other in accepted(sketch, shot, renderer.slug) if other != path]
+        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    write_png(path, pixels, text=reference_texts(fingerprint, sketch, shot))
+    further = [other for other in accepted_in(folder, shot) if other != path]
     for other in further:
         other.unlink()
     return path, further
+
+
+def reference_texts(fingerprint: Fingerprint, sketch: str, shot: str) -> dict[str, str]:
+    """Return what a reference says of itself."""
+    return {**fingerprint.texts(), **({"sketch": sketch} if sketch else {}), "shot": shot}
 
 
 def stale_references(sketches: Iterable[Sketch]) -> list[Path]:

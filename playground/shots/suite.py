@@ -13,11 +13,20 @@ from pathlib import Path
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.errors import ContextError, DataError
+from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
-from playground.shots.compare import TOLERANCE, Comparison, compare, difference_picture
-from playground.shots.references import Reference, accepted, drawn_by, read_reference, reference_path
+from playground.shots.compare import Comparison, difference_picture
+from playground.shots.fingerprint import Fingerprint, fingerprint_of
+from playground.shots.judge import Judgement, judge, unreadable
+from playground.shots.references import (
+    REFERENCE_RENDERER,
+    Reference,
+    accepted,
+    drawn_by,
+    read_reference,
+    reference_path,
+)
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
 
@@ -34,20 +43,64 @@ class ShotCase:
 
 
 @dataclass(frozen=True, eq=False)
+class Taken(Frame):
+    """A frame, with what is known of how it was drawn."""
+
+    drawn: str = ""  # hash of what was drawn
+    not_finite: str = ""  # the first texture that went into it with a number that is not finite, in words
+    gl_error: str = ""  # what drawing it left behind
+
+
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """What came of one shot."""
 
     case: ShotCase
     frame: Frame
-    comparison: Comparison  # with the reference that is nearest
-    path: Path  # of that reference, or where it would be
+    judgement: Judgement
+    path: Path  # of the reference that it was judged by, or where that would be
     renderer: ContextInfo  # that drew the frame
-    reference: Reference | None = None  # None: missing
+    reference: Reference | None = None  # that it was judged by; None: missing or unreadable
 
     @property
     def ok(self) -> bool:
-        """Whether the picture is one of those expected."""
-        return self.comparison.ok
+        """Whether the picture passes."""
+        return self.judgement.ok
+
+    @property
+    def word(self) -> str:
+        """What came of it, in one of `playground.shots.judge.WORDS`."""
+        return self.judgement.word
+
+    @property
+    def sentence(self) -> str:
+        """What there is to say of it, beginning with the word."""
+        return self.judgement.sentence
+
+    @property
+    def tier(self) -> str:
+        """How strictly it was compared: "same build", "another build", "another renderer"; "": it was not."""
+        return self.judgement.tier
+
+    @property
+    def comparison(self) -> Comparison:
+        """The pixels' comparison, with the reference that is nearest."""
+        return self.judgement.comparison
+
+    @property
+    def fingerprint(self) -> Fingerprint:
+        """What the picture comes from."""
+        return self.judgement.fingerprint
+
+    @property
+    def differences(self) -> tuple[str, ...]:
+        """How what it comes from differs from what the reference comes from, in words, one to a line."""
+        return self.judgement.differences
+
+    @property
+    def own_path(self) -> Path:
+        """Where its renderer's reference is, or would be: what accepting it writes."""
+        return reference_path(self.case.sketch, self.case.shot.name, self.renderer.slug)
 
     @property
     def other_build(self) -> str:
@@ -65,40 +118,43 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
     return [ShotCase(sketch, shot) for sketch in loaded for shot in sketch.shots]
 
 
-def take(engine: Engine, case: ShotCase) -> Frame:
+def take(engine: Engine, case: ShotCase) -> Taken:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
-    Raises ``PlaygroundError`` for a mistake in the sketch, ``ContextError`` where drawing
-    left an OpenGL error behind: whatever the picture looks like, it is not to be trusted.
+    An OpenGL error left behind is told in the frame: whatever that looks like, it is not to be
+    trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``ContextError`` where the
+    driver refuses a pass.
     """
     shot = case.shot
     frame = engine.render(case.sketch.for_shot(shot), size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
-    if error != "GL_NO_ERROR":
-        raise ContextError(f"drawing {case} left the OpenGL error {error}")
-    return frame
+    left = "" if error == "GL_NO_ERROR" else error
+    return Taken(frame.array, frame.sketch, frame.time, drawn=engine.drawn(), gl_error=left)
 
 
-def check(case: ShotCase, frame: Frame, renderer: ContextInfo, tolerance: int = TOLERANCE) -> Outcome:
-    """Compare a frame with the references of its renderer; any may match, else the nearest is told.
+def check(
+    case: ShotCase, frame: Frame, renderer: ContextInfo, reference_renderer: str = REFERENCE_RENDERER
+) -> Outcome:
+    """Judge a frame by the references of its renderer; any may match, else the nearest is told.
 
-    Raises ``DataError`` where a reference cannot be read.
+    A frame that `take` made says as well what was drawn, and what was wrong with it.
     """
-    files = accepted(case.sketch, case.shot.name, renderer.slug)
-    if not files:
-        path = reference_path(case.sketch, case.shot.name, renderer.slug)
-        return Outcome(case, frame, compare(frame.array, None, tolerance), path, renderer)
-    outcomes: list[Outcome] = []
-    for file in files:
-        reference = read_reference(file)
-        comparison = compare(frame.array, reference.pixels, tolerance)
-        outcomes.append(Outcome(case, frame, comparison, file, renderer, reference))
-    return min(outcomes, key=_distance)
-
-
-def _distance(outcome: Outcome) -> tuple[bool, bool, int, int]:
-    found = outcome.comparison
-    return not found.ok, found.verdict == "size", found.over, found.most
+    name = case.shot.name
+    drawn, not_finite, gl_error = "", "", ""
+    if isinstance(frame, Taken):
+        drawn, not_finite, gl_error = frame.drawn, frame.not_finite, frame.gl_error
+    fingerprint = fingerprint_of(renderer, frame.size, drawn)
+    path = reference_path(case.sketch, name, renderer.slug)
+    references = []
+    for file in accepted(case.sketch, name, renderer.slug):
+        try:
+            references.append(read_reference(file))
+        except DataError as error:
+            return Outcome(case, frame, unreadable(frame.array, fingerprint, str(error)), file, renderer)
+    judgement, reference = judge(
+        frame.array, fingerprint, references, not_finite=not_finite, gl_error=gl_error
+    )
+    return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
 
 
 def save_pictures(outcome: Outcome, folder: Path) -> dict[str, Path]:

@@ -136,9 +136,20 @@ def test_a_picture_of_one_colour_never_passes(colour: tuple[int, ...], size: tup
         assert str(colour) in str(found)
 
 
-def test_one_other_pixel_is_not_blank() -> None:
-    nearly = changed(np.zeros((5, 7, 4), np.uint8), 6, 4, 3, 1)
+@pytest.mark.parametrize("size", [(7, 5), (640, 360)])
+@pytest.mark.parametrize("channel", range(4))
+def test_one_other_pixel_is_not_blank(size: tuple[int, int], channel: int) -> None:
+    flat = np.zeros((size[1], size[0], 4), np.uint8)
+    nearly = changed(flat, size[0] - 2, size[1] - 2, channel, 2)
     assert compare(nearly, nearly.copy()).ok
+
+
+@pytest.mark.parametrize("size", [(7, 5), (640, 360)])
+def test_noise_of_one_level_is_one_colour_still(size: tuple[int, int]) -> None:
+    noisy = picture(*size, low=200, high=202)
+    found = compare(noisy, noisy.copy())
+    assert found.verdict == "blank"
+    assert "to within one level" in str(found)
 
 
 def test_a_blank_reference_does_not_let_a_picture_pass() -> None:

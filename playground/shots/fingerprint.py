@@ -1,0 +1,165 @@
+"""Say what a picture comes from: which build of which renderer, on what processor, drew what.
+
+A reference carries this in its PNG's texts, and a picture just drawn has one too. Comparing
+the two explains a failure, and chooses how strictly the pictures are compared. What each part
+means for that:
+
+    renderer, version     the build: driver, its version, and for Mesa its LLVM and the width of
+                          the vectors it compiles for. Another build may round the other way.
+    vendor                GL's word for who wrote the driver. Told, but not a build: between two
+                          versions Mesa changed it from "Mesa/X.org" to "Mesa".
+    mesa, llvm            read out of the two strings, for people; they decide nothing twice.
+    cpu, simd             of a renderer that draws on the processor, part of the build: reciprocal
+                          square roots are estimated, and the estimates of Intel and AMD differ;
+                          with `fma` a product and a sum are rounded once, not twice; with `f16c`
+                          half floats are rounded by the processor. Where a graphics card draws,
+                          they say nothing, and are left out of the comparison.
+    drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
+                          files (see ``engine.drawn``). It never makes a comparison less strict:
+                          that an edit changed the picture is what the test is there to tell.
+    size                  the picture's. Pictures of two sizes are never compared.
+    tool                  the playground's version. It never makes a comparison less strict either:
+                          a bug of the playground must not excuse itself.
+
+What a reference does not say, as one of an older tool, counts as equal: silence is no excuse.
+There is no date in it, so that the same picture again gives the same file.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from functools import lru_cache
+from pathlib import Path
+
+from playground._version import __version__
+from playground.gpu.context import ContextInfo
+
+_MESA = re.compile(r"\bMesa (\d\S*(?: \(git-\w+\))?)")
+_LLVM = re.compile(r"\bLLVM (\d[\w.]*)")
+_SIMD = ("avx", "fma", "f16c")  # that change what llvmpipe's code computes, not only how fast
+_ARM = {"0x41": "ARM", "0x46": "Fujitsu", "0x48": "HiSilicon", "0x4e": "NVIDIA", "0x51": "Qualcomm"}
+_ARM |= {"0x61": "Apple", "0xc0": "Ampere"}
+
+BUILD = ("renderer", "version", "cpu", "simd")
+"""The parts that are the renderer's build."""
+
+_WORDS = {
+    "renderer": "renderer",
+    "version": "OpenGL version",
+    "vendor": "OpenGL vendor",
+    "mesa": "Mesa",
+    "llvm": "LLVM",
+    "cpu": "processor",
+    "simd": "processor's instructions",
+    "size": "size",
+    "tool": "tool",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Fingerprint:
+    """What a picture comes from; "" for what is not known."""
+
+    renderer: str = ""  # GL_RENDERER
+    version: str = ""  # GL_VERSION
+    vendor: str = ""  # GL_VENDOR
+    mesa: str = ""  # "22.3.6"; "" where the driver is not Mesa's
+    llvm: str = ""  # "15.0.6"
+    cpu: str = ""  # who made the processor: "GenuineIntel", "AuthenticAMD", "Apple"
+    simd: str = ""  # "avx fma f16c", what of them it has; "none"
+    drawn: str = ""  # hash of what was drawn
+    size: str = ""  # [pixels] "640x360"
+    tool: str = ""  # "terrain-shader-playground 0.1.0"
+
+    @property
+    def software(self) -> bool:
+        """Whether the processor drew it."""
+        return ContextInfo(0, self.renderer, "", "", 0).software
+
+    def texts(self) -> dict[str, str]:
+        """Return it as the texts of a PNG: what is known, by the names of the fields."""
+        return {name: text for name, text in asdict(self).items() if text}
+
+    def differs_in(self, other: Fingerprint) -> tuple[str, ...]:
+        """Name the fields that both state and that differ; the processor's only where it drew both."""
+        hardware = not (self.software and other.software)
+        found = []
+        for name in (field.name for field in fields(self)):
+            ours, theirs = getattr(self, name), getattr(other, name)
+            if ours and theirs and ours != theirs and not (hardware and name in ("cpu", "simd")):
+                found.append(name)
+        return tuple(found)
+
+    def same_build(self, other: Fingerprint) -> bool:
+        """Say whether the same build of a renderer drew both, as far as both say."""
+        return not set(BUILD) & set(self.differs_in(other))
+
+    def differences(self, reference: Fingerprint) -> tuple[str, ...]:
+        """Say in words, one to a line, how this picture's origin differs from a reference's."""
+        names = self.differs_in(reference)
+        found = []
+        for name in names:
+            ours, theirs = getattr(self, name), getattr(reference, name)
+            if name == "drawn":
+                found.append("what is drawn has changed: the sketch, its shot, a kernel, a value or a file")
+            elif name not in ("mesa", "llvm"):  # the version and the renderer say the same, and more
+                found.append(f"{_WORDS[name]}: {ours}; the reference's: {theirs}")
+        unknown = [_WORDS[name] for name in BUILD if getattr(self, name) and not getattr(reference, name)]
+        if unknown:
+            found.append(f"the reference does not say its {', '.join(unknown)}")
+        return tuple(found)
+
+
+def fingerprint_of(renderer: ContextInfo, size: tuple[int, int], drawn: str = "") -> Fingerprint:
+    """Return the fingerprint of a picture drawn on this machine; ``drawn`` as `Engine.drawn` gives it."""
+    mesa, llvm = _MESA.search(renderer.version), _LLVM.search(renderer.renderer)
+    return Fingerprint(
+        renderer.renderer,
+        renderer.version,
+        renderer.vendor,
+        mesa[1] if mesa else "",
+        llvm[1] if llvm else "",
+        *(processor() if renderer.software else ("", "")),
+        drawn,
+        f"{size[0]}x{size[1]}",
+        f"terrain-shader-playground {__version__}",
+    )
+
+
+def read_fingerprint(texts: Mapping[str, str]) -> Fingerprint:
+    """Return the fingerprint that a PNG's texts hold; what they do not say is ""."""
+    return Fingerprint(**{field.name: texts.get(field.name, "") for field in fields(Fingerprint)})
+
+
+@lru_cache(maxsize=1)
+def processor() -> tuple[str, str]:
+    """Return who made this machine's processor, and which instructions it has that change a picture."""
+    if sys.platform.startswith("linux"):
+        try:
+            return processor_in(Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace"))
+        except OSError:
+            return "", ""
+    if sys.platform == "win32":
+        return os.environ.get("PROCESSOR_IDENTIFIER", "").rpartition(", ")[2], ""
+    return ("Apple" if platform.machine() == "arm64" else "GenuineIntel"), ""
+
+
+def processor_in(cpuinfo: str) -> tuple[str, str]:
+    """Return the same from the text of Linux's ``/proc/cpuinfo``."""
+    said: dict[str, str] = {}
+    for line in cpuinfo.splitlines():
+        name, colon, text = line.partition(":")
+        if colon:
+            said.setdefault(name.strip(), text.strip())
+    if "CPU implementer" in said:
+        code = said["CPU implementer"]
+        return _ARM.get(code, f"ARM implementer {code}"), ""
+    if "flags" not in said:
+        return said.get("vendor_id", ""), ""
+    there = set(said["flags"].split())
+    return said.get("vendor_id", ""), " ".join(name for name in _SIMD if name in there) or "none"

@@ -1,0 +1,185 @@
+"""Decide whether a picture passes: by the strictest comparison that its references allow.
+
+    tier               allowed
+    same build         a difference of 1 in any channel, alpha included
+    another build      a difference of 3; at most 0.5 % of the pixels above 1, and nowhere crowded
+    another renderer   the perceived difference (FLIP) under two bounds: structural defects alone
+                       show by it, and the outcome says so
+
+`playground.shots.fingerprint` says what a build is. What was drawn, and the playground's own
+version, never make a comparison less strict. Where one reference was drawn by this very build,
+the others do not loosen it: they count where the picture is theirs to within one level, since
+someone accepted that picture, and for nothing else.
+
+Some pictures fail before anything is compared, each in its own word: an OpenGL error, a number
+that is not finite in a texture that went into it, a picture of one colour.
+
+It reads no files and draws nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.shots.compare import TOLERANCE, Comparison, compare
+from playground.shots.fingerprint import Fingerprint
+from playground.shots.references import Reference
+
+WORDS = (
+    "same",  # it passes; all others fail
+    "differs",
+    "crowded",  # few pixels differ, but close together
+    "size",
+    "blank",  # of one colour
+    "nan",  # a number that is not finite in a texture that went into it
+    "gl-error",
+    "missing",  # there is no reference
+    "unreadable",  # there is a reference that cannot be read
+    "structure",  # another renderer's picture is further off than renderers are
+)
+
+SAME_BUILD, OTHER_BUILD, OTHER_RENDERER = "same build", "another build", "another renderer"
+
+OTHER_TOLERANCE = 3
+"""[levels of 255] What another build may differ by: measured between Mesa 22.3 and 25.0, and two CPUs."""
+
+OTHER_SHARE = 0.005
+"""Share of the pixels that may differ by more than `TOLERANCE` from another build's."""
+
+WINDOW = 32
+"""[pixels] Side of the window in which pixels that differ may not crowd."""
+
+CROWD = 51
+"""[pixels] of a window that may differ by more than `TOLERANCE`: one in twenty, ten times the share."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """The window in which the most pixels differ."""
+
+    count: int  # pixels
+    place: tuple[int, int]  # [pixels] x and y of its top left corner, from the picture's
+    size: tuple[int, int]  # [pixels] width and height; less than `WINDOW` in a small picture
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Whether a picture passes, and why."""
+
+    word: str  # of `WORDS`
+    comparison: Comparison  # with the nearest reference
+    sentence: str  # what there is to say, beginning with the word
+    tier: str = ""  # how strictly it was compared; "": it was not
+    fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
+    differences: tuple[str, ...] = ()  # how its origin differs from the reference's, in words
+    crowd: Crowd | None = None  # of another build's picture, where pixels differ
+
+    @property
+    def ok(self) -> bool:
+        """Whether the picture passes."""
+        return self.word == "same"
+
+
+def judge(
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    references: Sequence[Reference],
+    *,
+    not_finite: str = "",
+    gl_error: str = "",
+) -> tuple[Judgement, Reference | None]:
+    """Judge a picture, uint8 (height, width, 4), by its renderer's references.
+
+    ``not_finite`` and ``gl_error`` say what is wrong with it whatever it looks like. Returns
+    with the judgement the reference that it is by: one that matches, else the nearest; None
+    where there is none. Raises ``DataError`` for an array of another dtype or shape.
+    """
+    found = _nearest(actual, fingerprint, references)
+    judgement, reference = found
+    wrong = ""
+    if gl_error:
+        wrong = f"gl-error: drawing it left the OpenGL error {gl_error}, so it is not to be trusted"
+    elif not_finite:
+        wrong = f"nan: {not_finite}"
+    if wrong:
+        word = wrong.partition(":")[0]
+        return replace(judgement, word=word, sentence=wrong, tier=""), reference
+    return found
+
+
+def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
+    """Return the judgement where a reference is there that cannot be read."""
+    return Judgement("unreadable", compare(actual, None), f"unreadable: {reason}", fingerprint=fingerprint)
+
+
+def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
+    """Return the window of ``side`` × ``side`` pixels, at any place, in which the most of a mask are set."""
+    height, width = min(side, over.shape[0]), min(side, over.shape[1])
+    sums = np.zeros((over.shape[0] + 1, over.shape[1] + 1), np.int32)
+    np.cumsum(over, axis=0, out=sums[1:, 1:])
+    np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
+    counts = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width] + sums[:-height, :-width]
+    y, x = divmod(int(counts.argmax()), counts.shape[1])
+    return Crowd(int(counts[y, x]), (x, y), (width, height))
+
+
+def _nearest(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, references: Sequence[Reference]
+) -> tuple[Judgement, Reference | None]:
+    if not references:
+        comparison = compare(actual, None)
+        return Judgement(comparison.verdict, comparison, str(comparison), fingerprint=fingerprint), None
+    own = [fingerprint.same_build(reference.fingerprint) for reference in references]
+    judged = []
+    for reference, same in zip(references, own, strict=True):
+        strict = same or any(own)
+        judged.append((_judged(actual, fingerprint, reference, same, strict), reference))
+    return min(judged, key=lambda pair: _distance(pair[0]))
+
+
+def _distance(judgement: Judgement) -> tuple[bool, bool, int, int]:
+    found = judgement.comparison
+    return not judgement.ok, found.verdict == "size", found.over, found.most
+
+
+def _judged(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, same: bool, strict: bool
+) -> Judgement:
+    """Judge by one reference of the same renderer; ``strict`` allows one level whoever drew it."""
+    comparison = compare(actual, reference.pixels, TOLERANCE)
+    tier = SAME_BUILD if same else OTHER_BUILD
+    differences = fingerprint.differences(reference.fingerprint)
+    found = Judgement(comparison.verdict, comparison, str(comparison), tier, fingerprint, differences)
+    if comparison.verdict in ("blank", "size"):
+        return replace(found, tier="")
+    if strict or comparison.verdict == "same":
+        return found
+    most = f"differs: max difference {comparison.most} of 255"
+    if comparison.most > OTHER_TOLERANCE:
+        return replace(found, sentence=f"{found.sentence}; of another build, {OTHER_TOLERANCE} may")
+    crowd = most_crowded(_over(actual, reference.pixels))
+    found = replace(found, crowd=crowd)
+    share = comparison.over / (comparison.size[0] * comparison.size[1])
+    counted = f"{comparison.over} pixels ({100 * share:.3g} %) over {TOLERANCE}"
+    if share > OTHER_SHARE:
+        return replace(found, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be")
+    place = f"at x = {crowd.place[0]}, y = {crowd.place[1]}"
+    window = (
+        f"{crowd.count} of them in the {crowd.size[0]} × {crowd.size[1]} pixels {place} from the top left"
+    )
+    if crowd.count > CROWD:
+        return replace(
+            found, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
+        )
+    passed = replace(comparison, verdict="same")
+    told = f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
+    return replace(found, word="same", comparison=passed, sentence=told)
+
+
+def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    difference = np.maximum(actual, expected) - np.minimum(actual, expected)
+    return np.asarray((difference > TOLERANCE).any(axis=2))
