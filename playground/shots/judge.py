@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from playground.shots.compare import TOLERANCE, Comparison, compare
 from playground.shots.fingerprint import Fingerprint
+from playground.shots.flip import TILE, flip
 from playground.shots.references import Reference
 
 WORDS = (
@@ -57,6 +58,15 @@ CROWD = 51
 """[pixels] of a window that may differ by more than `TOLERANCE`: one in twenty, ten times the share."""
 
 
+STRUCTURE_ONLY = "The reference is another renderer's, so this finds structural defects only"
+
+FLIP_MEAN = 0.05
+"""Mean FLIP that another renderer's picture may have."""
+
+FLIP_TILE = 0.35
+"""Mean FLIP that its worst 32 × 32 pixels may have."""
+
+
 @dataclass(frozen=True, slots=True)
 class Crowd:
     """The window in which the most pixels differ."""
@@ -64,6 +74,15 @@ class Crowd:
     count: int  # pixels
     place: tuple[int, int]  # [pixels] x and y of its top left corner, from the picture's
     size: tuple[int, int]  # [pixels] width and height; less than `WINDOW` in a small picture
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """How different another renderer's picture looks, by FLIP: 0 alike, 1 as different as can be."""
+
+    mean: float  # over the picture
+    tile: float  # over its worst 32 × 32 pixels
+    place: tuple[int, int]  # [pixels] x and y of their top left corner
 
 
 @dataclass(frozen=True)
@@ -77,6 +96,7 @@ class Judgement:
     fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
     differences: tuple[str, ...] = ()  # how its origin differs from the reference's, in words
     crowd: Crowd | None = None  # of another build's picture, where pixels differ
+    seen: Seen | None = None  # of another renderer's
 
     @property
     def ok(self) -> bool:
@@ -88,17 +108,19 @@ def judge(
     actual: NDArray[np.uint8],
     fingerprint: Fingerprint,
     references: Sequence[Reference],
+    others: Sequence[Reference] = (),
     *,
     not_finite: str = "",
     gl_error: str = "",
 ) -> tuple[Judgement, Reference | None]:
     """Judge a picture, uint8 (height, width, 4), by its renderer's references.
 
-    ``not_finite`` and ``gl_error`` say what is wrong with it whatever it looks like. Returns
-    with the judgement the reference that it is by: one that matches, else the nearest; None
-    where there is none. Raises ``DataError`` for an array of another dtype or shape.
+    Where there are none it is judged by ``others``, those of another renderer. ``not_finite`` and
+    ``gl_error`` say what is wrong with it whatever it looks like. Returns with the judgement the
+    reference that it is by: one that matches, else the nearest; None where there is none. Raises
+    ``DataError`` for an array of another dtype or shape.
     """
-    found = _nearest(actual, fingerprint, references)
+    found = _nearest(actual, fingerprint, references, others)
     judgement, reference = found
     wrong = ""
     if gl_error:
@@ -128,8 +150,14 @@ def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
 
 
 def _nearest(
-    actual: NDArray[np.uint8], fingerprint: Fingerprint, references: Sequence[Reference]
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    references: Sequence[Reference],
+    others: Sequence[Reference],
 ) -> tuple[Judgement, Reference | None]:
+    if not references and others:
+        seen = [(_judged_by_eye(actual, fingerprint, other), other) for other in others]
+        return min(seen, key=lambda pair: _distance(pair[0]))
     if not references:
         comparison = compare(actual, None)
         return Judgement(comparison.verdict, comparison, str(comparison), fingerprint=fingerprint), None
@@ -141,9 +169,10 @@ def _nearest(
     return min(judged, key=lambda pair: _distance(pair[0]))
 
 
-def _distance(judgement: Judgement) -> tuple[bool, bool, int, int]:
+def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
     found = judgement.comparison
-    return not judgement.ok, found.verdict == "size", found.over, found.most
+    by_eye = judgement.seen.mean if judgement.seen else 0.0
+    return not judgement.ok, found.verdict == "size", by_eye, found.over, found.most
 
 
 def _judged(
@@ -178,6 +207,33 @@ def _judged(
     passed = replace(comparison, verdict="same")
     told = f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
     return replace(found, word="same", comparison=passed, sentence=told)
+
+
+def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference) -> Judgement:
+    """Judge by a reference of another renderer."""
+    comparison = compare(actual, reference.pixels, TOLERANCE)
+    differences = fingerprint.differences(reference.fingerprint)
+    found = Judgement(
+        comparison.verdict, comparison, str(comparison), OTHER_RENDERER, fingerprint, differences
+    )
+    if comparison.verdict in ("blank", "size"):
+        return replace(found, tier="")
+    if comparison.verdict == "same":  # to within one level: nothing is left to be seen
+        return found
+    difference = flip(actual, reference.pixels)
+    tile, place = difference.worst_tile()
+    seen = Seen(difference.mean, tile, place)
+    measured = (
+        f"FLIP {seen.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {place[0]}, "
+    )
+    measured += f"y = {place[1]} from the top left"
+    if seen.mean > FLIP_MEAN or tile > FLIP_TILE:
+        bounds = f"at most {FLIP_MEAN:g} and {FLIP_TILE:g} may be between renderers"
+        sentence = f"structure: {measured}; {bounds}"
+        return replace(found, word="structure", sentence=sentence, seen=seen)
+    passed = replace(comparison, verdict="same")
+    sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
+    return replace(found, word="same", comparison=passed, sentence=sentence, seen=seen)
 
 
 def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.bool_]:

@@ -137,7 +137,9 @@ def check(
 ) -> Outcome:
     """Judge a frame by the references of its renderer; any may match, else the nearest is told.
 
-    A frame that `take` made says as well what was drawn, and what was wrong with it.
+    Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
+    a reference that is not there is missing, whatever others have drawn. A frame that `take`
+    made says as well what was drawn, and what was wrong with it.
     """
     name = case.shot.name
     drawn, not_finite, gl_error = "", "", ""
@@ -145,14 +147,23 @@ def check(
         drawn, not_finite, gl_error = frame.drawn, frame.not_finite, frame.gl_error
     fingerprint = fingerprint_of(renderer, frame.size, drawn)
     path = reference_path(case.sketch, name, renderer.slug)
+    files = accepted(case.sketch, name, renderer.slug)
+    own = bool(files)
+    if not own and renderer.slug != reference_renderer:
+        files = accepted(case.sketch, name, reference_renderer)
     references = []
-    for file in accepted(case.sketch, name, renderer.slug):
+    for file in files:
         try:
             references.append(read_reference(file))
         except DataError as error:
             return Outcome(case, frame, unreadable(frame.array, fingerprint, str(error)), file, renderer)
     judgement, reference = judge(
-        frame.array, fingerprint, references, not_finite=not_finite, gl_error=gl_error
+        frame.array,
+        fingerprint,
+        references if own else (),
+        () if own else references,
+        not_finite=not_finite,
+        gl_error=gl_error,
     )
     return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
 
