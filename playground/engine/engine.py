@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from playground.engine.cache import Cache
 from playground.engine.drawn import Drawn
 from playground.engine.execution import Execution
+from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker
 from playground.engine.plan import Plan, Step, make_plan, needed, repeated_in
@@ -76,6 +77,7 @@ class Engine:
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self._keys = KeyMaker()
         self._drawn = Drawn()
+        self._finite = FiniteCheck(self)
         self._timer: Timer | None = None
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
@@ -221,7 +223,16 @@ class Engine:
         if plan is None:
             return ""
         ref = next(iter(plan.flat.outputs["view"].values()))
-        return self._drawn.hash_of(plan, ref, self._form, self._given_for, _continued(plan))
+        return self._drawn.hash_of(plan, ref, self.form_of, self._given_for, _continued(plan))
+
+    def not_finite(self) -> NotFinite | None:
+        """Return the first number that is not finite among what the last frame was made from, if any.
+
+        Ask before the next frame is drawn. What it costs, and what it leaves out: see
+        ``engine.finite``.
+        """
+        with self.borrowed():
+            return self._finite.first()
 
     # ── running ──────────────────────────────────────────────────────────────
 
@@ -233,7 +244,7 @@ class Engine:
         self.cache.begin()
         self.runner.begin(plan)
         continued = _continued(plan)
-        keys = self._keys.keys_of(plan, self._form, self._given_for, continued)
+        keys = self._keys.keys_of(plan, self.form_of, self._given_for, continued)
 
         def make(
             step: Step,
@@ -244,16 +255,23 @@ class Engine:
             return self._make(step, inputs, turn, start, step.path in continued)
 
         execution = Execution(keys, self.cache, self.runner, make, plan.steps)
+        with self.borrowed():
+            execution.run(needed(plan.nodes, ref))
+        self.cache.trim()
+        self.results = execution.results
+        return execution.results[ref.path].textures[ref.output]
+
+    @contextmanager
+    def borrowed(self) -> Iterator[None]:
+        """Lend the context, made current, and have it as it was afterwards, whatever was drawn."""
+        self._make_current()
         bound = self.ctx.fbo
         try:
-            execution.run(needed(plan.nodes, ref))
+            yield
         finally:
             self.runner.end()
             # What stays bound here is bound again by later calls, so it may not be one that goes.
             (bound if bound is not None and _is_alive(bound) else self._default).use()
-        self.cache.trim()
-        self.results = execution.results
-        return execution.results[ref.path].textures[ref.output]
 
     def _make(
         self,
@@ -263,7 +281,7 @@ class Engine:
         start: Result | None,
         keeps_surface: bool,
     ) -> Result:
-        kernel, driver = self._form(step)
+        kernel, driver = self.form_of(step)
         chosen = step if kernel is step.kernel else replace(step, kernel=kernel)
         first = start.turn if start else 0
         fresh = self._objects()
@@ -286,7 +304,7 @@ class Engine:
         """Return how many textures and programs were ever made."""
         return self.pool.made, self.runner.programs.compiled
 
-    def _form(self, step: Step) -> Form:
+    def form_of(self, step: Step) -> Form:
         """Choose which form of a kernel runs, and by which driver."""
         kernel = step.kernel
         if kernel.kind in ("compute", "plain_compute"):

@@ -114,7 +114,7 @@ def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
 
     r8 and r16 formats give 0..1.
     """
-    raw = _read(texture)
+    raw = read_raw(texture)
     values = np.array(raw, np.float32)  # a copy: what is read may be written to
     if raw.dtype.kind == "u":
         values /= np.float32(np.iinfo(raw.dtype).max)
@@ -128,7 +128,7 @@ def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:
     clamped to 0..1; what is not a number becomes 0.
     """
     if texture.dtype == "f1" and texture.components == 4:
-        return np.ascontiguousarray(_read(texture)[::-1])
+        return np.ascontiguousarray(read_raw(texture)[::-1])
     values = read_texture(texture)[::-1]
     height, width = values.shape[:2]
     picture = np.zeros((height, width, 4), np.uint8)
@@ -142,7 +142,8 @@ def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:
     return picture
 
 
-def _read(texture: moderngl.Texture) -> NDArray[Any]:
+def read_raw(texture: moderngl.Texture) -> NDArray[Any]:
+    """Read a texture in its own kind of number, (ny, nx) or (ny, nx, components), row 0 south; read-only."""
     width, height = texture.size
     shape = (height, width) if texture.components == 1 else (height, width, texture.components)
     array: NDArray[Any] = np.frombuffer(texture.read(alignment=1), dtype=_NUMPY[texture.dtype])

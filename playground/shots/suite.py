@@ -128,8 +128,15 @@ def take(engine: Engine, case: ShotCase) -> Taken:
     shot = case.shot
     frame = engine.render(case.sketch.for_shot(shot), size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
-    left = "" if error == "GL_NO_ERROR" else error
-    return Taken(frame.array, frame.sketch, frame.time, drawn=engine.drawn(), gl_error=left)
+    found = engine.not_finite()
+    return Taken(
+        frame.array,
+        frame.sketch,
+        frame.time,
+        drawn=engine.drawn(),
+        not_finite=str(found) if found else "",
+        gl_error="" if error == "GL_NO_ERROR" else error,
+    )
 
 
 def check(

@@ -1,0 +1,181 @@
+"""Find the first number that is not finite among what went into a picture.
+
+NaN and infinity spread, and then hide: a picture's bytes hold neither, the blur of an edge or
+a `max` swallows them, and what is left is a black spot or none. So every texture of floating
+point that the last frame went through is looked at, in the order in which the passes ran.
+
+Passes that write bytes themselves (nearly every view does, and weights of textures) hide
+theirs: such a pass is run once more into textures of floating point, and what it writes there
+is looked at. It need be done only for one that has run anew; of land that stays, and is lit
+anew, only the light is looked at again. Left as they are: passes inside a loop, kernels that
+repeat, companions (whose kernels give the same), and draws that go on from another one's samples.
+
+A hole in the land counts too: no shipped source leaves one (`no_data` refuses or fills them),
+and the kernels that bear with one do so to show it, not to want it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.plan import Step, Turns, every_node
+from playground.engine.results import Result, Wired
+from playground.gpu.textures import read_raw, split_format
+from playground.gpu.wrap import FRAGMENT
+from playground.sketch.flatten import Ref
+from playground.sketch.model import Kernel
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+
+# All bits of the exponent are set in NaN and infinity, and in nothing else (IEEE 754).
+_EXPONENTS: dict[np.dtype[Any], tuple[str, int]] = {
+    np.dtype("f2"): ("u2", 0x7C00),
+    np.dtype("f4"): ("u4", 0x7F800000),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class NotFinite:
+    """Where numbers are not finite."""
+
+    path: str  # of the pass
+    output: str
+    texel: tuple[int, int]  # x and y from the south-west corner, of the first, row by row from the south
+    value: str  # "NaN", "infinity" or "-infinity"
+    count: int  # texels of that texture with such a number
+    size: tuple[int, int]  # texels of it
+
+    def __str__(self) -> str:
+        x, y = self.texel
+        whole = self.size[0] * self.size[1]
+        where = f"pass '{self.path}', output '{self.output}': {self.value} at texel ({x}, {y})"
+        return f"{where} from the south-west corner; {self.count} of {whole} texels are not finite"
+
+
+class FiniteCheck:
+    """Looks at the textures of an engine's frames; remembers which it has seen."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.looked_at = 0  # textures read for the last frame
+        # What was found of each result, and after how many turns: some go on in place.
+        self._seen: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
+        self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
+
+    def first(self) -> NotFinite | None:
+        """Return what is not finite in the first such texture of the engine's last frame; None if all is.
+
+        For ``Engine.not_finite``, which has the context current.
+        """
+        self.looked_at = 0
+        results = self.engine.results
+        for step, within in _steps(self.engine):
+            result = results.get(step.path)
+            if result is None:
+                continue
+            turn, found = self._seen.get(result, (-1, None))
+            if turn != result.turn:
+                found = self._look(step, result, within)
+                self._seen[result] = result.turn, found
+            if found is not None:
+                return found
+        return None
+
+    def _look(self, step: Step, result: Result, within: bool) -> NotFinite | None:
+        for output in result.outputs:
+            if output.format.endswith("f"):
+                self.looked_at += 1
+                found = not_finite_in(read_raw(result.textures[output.name]))
+                if found is not None:
+                    return replace(found, path=step.path, output=output.name)
+        if within or all(output.format.endswith("f") for output in result.outputs):
+            return None
+        return self._look_beneath(step, result)
+
+    def _look_beneath(self, step: Step, result: Result) -> NotFinite | None:
+        """Look at what a pass that writes bytes would have written."""
+        again = self._again(step)
+        if again is None:
+            return None
+        wide, driver, inputs = again
+        engine = self.engine
+        made = engine.runner.run(wide, driver, inputs)
+        try:
+            for output in result.outputs:
+                if not output.format.endswith("f"):
+                    self.looked_at += 1
+                    found = not_finite_in(read_raw(made.textures[output.name]))
+                    if found is not None:
+                        return replace(found, path=step.path, output=output.name)
+        finally:
+            engine.pool.give(made)
+        return None
+
+    def _again(self, step: Step) -> tuple[Step, str, Mapping[str, Wired]] | None:
+        """Return a step that writes floats, how to run it, and what it reads; None if it is left as it is."""
+        kernel, driver = self.engine.form_of(step)
+        if kernel.kind not in ("kernel", "draw", "plain_fragment") or kernel.repeat != "1":
+            return None
+        inputs: dict[str, Wired] = {}
+        for name, source in step.inputs:
+            if not isinstance(source, Ref):
+                inputs[name] = Wired()
+                continue
+            found = self.engine.results.get(source.path)
+            if found is None or (kernel.kind == "draw" and name == "initial" and found.surface is not None):
+                return None
+            inputs[name] = Wired(found, found.textures[source.output], source.output)
+        # Of a kernel the fragment driver has the same text for any format, so nothing is compiled.
+        driver = driver if kernel.kind == "draw" else FRAGMENT
+        return replace(step, kernel=self._widened(kernel)), driver, inputs
+
+    def _widened(self, kernel: Kernel) -> Kernel:
+        known = self._wide.get(id(kernel))
+        if known is None:
+            outputs = tuple(replace(o, format=_widened(o.format)) for o in kernel.outputs)
+            known = self._wide[id(kernel)] = kernel, replace(kernel, outputs=outputs)
+            while len(self._wide) > 64:
+                self._wide.pop(next(iter(self._wide)))
+        return known[1]
+
+
+def not_finite_in(values: NDArray[Any]) -> NotFinite | None:
+    """Return where numbers of a texture, (ny, nx) or (ny, nx, components), are not finite; None if all are.
+
+    Floats of 16 or 32 bits; others are always finite.
+    """
+    if values.dtype not in _EXPONENTS:
+        return None
+    whole, exponent = _EXPONENTS[values.dtype]
+    wrong: NDArray[np.bool_] = (values.view(whole) & exponent) == exponent
+    if not wrong.any():
+        return None
+    texels = wrong if wrong.ndim == 2 else wrong.any(axis=2)
+    y, x = divmod(int(texels.argmax()), texels.shape[1])
+    value = float(np.atleast_1d(values[y, x])[np.atleast_1d(wrong[y, x])][0])
+    name = "NaN" if np.isnan(value) else "infinity" if value > 0 else "-infinity"
+    return NotFinite("", "", (x, y), name, int(np.count_nonzero(texels)), (texels.shape[1], texels.shape[0]))
+
+
+def _widened(form: str) -> str:
+    components, _ = split_format(form)
+    return form if form.endswith("f") else {1: "r32f", 2: "rg32f", 4: "rgba32f"}[components]
+
+
+def _steps(engine: Engine) -> Iterator[tuple[Step, bool]]:
+    """Yield the steps of the last frame in order, and whether each is inside a loop."""
+    if engine.plan is None:
+        return
+    inside: set[int] = set()
+    for node in every_node(engine.plan.nodes):
+        if isinstance(node, Turns):
+            inside |= {id(step) for step in every_node(node.body)}
+        else:
+            yield node, id(node) in inside
