@@ -6,6 +6,7 @@
     ├── ShaderError                a GLSL text is wrong; one diagnostic a mistake
     ├── DataError                  an image or elevation file cannot be used
     ├── ContextError               no OpenGL context, or one that cannot do what is asked
+    │   └── OpenGLFault            OpenGL reports an error of the engine's own doing
     └── TrialError                 the trial child was stopped
         ├── TrialTimeout           … it took too long
         └── TrialCrash             … it died
@@ -108,6 +109,10 @@ class DataError(PlaygroundError):
 
 class ContextError(PlaygroundError):
     """There is no OpenGL context, or it cannot do what is asked."""
+
+
+class OpenGLFault(ContextError):
+    """A pass left an OpenGL error behind: what it drew is not to be trusted."""
 
 
 class TrialError(PlaygroundError):

@@ -26,7 +26,7 @@ from playground.engine.keys import Form, KeyMaker
 from playground.engine.plan import Plan, Step, make_plan, needed, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
-from playground.errors import ContextError
+from playground.errors import ContextError, OpenGLFault
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture, read_texture
 from playground.gpu.timers import Timer
@@ -294,7 +294,7 @@ class Engine:
             # What has run without a fault before will do so again, and asking waits for the driver.
             fault = self.ctx.error
             if fault != "GL_NO_ERROR":
-                raise ContextError(f"pass '{step.path}': OpenGL reports {fault}")
+                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {fault}")
         self.runs[step.path] += 1
         self.ran.append(step.path)
         self.texels += step.size[0] * step.size[1] * max(step.repeat - first, 1)

@@ -18,6 +18,7 @@ from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
 from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
+from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
 from playground.shots.references import (
     REFERENCE_RENDERER,
@@ -122,8 +123,8 @@ def take(engine: Engine, case: ShotCase) -> Taken:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
     An OpenGL error left behind is told in the frame: whatever that looks like, it is not to be
-    trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``ContextError`` where the
-    driver refuses a pass.
+    trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass
+    fails and there is no frame.
     """
     shot = case.shot
     frame = engine.render(case.sketch.for_shot(shot), size=shot.size, time=shot.time, steps=dict(shot.steps))
@@ -176,15 +177,19 @@ def check(
 
 
 def save_pictures(outcome: Outcome, folder: Path) -> dict[str, Path]:
-    """Write the actual picture, and the expected one and the difference ×16 if there is a reference.
+    """Write the actual picture, and the expected one and the differences if there is a reference.
 
-    Returns the files by those three words: ``folder/<sketch>/<shot>.actual.png`` and so on.
-    Raises ``DataError`` where the folder cannot be written to.
+    One of those is 16 times as strong as the pixels have it, the other, of pictures of one size,
+    is FLIP. Returns the files by the words actual, expected, difference and flip:
+    ``folder/<sketch>/<shot>.actual.png`` and so on. Raises ``DataError`` where the folder cannot
+    be written to.
     """
     pictures = {"actual": outcome.frame.array}
     if outcome.reference is not None:
         pictures["expected"] = outcome.reference.pixels
         pictures["difference"] = difference_picture(outcome.frame.array, outcome.reference.pixels)
+        if outcome.frame.array.shape == outcome.reference.pixels.shape:
+            pictures["flip"] = flip_picture(outcome.frame.array, outcome.reference.pixels)
     place = folder / outcome.case.sketch.name
     try:
         place.mkdir(parents=True, exist_ok=True)

@@ -256,7 +256,9 @@ def test_pictures_go_where_they_are_wanted(accepted: Run) -> None:
     result.assert_outcomes(failed=2, passed=1)
     assert put_at(result.stdout.str(), "actual") == Path("out/slope/plain.actual.png").absolute()
     assert sorted(path.name for path in Path("out/slope").iterdir()) == [
-        f"{shot}.{word}.png" for shot in ("bright", "plain") for word in ("actual", "difference", "expected")
+        f"{shot}.{word}.png"
+        for shot in ("bright", "plain")
+        for word in ("actual", "difference", "expected", "flip")
     ]
 
 

@@ -1,0 +1,239 @@
+"""From a frame to what came of it: which references judge it, what it says, and what is left to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.errors import ContextError, OpenGLFault
+from playground.gpu.context import ContextInfo
+from playground.images.files import read_png, write_png
+from playground.shots.fingerprint import fingerprint_of
+from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
+from playground.shots.references import read_reference, reference_path, write_reference
+from playground.shots.suite import Outcome, ShotCase, Taken, check, save_pictures, shots_of, take
+from playground.sketch.model import Graph, Shot, Sketch
+
+LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
+NEWER = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa", "4.5 Mesa 25.0.7", 4)
+CARD = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 NVIDIA 570.86", 32)
+OTHER_CARD = ContextInfo(460, "AMD Radeon RX 6800 (radeonsi, navi21)", "AMD", "4.6 Mesa 24.0.2", 8)
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> ShotCase:
+    file = tmp_path / "hills.toml"
+    file.touch()
+    sketch = Sketch("hills", str(file), str(tmp_path), Graph("hills", str(file), ()), shots=(Shot("dawn"),))
+    return ShotCase(sketch, sketch.shots[0])
+
+
+def smooth(by: int = 0) -> np.ndarray:
+    """Return a gentle slope, of which ``by`` levels more at one pixel are no defect that anyone sees."""
+    found = np.zeros((60, 80, 4), np.uint8)
+    found[..., 0] = np.arange(80) * 2
+    found[..., 1] = (np.arange(60) * 3)[:, None]
+    found[..., 2], found[..., 3] = 60, 255
+    found[30, 40, :3] += by
+    return found
+
+
+def taken(pixels: np.ndarray, **more: str) -> Taken:
+    return Taken(pixels, "hills", **{"drawn": "ab12", **more})
+
+
+def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: str) -> Outcome:
+    found = check(case, taken(pixels, **more), renderer)
+    assert found.word in WORDS
+    assert found.sentence.startswith(found.word)
+    assert found.ok is (found.word == "same")
+    return found
+
+
+def test_without_any_reference_it_is_missing_and_says_where_it_would_be(case: ShotCase) -> None:
+    for renderer in (LLVMPIPE, CARD):
+        found = checked(case, smooth(), renderer)
+        assert (found.word, found.reference) == ("missing", None)
+        assert found.path == found.own_path == reference_path(case.sketch, "dawn", renderer.slug)
+
+
+def test_a_reference_says_what_it_comes_from_and_is_found_again(case: ShotCase) -> None:
+    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    assert read_reference(path).fingerprint == fingerprint_of(LLVMPIPE, (80, 60), "ab12")
+    found = checked(case, smooth(1), LLVMPIPE)
+    assert (found.word, found.tier, found.differences, found.path) == ("same", SAME_BUILD, (), path)
+    assert found.reference is not None and found.reference.fingerprint == found.fingerprint
+    assert checked(case, smooth(2), LLVMPIPE).word == "differs"
+
+
+def test_another_build_is_less_strict_and_says_which(case: ShotCase) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    found = checked(case, smooth(3), NEWER)
+    assert (found.word, found.tier) == ("same", OTHER_BUILD)
+    assert any("4.5 Mesa 25.0.7; the reference's: 4.5 Mesa 22.3.6" in line for line in found.differences)
+    assert found.other_build == "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 Mesa 22.3.6"
+    assert checked(case, smooth(4), NEWER).word == "differs"
+
+
+def test_what_was_drawn_is_told_and_excuses_nothing(case: ShotCase) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "cd34")
+    found = checked(case, smooth(2), LLVMPIPE)
+    assert (found.word, found.tier) == ("differs", SAME_BUILD)
+    assert found.differences == (
+        "what is drawn has changed: the sketch, its shot, a kernel, a value or a file",
+    )
+
+
+def test_another_renderer_is_judged_by_the_reference_renderers_picture(case: ShotCase) -> None:
+    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    found = checked(case, smooth(40), CARD)
+    assert (found.word, found.tier, found.path) == ("same", OTHER_RENDERER, path)
+    assert found.own_path == reference_path(case.sketch, "dawn", "nvidia-h200")
+    upside_down = checked(case, np.ascontiguousarray(smooth()[::-1]), CARD)
+    assert (upside_down.word, upside_down.tier) == ("structure", OTHER_RENDERER)
+
+
+def test_with_a_reference_of_its_own_another_renderer_is_held_to_that(case: ShotCase) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    own, _ = write_reference(case.sketch, "dawn", CARD, smooth(40), "ab12")
+    assert own.parent.name == "nvidia-h200"
+    assert (checked(case, smooth(40), CARD).tier, checked(case, smooth(40), CARD).path) == (SAME_BUILD, own)
+    assert checked(case, smooth(), CARD).word == "differs"
+    assert checked(case, smooth(), LLVMPIPE).ok
+
+
+def test_on_the_reference_renderer_another_ones_picture_is_no_reference(case: ShotCase) -> None:
+    write_reference(case.sketch, "dawn", CARD, smooth(), "ab12")
+    assert checked(case, smooth(), LLVMPIPE).word == "missing"
+    assert checked(case, smooth(), OTHER_CARD).word == "missing"
+    found = check(case, taken(smooth()), LLVMPIPE, reference_renderer="nvidia-h200")
+    assert (found.word, found.tier) == ("same", OTHER_RENDERER)
+
+
+def test_any_accepted_one_may_match(case: ShotCase) -> None:
+    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    second = path.with_name("dawn.2.png")
+    write_png(second, smooth(90))
+    found = checked(case, smooth(90), LLVMPIPE)
+    assert (found.ok, found.path) == (True, second)
+    assert checked(case, smooth(45), LLVMPIPE).word == "differs"
+
+
+@pytest.mark.parametrize("damaged", ["dawn.png", "dawn.2.png"])
+@pytest.mark.parametrize("renderer", [LLVMPIPE, CARD], ids=["own", "another"])
+def test_one_that_cannot_be_read_is_never_passed_over(
+    case: ShotCase, damaged: str, renderer: ContextInfo
+) -> None:
+    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    path.with_name(damaged).write_bytes(b"no picture")
+    found = checked(case, smooth(), renderer)
+    assert (found.word, found.path.name, found.reference) == ("unreadable", damaged, None)
+    assert damaged in found.sentence
+
+
+@pytest.mark.parametrize(("what", "word"), [("not_finite", "nan"), ("gl_error", "gl-error")])
+def test_what_is_wrong_with_how_it_was_drawn_fails_the_very_same_picture(
+    case: ShotCase, what: str, word: str
+) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    found = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
+    assert found.word == word
+    assert found.reference is not None  # there is something to look at
+
+
+def test_a_frame_from_elsewhere_is_judged_too(case: ShotCase) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    found = check(case, Frame(smooth()), LLVMPIPE)
+    assert (found.ok, found.fingerprint.drawn, found.differences) == (True, "", ())
+
+
+def test_pictures_are_left_to_look_at(case: ShotCase, tmp_path: Path) -> None:
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
+    files = save_pictures(checked(case, smooth(90), LLVMPIPE), tmp_path / "out")
+    assert list(files) == ["actual", "expected", "difference", "flip"]
+    assert [file.name for file in files.values()] == [f"dawn.{word}.png" for word in files]
+    np.testing.assert_array_equal(read_png(files["actual"])[0], smooth(90))
+    seen = read_png(files["flip"])[0]
+    assert seen.shape == smooth().shape
+    assert seen[30, 40, 0] > 20 and tuple(seen[5, 5]) == (0, 0, 4, 255)
+
+
+def test_without_a_like_reference_there_is_no_flip_picture(case: ShotCase, tmp_path: Path) -> None:
+    assert list(save_pictures(checked(case, smooth(), LLVMPIPE), tmp_path / "out")) == ["actual"]
+    write_reference(case.sketch, "dawn", LLVMPIPE, smooth()[:-1], "ab12")
+    files = save_pictures(checked(case, smooth(), LLVMPIPE), tmp_path / "out")
+    assert list(files) == ["actual", "expected", "difference"]
+
+
+# ── taking ───────────────────────────────────────────────────────────────────
+
+
+@pytest.fixture
+def drawing(ctx: moderngl.Context) -> Iterator[Engine]:
+    with Engine(ctx) as made:
+        yield made
+
+
+def slope(folder: Path) -> ShotCase:
+    (folder / "land.glsl").write_text(
+        '// land.glsl -- a slope.\n#pragma kernel(output = "height:r32f")\n'
+        "float kernel(ivec2 texel) { return float(texel.x) / 16.0; }\n"
+    )
+    (folder / "slope.toml").write_text(
+        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./land"\n[view]\nuse = "view/map"\n'
+        'inputs = { shown = "height" }\n[[shot]]\nname = "one"\nsize = [16, 16]\n'
+    )
+    return shots_of([folder / "slope.toml"])[0]
+
+
+def test_a_shot_that_is_taken_knows_what_was_drawn(drawing: Engine, tmp_path: Path) -> None:
+    case = slope(tmp_path)
+    one = take(drawing, case)
+    assert (one.not_finite, one.gl_error, one.size) == ("", "", (16, 16))
+    assert one.drawn and one.drawn == take(drawing, case).drawn
+    found = check(case, one, drawing.info)
+    assert found.word == "missing"
+    write_reference(case.sketch, "one", drawing.info, one.array, one.drawn)
+    found = check(case, take(drawing, case), drawing.info)
+    assert (found.ok, found.differences) == (True, ())
+
+
+def test_an_opengl_error_left_behind_is_told(
+    drawing: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = slope(tmp_path)
+    take(drawing, case)
+    render = drawing.render
+
+    def careless(*arguments: object, **named: object) -> Frame:
+        frame = render(*arguments, **named)  # type: ignore[arg-type]
+        drawing.ctx.enable_direct(0xFFFF)  # no such capability
+        return frame
+
+    monkeypatch.setattr(drawing, "render", careless)
+    one = take(drawing, case)
+    assert one.gl_error == "GL_INVALID_ENUM"
+    assert check(case, one, drawing.info).word == "gl-error"
+
+
+def test_an_opengl_error_within_a_pass_has_its_own_kind(
+    drawing: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = drawing.runner.run
+
+    def careless(*arguments: object, **named: object) -> object:
+        found = run(*arguments, **named)  # type: ignore[arg-type]
+        drawing.ctx.enable_direct(0xFFFF)
+        return found
+
+    monkeypatch.setattr(drawing.runner, "run", careless)
+    with pytest.raises(OpenGLFault, match="OpenGL reports GL_INVALID_ENUM") as caught:
+        take(drawing, slope(tmp_path))
+    assert isinstance(caught.value, ContextError)
+    assert drawing.ctx.error == "GL_NO_ERROR"
