@@ -229,20 +229,26 @@ def test_what_is_kept_is_still_told(drawing: Engine, folder: Path) -> None:
 
 
 def test_turns_that_go_on_in_place_are_looked_at_again(ctx: moderngl.Context, tmp_path: Path) -> None:
-    (tmp_path / "grow.glsl").write_text(
-        "// grow.glsl -- grows until it overflows.\n"
-        '#pragma kernel(output = "height:r32f", repeat = "turns")\n'
+    (tmp_path / "walk.glsl").write_text(
+        "// walk.glsl -- a texel a turn, of which the third is ill.\n"
+        '#pragma kernel(output = "height:r32f", repeat = "turns", visits = "1, 1")\n'
         "uniform int turns = 6;  //! slider(1, 9) Turns\n"
-        "float kernel(ivec2 texel) { return previous(texel) * 1e20 + 1.0; }\n"
+        "ivec2 visit(ivec2 cell) { return ivec2(iteration, 0); }\n"
+        "float kernel(ivec2 texel) {\n"
+        "    if (texel != ivec2(iteration, 0)) return previous(texel);\n"
+        f"    return iteration == 2 ? {INFINITY} : 0.5;\n"
+        "}\n"
     )
     (tmp_path / "chain.toml").write_text(
-        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./grow"\n[view]\nuse = "view/map"\n'
+        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./walk"\n[view]\nuse = "view/map"\n'
         'inputs = { shown = "height" }\nset = { channel = "red" }\n'
     )
     with Engine(ctx) as engine:
-        for turns, ill in ((1, False), (2, False), (3, True), (2, False)):
+        for turns, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
             engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": turns})
-            assert (engine.not_finite() is not None) is ill, turns
+            found = engine.not_finite()
+            assert (found is not None) is ill, turns
+            assert found is None or (found.path, found.texel) == ("height", (2, 0))
 
 
 def test_nothing_drawn_is_no_alarm(ctx: moderngl.Context) -> None:
