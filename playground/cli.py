@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
-from playground.commands import check, doctor, export, fly, listing, live, new, render
+from playground.commands import check, doctor, export, fly, listing, live, new, render, shots
 from playground.commands.arguments import (
     DeviceOption,
     Renderer,
@@ -129,9 +129,9 @@ def _usage_message(error: Exception) -> str:
     text: str = error.format_message() if hasattr(error, "format_message") else str(error)
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)
-    if text.startswith("No such command"):
-        return _no_command(text)
     path = ctx.command_path if ctx is not None else "playground"
+    if text.startswith("No such command"):
+        return _no_command(text) if ctx is None or ctx.parent is None else _no_command_of(text, ctx)
     if not text:
         return f"something is missing; see {path} --help"
     return f"{text[0].lower()}{text[1:].rstrip('.')}; see {path} --help"
@@ -145,6 +145,11 @@ def _no_command(text: str) -> str:
     return f"no command '{name}'{nearest(name, _COMMANDS)}"
 
 
+def _no_command_of(text: str, group: Any) -> str:
+    name = text.split("'")[1] if text.count("'") >= 2 else ""
+    return f"no command '{name}' in {group.command_path}{nearest(name, group.command.list_commands(group))}"
+
+
 app.command("live", help=live.HELP)(live.live)
 app.command("render", help=render.HELP)(render.render)
 app.command("fly", help=fly.HELP)(fly.fly)
@@ -153,7 +158,8 @@ app.command("check", help=check.HELP)(check.check)
 app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("new", help=new.HELP)(new.new)
-_COMMANDS = tuple(str(command.name) for command in app.registered_commands)
+app.add_typer(shots.app)
+_COMMANDS = (*(str(command.name) for command in app.registered_commands), str(shots.app.info.name))
 
 
 if __name__ == "__main__":

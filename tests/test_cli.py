@@ -31,6 +31,7 @@ from playground.sketch.find import shipped_sketches
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
+COMMANDS += ["shots", "shots list"]
 
 PLAIN_FRAGMENT = """#version 330
 uniform vec3 iResolution;
@@ -130,7 +131,7 @@ def test_every_help_has_examples_and_fits_eighty_columns(
     command: str | None, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("COLUMNS", "80")
-    assert cli.main([command, "--help"] if command else ["--help"]) == 0
+    assert cli.main([*(command or "").split(), "--help"]) == 0
     out = capsys.readouterr().out
     assert max(map(len, out.splitlines())) <= 80
     assert re.search(rf"Examples: *\n\s+playground{f' {command}' if command else ''}\b", out)
@@ -139,11 +140,12 @@ def test_every_help_has_examples_and_fits_eighty_columns(
 def test_every_example_in_a_help_is_a_command_with_options_that_exist(capsys: pytest.CaptureFixture[str]):
     helps = {}
     for command in COMMANDS:
-        cli.main([command, "--help"])
+        cli.main([*command.split(), "--help"])
         helps[command] = capsys.readouterr().out
     for text in helps.values():
         for line in re.findall(r"^\s+playground (\w+.*)$", text.partition("Examples:")[2], re.MULTILINE):
-            command, *words = line.split("|")[0].split()
+            words = line.split("|")[0].split()
+            command = " ".join(words[:2]) if " ".join(words[:2]) in helps else words[0]
             for word in words:
                 if word.startswith("--"):
                     assert f" {word} " in helps[command], line
@@ -205,6 +207,8 @@ def test_completion_offers_the_shipped_sketches(run: Run):
         (["render", "--sise", "3x3"], "no such option: --sise"),
         (["render", "one", "two"], "unexpected extra argument"),
         (["rendre"], "no command 'rendre'; did you mean 'render'?"),
+        (["shots", "lsit"], "no command 'lsit' in playground shots; did you mean 'list'?"),
+        (["shots", "list", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
         (["jacksboro"], "'jacksboro' is no command; did you mean: playground live jacksboro"),
         (["check"], "missing argument 'PATH...'; see playground check --help"),
         (["check", "nothere"], "nothere: there is no such file or folder"),

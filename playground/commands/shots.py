@@ -1,0 +1,104 @@
+"""Shots, the pictures that sketches promise: list them, and what else there is to do with them.
+
+One command a file where it is more than a few lines; here they are gathered.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from playground.commands.arguments import JsonOption, complete_sketch, help_text
+from playground.terminal import print_table
+
+if TYPE_CHECKING:
+    from playground.sketch.model import Sketch
+
+HELP = help_text(
+    "The pictures that sketches promise, and the references that they are compared with.\n\n"
+    "pytest compares them; here they are listed and looked at.",
+    "playground shots list jacksboro",
+    "playground shots list --json | jq '.[] | select(.references == {})'",
+)
+LIST_HELP = help_text(
+    "List shots, their sizes, and whether there is a reference.\n\n"
+    "Without a sketch, those of all sketches that ship. In a pipe, the columns are parted by tabs.",
+    "playground shots list",
+    "playground shots list jacksboro my-land/sketch.toml",
+    "playground shots list jacksboro --json",
+)
+
+app = typer.Typer(
+    name="shots",
+    help=HELP,
+    short_help="List the pictures that sketches promise, and see to their references.",
+    invoke_without_command=True,
+    rich_markup_mode="rich",
+)
+
+SketchesArgument = Annotated[
+    list[str] | None,
+    typer.Argument(
+        help="Shipped sketches by name, or paths of sketches, of their folders, or of shaders.",
+        metavar="SKETCH",
+        show_default=False,
+        autocompletion=complete_sketch,
+    ),
+]
+
+
+@app.callback()
+def _group(ctx: typer.Context) -> None:
+    if ctx.invoked_subcommand is None:
+        print(ctx.get_help())
+
+
+@app.command("list", help=LIST_HELP)
+def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> None:
+    """List shots, their sizes, and whether there is a reference."""
+    from playground.sketch.find import shipped_sketches
+    from playground.sketch.load import load
+
+    rows = [row for name in sketches or shipped_sketches() for row in _rows(load(name))]
+    if as_json:
+        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        return
+    table = []
+    for row in rows:
+        width, height = row["size"]
+        found = [
+            name if len(files) == 1 else f"{name} ({len(files)})" for name, files in row["references"].items()
+        ]
+        table.append((row["sketch"], row["shot"], f"{width}x{height}", ", ".join(found) or "missing"))
+    print_table(
+        "Shots (playground render SKETCH --shot SHOT)", ("sketch", "shot", "size", "references"), table
+    )
+
+
+def _rows(sketch: Sketch) -> list[dict[str, Any]]:
+    """Return what there is to say of each shot, as JSON takes it."""
+    from playground.errors import DataError
+    from playground.paths import shown
+    from playground.shots.references import accepted, home_of
+
+    try:
+        home = home_of(sketch) / sketch.name
+    except DataError:  # a sketch that ships, in an installed package: its references are in the repository
+        renderers = []
+    else:
+        renderers = sorted(path.name for path in home.glob("*") if path.is_dir())
+    rows: list[dict[str, Any]] = []
+    for shot in sketch.shots:
+        references = {name: [shown(p) for p in accepted(sketch, shot.name, name)] for name in renderers}
+        rows.append(
+            {
+                "sketch": sketch.name,
+                "file": shown(sketch.file),
+                "shot": shot.name,
+                "size": list(shot.size),
+                "references": {name: files for name, files in references.items() if files},
+            }
+        )
+    return rows
