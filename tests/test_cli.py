@@ -31,7 +31,7 @@ from playground.sketch.find import shipped_sketches
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
-COMMANDS += ["shots", "shots list"]
+COMMANDS += ["shots", "shots list", "shots mutants"]
 
 PLAIN_FRAGMENT = """#version 330
 uniform vec3 iResolution;

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from playground.commands import mutants
 from playground.commands.arguments import JsonOption, complete_sketch, help_text
 from playground.terminal import print_table
 
@@ -20,6 +21,7 @@ HELP = help_text(
     "The pictures that sketches promise, and the references that they are compared with.\n\n"
     "pytest compares them; here they are listed and looked at.",
     "playground shots list jacksboro",
+    "playground shots mutants --again 200",
     "playground shots list --json | jq '.[] | select(.references == {})'",
 )
 LIST_HELP = help_text(
@@ -102,3 +104,6 @@ def _rows(sketch: Sketch) -> list[dict[str, Any]]:
             }
         )
     return rows
+
+
+app.command("mutants", help=mutants.HELP)(mutants.mutants)

@@ -11,7 +11,7 @@ the driver gets the joined line in the first one's place, since 3.30 knows no su
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -105,25 +105,30 @@ class Origin:
             return False
 
 
-def read_source(path: Path, roots: Sequence[Path]) -> SourceText:
+def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None) -> SourceText:
     """Read a GLSL file and everything it includes.
 
     An include is looked for beside the file that includes it, then in each of
     ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them. A
     file of ``glsl/`` includes from there alone, so that no sketch changes what it means.
+    ``instead`` has texts, by absolute path, that are taken in place of the files'.
 
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
-    return read_source_and_origin(path, roots)[0]
+    return _read(path, roots, instead or {})[0]
 
 
 def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceText, Origin]:
     """Read a GLSL file as ``read_source`` does; say as well what it was made of."""
+    return _read(path, roots, {})
+
+
+def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tuple[SourceText, Origin]:
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve())
-    reader.flatten(path, read_text(path), (), (str(path),))
+    reader = _Reader(own, GLSL.resolve(), instead)
+    reader.flatten(path, reader.read(path), (), (str(path),))
     source = SourceText(str(path), tuple(reader.lines), tuple(reader.texts))
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()))
 
@@ -148,9 +153,10 @@ def read_text(path: Path) -> str:
 class _Reader:
     """Flattens one file."""
 
-    def __init__(self, own: tuple[Path, ...], library: Path) -> None:
+    def __init__(self, own: tuple[Path, ...], library: Path, instead: Mapping[str, str]) -> None:
         self.own = own
         self.library = library
+        self.instead = instead  # texts that are taken in place of the files', by absolute path
         self.lines: list[Line] = []
         self.texts: dict[str, str] = {}  # of each file read, outermost first
         self.looked_at: dict[Path, Path | None] = {}  # where includes may be, and what file is there
@@ -197,11 +203,14 @@ class _Reader:
             raise line.error(f"includes nested more than {_MAX_DEPTH} deep")
         if key not in self.texts:
             try:
-                self.texts[key] = read_text(target)
+                self.texts[key] = self.read(target)
             except SketchError as error:
                 raise line.error(f"'{name}': {error.diagnostics[0].message}") from None
         place = f"{shown(path)}:{line.number}"
         self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
+
+    def read(self, path: Path) -> str:
+        return self.instead[str(path)] if str(path) in self.instead else read_text(path)
 
     def find(self, name: str, includer: Path, line: Line) -> Path:
         in_own = any(includer.is_relative_to(root) for root in self.own)

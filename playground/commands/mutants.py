@@ -1,0 +1,218 @@
+"""Break a sketch in every known way, and see whether the comparison of its pictures would tell."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    JsonOption,
+    Renderer,
+    SizeOption,
+    SketchArgument,
+    SoftwareOption,
+    help_text,
+    read_pixels,
+)
+from playground.errors import DataError, counted
+from playground.paths import shown
+from playground.terminal import note, painted, print_table, progress
+
+if TYPE_CHECKING:
+    from playground.shots.mutants.again import Redrawn
+    from playground.shots.mutants.suite import Result
+
+HELP = help_text(
+    "Break a sketch in every known way, and see whether the comparison of its pictures tells.\n\n"
+    "Each mutant is a sketch or a picture with one real defect: no shadow, a sun one degree off, layers"
+    " swapped, a row that is dead. It is judged as if the reference came from the same build of the"
+    " renderer, from another build, from another renderer: the stricter the comparison, the more it"
+    " catches. The same build must catch all that the shot shows, and let pass the one that is no"
+    " defect. With --again, the unbroken shot is drawn again under conditions that must not matter, and"
+    " none may be refused. Exit status 1 where the same build lets a defect pass or refuses a good"
+    " picture.",
+    "playground shots mutants",
+    "playground shots mutants --again 200",
+    "playground shots mutants my-land --shot evening --pictures mutants",
+    "playground shots mutants --mutant no-shadow --mutant seam --json",
+)
+
+
+def mutants(
+    ctx: typer.Context,
+    sketch: SketchArgument = "",
+    shot: Annotated[
+        str,
+        typer.Option(
+            "--shot",
+            help="The shot to break; without it, of each mutant the one that shows it.",
+            metavar="NAME",
+            show_default=False,
+        ),
+    ] = "",
+    size: SizeOption = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--mutant", help="Draw this one only; may be repeated.", metavar="NAME", show_default=False
+        ),
+    ] = None,
+    count: Annotated[
+        int,
+        typer.Option(
+            "--again", help="Draw the unbroken shot so often again.", metavar="N", min=0, show_default=False
+        ),
+    ] = 0,
+    pictures: Annotated[
+        Path | None,
+        typer.Option(
+            "--pictures",
+            help="Write every mutant's picture into this folder.",
+            metavar="DIR",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: JsonOption = False,
+    software: SoftwareOption = False,
+    device: DeviceOption = "",
+) -> None:
+    """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
+    from playground.api import headless
+    from playground.shots.mutants.again import again
+    from playground.shots.mutants.suite import Bench, named, shot_of
+    from playground.sketch.load import load
+
+    chosen = named(only or ())
+    renderer: Renderer = ctx.obj.or_else(software, device)
+    pixels = read_pixels(size)
+    loaded = load(sketch)
+    first = shot_of(loaded, shot, pixels)
+    if pictures is not None:
+        _make(pictures)
+    results: list[Result] = []
+    redrawn: list[Redrawn] = []
+    with headless(software=renderer.software, device=renderer.device) as engine:
+        bench = Bench(engine, loaded, shot, pixels)
+        expected = bench.unbroken(first)
+        with progress("mutants", len(chosen)) as advance:
+            for result in bench.run(chosen):
+                results.append(result)
+                advance()
+        info = engine.info
+    if pictures is not None:
+        _write(pictures, bench.expected, results)
+    where: dict[str, Any] = {"software": renderer.software, "device": renderer.device}
+    with progress("drawn again", count) as advance:
+        for drawn in again(loaded, first, expected, info, count, **where):
+            redrawn.append(drawn)
+            advance()
+    if as_json:
+        print(
+            json.dumps(_as_json(loaded.name, info.renderer, results, redrawn), indent=2, ensure_ascii=False)
+        )
+    else:
+        _print(results)
+        _print_again(redrawn)
+        if pictures is not None:
+            print(f"pictures: {shown(pictures)}")
+    if not all(result.well for result in results) or any(drawn.refused for drawn in redrawn):
+        raise typer.Exit(FAILED)
+
+
+def _print(results: Sequence[Result]) -> None:
+    from playground.shots.mutants.suite import kill_rate, survivors
+    from playground.shots.mutants.tiers import TIERS
+
+    rows = [_row(result) for result in results if result.applies and not result.unseen]
+    print_table(
+        "Mutants, and what the comparison says of them", ("mutant", *_NUMBERS, *TIERS, "broken"), rows
+    )
+    for number, tier in enumerate(TIERS):
+        caught, of = kill_rate(results, number)
+        passed = survivors(results, number)
+        print(f"{tier}: {caught} of {of} caught{'; passed: ' if passed else ''}{', '.join(passed)}")
+    for result in results:
+        if result.mutant.exempt and result.applies:
+            found = "passes, as it should" if result.well else "is refused, and should not be"
+            print(f"{result.mutant.name}: {found} (same build)")
+    unseen = [result.mutant.name for result in results if result.unseen]
+    if unseen:
+        note(f"the shot does not show {', '.join(unseen)}: the picture is the same to the bit")
+    for result in results:
+        if not result.applies:
+            note(f"{result.mutant.name} does not apply: {result.why_not}")
+
+
+_NUMBERS = ("most", "over 1", "FLIP", "FLIP tile")
+
+
+def _row(result: Result) -> tuple[str, ...]:
+    found = result.comparison
+    assert found is not None
+    numbers = ["", ""] if found.verdict in ("blank", "size") else [str(found.most), f"{result.share:.2%}"]
+    seen = result.seen
+    numbers += ["", ""] if seen is None else [f"{seen.mean:.3f}", f"{seen.tile:.3f}"]
+    words = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
+    return (result.mutant.name, *numbers, *words, result.mutant.broke)
+
+
+def _print_again(redrawn: Sequence[Redrawn]) -> None:
+    if not redrawn:
+        return
+    refused = [drawn for drawn in redrawn if drawn.refused]
+    identical = sum(drawn.identical for drawn in redrawn)
+    print(
+        f"drawn again {counted(len(redrawn), 'time')}: {len(refused)} refused, "
+        f"{identical} the same to the last bit"
+    )
+    for drawn in refused:
+        print(f"{painted('refused', '1;31', sys.stdout)}  {drawn.words}\n    {drawn.refused}")
+
+
+def _as_json(
+    sketch: str, renderer: str, results: Sequence[Result], redrawn: Sequence[Redrawn]
+) -> dict[str, object]:
+    from playground.shots.mutants.suite import kill_rate, survivors
+    from playground.shots.mutants.tiers import TIERS
+
+    tiers = {}
+    for number, tier in enumerate(TIERS):
+        caught, of = kill_rate(results, number)
+        tiers[tier] = {"caught": caught, "of": of, "passed": survivors(results, number)}
+    refused = [{"how": drawn.words, "why": drawn.refused} for drawn in redrawn if drawn.refused]
+    identical = sum(drawn.identical for drawn in redrawn)
+    return {
+        "sketch": sketch,
+        "renderer": renderer,
+        "mutants": [result.as_json() for result in results],
+        "tiers": tiers,
+        "again": {"drawn": len(redrawn), "identical": identical, "refused": refused},
+    }
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DataError(f"no folder can be made: {error.strerror}", file=shown(folder)) from error
+
+
+def _write(folder: Path, expected: dict[str, Any], results: Sequence[Result]) -> None:
+    """Write each mutant's picture and its difference ×16, and the unbroken shots."""
+    from playground.images.files import write_png
+    from playground.shots.compare import difference_picture
+
+    for name, picture in expected.items():
+        write_png(folder / f"unbroken.{name}.png", picture)
+    for result in results:
+        if result.picture is not None:
+            write_png(folder / f"{result.mutant.name}.png", result.picture)
+            difference = difference_picture(result.picture, expected[result.shot])
+            write_png(folder / f"{result.mutant.name}.difference.png", difference)

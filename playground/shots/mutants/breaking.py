@@ -1,0 +1,194 @@
+"""Break a sketch as a mutant says: texts, values, wiring, camera, samples.
+
+Nothing is written: edited texts are parsed in place of the files', and what they declare
+takes the place of the kernels that were made of those files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from playground.errors import DataError, ParameterError
+from playground.paths import GLSL, shown
+from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
+from playground.sketch.assign import resolve, value_of, values_of
+from playground.sketch.header import PLAIN_UNIFORMS, parse_kernel
+from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.source import read_source, read_text
+from playground.sketch.wiring import input_names
+
+_CAMERA = "camera."
+
+
+def broken(mutant: Rendering, sketch: Sketch) -> Sketch:
+    """Return the sketch, as a shot shows it, with the mutant's defect.
+
+    Raises ``DoesNotApply`` where the sketch lacks what it breaks, and ``DataError`` where
+    a text that it edits is not there exactly once: then the mutant is out of date.
+    """
+    sketch = with_texts(sketch, edited_texts(mutant.edits, sketch, mutant.name))
+    if mutant.later and not _reads_time(sketch.graph):
+        raise DoesNotApply("nothing in the sketch changes with time")
+    if mutant.turns:
+        sketch = replace(sketch, graph=_with_turns(sketch.graph, mutant.turns))
+    for path, source in mutant.wires:
+        sketch = replace(sketch, graph=_rewired(sketch.graph, path, source, path))
+    for path, share in mutant.times:
+        sketch = _changed(sketch, path, factor=share)
+    for path, more in mutant.plus:
+        sketch = _changed(sketch, path, more=more)
+    if mutant.values:
+        try:
+            sketch = sketch.with_values(dict(mutant.values))
+        except ParameterError as error:
+            raise DoesNotApply(str(error)) from None
+    return sketch if mutant.samples is None else replace(sketch, samples=mutant.samples)
+
+
+def edited_texts(edits: tuple[Edit, ...], sketch: Sketch, name: str) -> dict[str, str]:
+    """Return the edited texts by their files' absolute paths."""
+    used = {file for _, kernel in kernels_of(sketch.graph) for file in kernel.files}
+    texts: dict[str, str] = {}
+    for edit in edits:
+        own = edit.file.startswith("./")
+        path = ((Path(sketch.folder) if own else GLSL) / edit.file).resolve()
+        if str(path) not in used:
+            raise DoesNotApply(f"the sketch does not use {edit.file}")
+        text = texts.get(str(path)) or read_text(path)
+        count = text.count(edit.find)
+        if count != 1:
+            raise DataError(
+                f"mutant '{name}': expected once, found {count} times: {edit.find.strip()}", file=shown(path)
+            )
+        texts[str(path)] = text.replace(edit.find, edit.put)
+    return texts
+
+
+def with_texts(sketch: Sketch, texts: Mapping[str, str], same: bool = False) -> Sketch:
+    """Return the sketch with texts, by absolute path, in place of those of its shaders' files.
+
+    A companion would run instead, by a text of its own where nothing is broken: it is left
+    out, unless the texts say the ``same`` as those before.
+    """
+    if not texts:
+        return sketch
+    return replace(sketch, graph=_Reread(texts, Path(sketch.folder), same).technique(sketch.graph))
+
+
+class _Reread:
+    """Parses anew what is made of some texts."""
+
+    def __init__(self, texts: Mapping[str, str], folder: Path, same: bool) -> None:
+        self.texts = texts
+        self.folder = folder
+        self.same = same
+        self.known: dict[int, Any] = {}  # one technique may stand in several passes
+
+    def technique(self, technique: Any) -> Any:
+        """Return the technique itself where none of the texts is in it."""
+        if not any(file in self.texts for file in technique.files):
+            return technique
+        if id(technique) not in self.known:
+            companion = technique.companion if self.same else None
+            if isinstance(technique, Graph):
+                passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
+                found: Technique = replace(technique, passes=passes, companion=companion)
+            else:
+                found = replace(self.kernel(technique), companion=companion)
+            self.known[id(technique)] = found
+        return self.known[id(technique)]
+
+    def kernel(self, kernel: Kernel) -> Kernel:
+        path = Path(kernel.path)
+        root = self.folder if not path.is_relative_to(GLSL) else GLSL
+        found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
+        if found is None:
+            raise DataError("no kernel is left of this text", file=shown(path))
+        return found
+
+
+def _rewired(technique: Technique, path: str, source: str, whole: str) -> Any:
+    name, _, rest = path.partition(".")
+    spec = technique.find(name) if isinstance(technique, Graph) else None
+    if spec is None or not isinstance(technique, Graph):
+        raise DoesNotApply(f"there is no input '{whole}'")
+    if "." in rest:
+        changed = replace(spec, technique=_rewired(spec.technique, rest, source, whole))
+    elif rest not in input_names(spec.technique) or technique.find(source.partition(":")[0]) is None:
+        raise DoesNotApply(f"there is no input '{whole}', or no pass '{source}'")
+    else:
+        changed = replace(spec, inputs=tuple((dict(spec.inputs) | {rest: source}).items()))
+    return replace(technique, passes=tuple(changed if p is spec else p for p in technique.passes))
+
+
+def _reads_time(graph: Graph) -> bool:
+    names = {"time", *PLAIN_UNIFORMS["time"]}
+    repeats = [spec.repeat for spec in _passes(graph)]
+    kernels = [kernel for _, kernel in kernels_of(graph)]
+    repeats += [kernel.repeat for kernel in kernels]
+    return any(names & kernel.source.names for kernel in kernels) or any("time" in text for text in repeats)
+
+
+def _passes(graph: Graph) -> Iterator[PassSpec]:
+    for spec in graph.passes:
+        yield spec
+        if isinstance(spec.technique, Graph):
+            yield from _passes(spec.technique)
+
+
+def _with_turns(graph: Graph, more: int) -> Graph:
+    """Return the technique with other turns of every pass and kernel that repeats; a draw has none."""
+    changed = _turned(graph, more)
+    if changed == graph:
+        raise DoesNotApply("nothing in the sketch repeats")
+    assert isinstance(changed, Graph)
+    return changed
+
+
+def _turned(technique: Technique, more: int) -> Technique:
+    if isinstance(technique, Kernel):
+        repeats = technique.kind == "kernel" and technique.repeat != "1"
+        return (
+            replace(technique, repeat=f"({technique.repeat}) + {more}", companion=None)
+            if repeats
+            else technique
+        )
+    passes = tuple(
+        replace(
+            spec,
+            technique=_turned(spec.technique, more),
+            repeat=f"({spec.repeat}) + {more}" if spec.repeat else "",
+        )
+        for spec in technique.passes
+    )
+    return technique if passes == technique.passes else replace(technique, passes=passes, companion=None)
+
+
+def _changed(sketch: Sketch, path: str, factor: float = 1.0, more: object = 0.0) -> Sketch:
+    """Return the sketch with a parameter, or one of the camera's numbers, times a factor and more."""
+    if path.startswith(_CAMERA):
+        name = path.removeprefix(_CAMERA)
+        assert name in {field.name for field in fields(Camera)}
+        camera: dict[str, Any] = {name: _sum(getattr(sketch.camera, name), factor, more)}
+        return sketch.with_camera(replace(sketch.camera, **camera))
+    try:
+        parameter = resolve(sketch.graph, path)[0].parameter
+    except ParameterError:
+        raise DoesNotApply(f"there is no parameter '{path}'") from None
+    after = _sum(value_of(sketch, path, values_of(sketch)), factor, more)
+    if parameter.widget.kind == "direction" and isinstance(after, tuple):
+        after = (after[0] % 360.0, *after[1:])
+    try:
+        return sketch.with_values({path: after})
+    except ParameterError as error:
+        raise DoesNotApply(str(error)) from None
+
+
+def _sum(before: Any, factor: float, more: Any) -> Any:
+    if not isinstance(before, tuple):
+        return before * factor + more
+    added = more if isinstance(more, list) else [more] * len(before)
+    return tuple(number * factor + by for number, by in zip(before, added, strict=True))

@@ -1,0 +1,96 @@
+"""Conditions under which a shot must look the same, and a choice of many of them.
+
+Some are of a whole process: its environment, the folder that it runs in, where the sketch
+lies. Others are of one drawing: the driver, how much the engine may keep, what it drew
+before. The choice is seeded: the same number of drawings is the same drawings.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+
+_SEED = 1841
+_A_PROCESS = 8  # drawings, at most
+
+_THREADS = ("", "0", "1", "2", "4")  # of llvmpipe; "": as many as it likes
+_ENVIRONMENTS = (
+    (),
+    (("MESA_GL_VERSION_OVERRIDE", "4.1"),),
+    (("MESA_SHADER_CACHE_DISABLE", "true"),),
+    (("LC_ALL", "C"),),
+    (("LC_ALL", "de_DE.UTF-8"),),  # a comma in place of the decimal point
+    (("LC_ALL", "tr_TR.UTF-8"),),  # i and I are no pair
+    (("PYTHONHASHSEED", "1"),),
+    (("TZ", "Pacific/Chatham"),),
+)
+_BEFORE = ("", "", "the same", "another shot", "all shots", "a smaller picture", "another camera", "a mutant")
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """How the shot is drawn once."""
+
+    driver: str = "auto"
+    fresh: bool = False  # by a new engine; else by the one of the drawing before
+    cache_bytes: int = 0  # what the new engine may keep; 0: what engines keep
+    before: str = ""  # what is drawn before it by the same engine
+    commented: bool = False  # comments and blank lines are put into its shaders
+
+    @property
+    def words(self) -> str:
+        """What is unusual about it."""
+        found = [f"driver {self.driver}" if self.driver != "auto" else ""]
+        found.append("new engine" if self.fresh else "")
+        found.append(f"keeps {self.cache_bytes // 2**20} MiB" if self.cache_bytes else "")
+        found.append(f"after {self.before}" if self.before else "")
+        found.append("comments edited" if self.commented else "")
+        return ", ".join(filter(None, found)) or "as usual"
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """Drawings that one process does, one after the other."""
+
+    drawings: tuple[Drawing, ...]
+    environment: tuple[tuple[str, str], ...] = ()
+    elsewhere: bool = False  # it runs in another folder
+    moved: bool = False  # the sketch lies in another folder
+    cold: bool = False  # the driver's shader cache is empty
+
+    @property
+    def words(self) -> str:
+        """What is unusual about it."""
+        found = [f"{name}={value}" for name, value in self.environment]
+        found.append("in another folder" if self.elsewhere else "")
+        found.append("sketch moved" if self.moved else "")
+        found.append("cold shader cache" if self.cold else "")
+        return ", ".join(filter(None, found)) or "as usual"
+
+
+def processes(count: int, drivers: tuple[str, ...]) -> list[Process]:
+    """Choose so many drawings, by these drivers, and share them out among processes."""
+    chance = random.Random(_SEED)
+    found: list[Process] = []
+    left = count
+    while left > 0:
+        number = len(found)  # environments come in turn, so that a few processes have most of them
+        threads = _THREADS[number % len(_THREADS)]
+        environment = _ENVIRONMENTS[number % len(_ENVIRONMENTS)]
+        if threads:
+            environment = (*environment, ("LP_NUM_THREADS", threads))
+        drawings = [_drawing(chance, drivers) for _ in range(min(left, _A_PROCESS))]
+        moved, elsewhere, cold = (chance.random() < part for part in (0.3, 0.5, 0.2))
+        found.append(Process(tuple(drawings), environment, elsewhere, moved, cold))
+        left -= len(drawings)
+    return found
+
+
+def _drawing(chance: random.Random, drivers: tuple[str, ...]) -> Drawing:
+    return Drawing(
+        chance.choice(drivers),
+        chance.random() < 0.4,
+        chance.choice((0, 0, 1, 16)) * 2**20,
+        chance.choice(_BEFORE),
+        chance.random() < 0.25,
+    )

@@ -1,0 +1,142 @@
+"""Draw one shot again and again, each time as a drawing says; the child process of `again`.
+
+It reads a task from its standard input and answers on its standard output, in pickles.
+"""
+
+from __future__ import annotations
+
+import locale
+import os
+import pickle
+import sys
+import traceback
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from playground.engine.engine import CACHE_BYTES, Engine
+from playground.errors import PlaygroundError
+from playground.gpu.context import open_context
+from playground.shots.mutants.breaking import broken, with_texts
+from playground.shots.mutants.harmless import Drawing
+from playground.shots.mutants.model import DoesNotApply, Picture
+from playground.shots.mutants.rendering import rendering_mutants
+from playground.sketch.load import load
+from playground.sketch.model import Shot, Sketch
+from playground.sketch.source import read_text
+
+_SMALL = (96, 54)
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a child is to draw."""
+
+    sketch: str  # path, or the name of a shipped one
+    shot: Shot
+    drawings: tuple[Drawing, ...]
+    software: bool
+    device: int | None
+
+
+class _Painter:
+    """Draws, with an engine that lasts until a drawing asks for a new one."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self.sketch = load(task.sketch)
+        self.engine: Engine | None = None
+        self.driver = ""
+
+    def draw(self, drawing: Drawing) -> Picture:
+        if self.engine is None or drawing.fresh or drawing.driver != self.driver:
+            self.release()
+            context = open_context(software=self.task.software, device=self.task.device)
+            no_compute = drawing.driver == "compute" and context.version_code < 430
+            self.engine = Engine(
+                context,
+                driver="auto" if no_compute else drawing.driver,
+                cache_bytes=drawing.cache_bytes or CACHE_BYTES,
+                owns_context=True,
+            )
+            self.driver = drawing.driver
+        for sketch, shot in self._before(drawing.before):
+            self._render(sketch, shot)
+        sketch = commented(self.sketch) if drawing.commented else self.sketch
+        return self._render(sketch.for_shot(self.task.shot), self.task.shot)
+
+    def release(self) -> None:
+        if self.engine is not None:
+            self.engine.release()
+
+    def _render(self, sketch: Sketch, shot: Shot) -> Picture:
+        assert self.engine is not None
+        return self.engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps)).array
+
+    def _before(self, what: str) -> Iterator[tuple[Sketch, Shot]]:
+        shot = self.task.shot
+        shown = self.sketch.for_shot(shot)
+        others = [other for other in self.sketch.shots if other.name != shot.name]
+        if what == "the same":
+            yield shown, shot
+        elif what == "a smaller picture":
+            yield shown, replace(shot, size=_SMALL)
+        elif what == "another camera":
+            camera = replace(shown.camera, azimuth=shown.camera.azimuth + 30.0)
+            yield shown.with_camera(camera), shot
+        elif what == "a mutant":
+            yield from _first_mutant(shown, shot)
+        elif what in ("another shot", "all shots"):
+            for other in others[: 1 if what == "another shot" else None]:
+                yield self.sketch.for_shot(other), replace(other, size=_SMALL)
+
+
+def _first_mutant(shown: Sketch, shot: Shot) -> Iterator[tuple[Sketch, Shot]]:
+    for mutant in rendering_mutants():
+        try:
+            yield broken(mutant, shown), shot
+        except DoesNotApply:
+            continue
+        return
+
+
+def commented(sketch: Sketch) -> Sketch:
+    """Return the sketch with comments and blank lines put into all of its shaders."""
+    files = {file for spec in sketch.graph.passes for file in spec.technique.files}
+    shaders = sorted(file for file in files if not file.endswith(".toml"))
+    return with_texts(sketch, {file: _commented(read_text(Path(file))) for file in shaders}, same=True)
+
+
+def _commented(text: str) -> str:
+    first, newline, rest = text.partition("\n")
+    return f"{first}{newline}\n// This line says nothing: 3.0 * (1 + 2)\n{rest}\n/* Nor\n   do these. */\n"
+
+
+def main() -> None:
+    """Do the task, and answer with a picture, or an error's words, for each drawing."""
+    # What a driver prints must not get between the answers.
+    with os.fdopen(os.dup(1), "wb") as answers:
+        os.dup2(2, 1)
+        try:
+            locale.setlocale(locale.LC_ALL, "")
+        except locale.Error:  # this machine does not know it
+            pass
+        task: Task = pickle.load(sys.stdin.buffer)
+        found: list[Picture | str] = []
+        painter: _Painter | None = None
+        try:
+            painter = _Painter(task)
+            for drawing in task.drawings:
+                found.append(painter.draw(drawing))
+        except PlaygroundError as error:
+            found.append(str(error))
+        except Exception:  # a mistake in the playground: its traceback must cross over too
+            found.append(traceback.format_exc())
+        finally:
+            if painter is not None:
+                painter.release()
+        pickle.dump(found, answers)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""The mutants that the engine draws, read from their table."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from playground.errors import DataError
+from playground.shots.mutants.model import Edit, Rendering
+
+TABLE = Path(__file__).with_name("rendering.toml")
+
+_KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "later", "turns", "shot"}
+
+
+@cache
+def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
+    """Return the mutants of a table; raise ``DataError`` for a key or a name that is wrong in it."""
+    with table.open("rb") as file:
+        found = tuple(_mutant(entry, table) for entry in tomllib.load(file)["mutant"])
+    names = [mutant.name for mutant in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise DataError(f"two mutants are called '{name}'", file=table)
+    return found
+
+
+def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
+    name = entry.get("name", "")
+    if not name or not entry.get("broke", "").endswith("."):
+        raise DataError(f"mutant '{name}': it needs a name, and a sentence as `broke`", file=table)
+    if unknown := entry.keys() - _KEYS:
+        raise DataError(f"mutant '{name}': no key '{min(unknown)}'; there are {sorted(_KEYS)}", file=table)
+    mutant = Rendering(
+        name,
+        entry["broke"],
+        tuple(Edit(edit["file"], edit["find"], edit["put"]) for edit in entry.get("edit", ())),
+        tuple(entry.get("set", {}).items()),
+        tuple(entry.get("plus", {}).items()),
+        tuple(entry.get("times", {}).items()),
+        tuple(entry.get("wire", {}).items()),
+        entry.get("samples"),
+        entry.get("later", 0.0),
+        entry.get("turns", 0),
+        entry.get("shot", ""),
+    )
+    broken = (
+        mutant.edits,
+        mutant.values,
+        mutant.plus,
+        mutant.times,
+        mutant.wires,
+        mutant.later,
+        mutant.turns,
+    )
+    if not any(broken) and mutant.samples is None:
+        raise DataError(f"mutant '{name}' breaks nothing", file=table)
+    return mutant

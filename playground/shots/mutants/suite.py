@@ -1,0 +1,178 @@
+"""Draw every mutant of a shot, and judge each in every tier.
+
+What a mutant is compared with is the unbroken shot, drawn just before by the same engine:
+so the suite needs no reference, and any renderer, sketch and size will do. The reference
+is then said to be of the same build, of another build, of another renderer: three
+judgements of one picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from playground.engine.engine import Engine
+from playground.errors import ContextError, SketchError, nearest
+from playground.shots.compare import Comparison, compare
+from playground.shots.fingerprint import fingerprint_of
+from playground.shots.judge import Judgement, Seen
+from playground.shots.mutants.breaking import broken
+from playground.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
+from playground.shots.mutants.pictures import FINISHED
+from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.mutants.tiers import TIERS, judged
+from playground.shots.suite import ShotCase, Taken, take
+from playground.sketch.model import Shot, Sketch
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What came of one mutant."""
+
+    mutant: Mutant
+    shot: str
+    comparison: Comparison | None = None  # with the unbroken picture; None: the mutant does not apply
+    tiers: tuple[Judgement, ...] = ()  # of each of `TIERS`; none if it does not apply
+    why_not: str = ""  # why it does not apply
+    picture: Picture | None = None
+
+    @property
+    def applies(self) -> bool:
+        """Whether the sketch has what the mutant breaks."""
+        return not self.why_not
+
+    @property
+    def unseen(self) -> bool:
+        """Whether the picture is the unbroken one to the bit: no comparison could tell."""
+        return self.comparison is not None and self.comparison.verdict == "same" and not self.comparison.most
+
+    @property
+    def counts(self) -> bool:
+        """Whether the mutant is a defect that this shot shows."""
+        return self.applies and not self.unseen and not self.mutant.exempt
+
+    def caught(self, tier: int = 0) -> bool:
+        """Say whether a tier does not let it pass."""
+        return not self.tiers[tier].ok
+
+    @property
+    def share(self) -> float:
+        """Share of the pixels that differ by more than one level."""
+        assert self.comparison is not None
+        return self.comparison.over / (self.comparison.size[0] * self.comparison.size[1])
+
+    @property
+    def seen(self) -> Seen | None:
+        """FLIP's numbers; None where there is nothing to see, or no picture to compare."""
+        return next((judgement.seen for judgement in self.tiers if judgement.seen), None)
+
+    @property
+    def well(self) -> bool:
+        """Whether the same build catches the defect, or lets pass what is none."""
+        return not self.applies or self.unseen or self.caught() is not self.mutant.exempt
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as JSON takes it."""
+        found = self.comparison
+        return {
+            "name": self.mutant.name,
+            "broke": self.mutant.broke,
+            "kind": self.mutant.kind,
+            "exempt": self.mutant.exempt,
+            "shot": self.shot,
+            "why_not": self.why_not,
+            "unseen": self.unseen,
+            "most": None if found is None else found.most,
+            "share_over_1": None if found is None else self.share,
+            "flip_mean": None if self.seen is None else self.seen.mean,
+            "flip_tile": None if self.seen is None else self.seen.tile,
+            "tiers": {
+                tier: {"caught": not judgement.ok, "word": judgement.word, "sentence": judgement.sentence}
+                for tier, judgement in zip(TIERS, self.tiers, strict=False)
+            },
+        }
+
+
+def all_mutants() -> tuple[Mutant, ...]:
+    """Return every mutant that there is, those of rendering first."""
+    return (*rendering_mutants(), *FINISHED)
+
+
+def named(names: Sequence[str]) -> tuple[Mutant, ...]:
+    """Return mutants by name, all of them if none is named; raise ``SketchError`` with the nearest name."""
+    known = {mutant.name: mutant for mutant in all_mutants()}
+    for name in names:
+        if name not in known:
+            raise SketchError(f"no mutant '{name}'{nearest(name, known)}")
+    return tuple(known[name] for name in names) or tuple(known.values())
+
+
+def shot_of(sketch: Sketch, name: str = "", size: tuple[int, int] | None = None) -> Shot:
+    """Return the shot of that name, else the sketch's first, else its picture as it is.
+
+    Raises ``SketchError`` where the name is none of the sketch's shots.
+    """
+    shot = sketch.shot(name) if name else next(iter(sketch.shots), Shot("picture"))
+    return replace(shot, size=size or shot.size)
+
+
+class Bench:
+    """A sketch, an engine, and the unbroken pictures that mutants are compared with."""
+
+    def __init__(
+        self, engine: Engine, sketch: Sketch, shot: str = "", size: tuple[int, int] | None = None
+    ) -> None:
+        self.engine = engine
+        self.sketch = sketch
+        self.shot = shot  # which is drawn, whatever mutants ask for; "": each the one that shows it
+        self.size = size  # [pixels] None: the shot's
+        self.expected: dict[str, Picture] = {}  # unbroken, by the shot's name
+
+    def run(self, mutants: Sequence[Mutant]) -> Iterator[Result]:
+        """Yield what came of each mutant.
+
+        Raises ``PlaygroundError`` where the sketch itself cannot be drawn.
+        """
+        for mutant in mutants:
+            has = any(shot.name == mutant.shot for shot in self.sketch.shots)
+            shot = shot_of(self.sketch, self.shot or (mutant.shot if has else ""), self.size)
+            yield self._result(mutant, shot)
+
+    def unbroken(self, shot: Shot) -> Picture:
+        """Return the picture that a shot should be; raise ``ContextError`` for one that is not sound."""
+        if shot.name not in self.expected:
+            taken = self._take(self.sketch.for_shot(shot), shot, shot.time)
+            if wrong := taken.gl_error or taken.not_finite:
+                raise ContextError(f"drawing {self.sketch.name}/{shot.name}, with nothing broken: {wrong}")
+            self.expected[shot.name] = taken.array
+        return self.expected[shot.name]
+
+    def _take(self, shown: Sketch, shot: Shot, time: float) -> Taken:
+        # What the shot sets is set already: it must not be set over what a mutant breaks.
+        return take(self.engine, ShotCase(shown, Shot(shot.name, shot.size, time, steps=shot.steps)))
+
+    def _result(self, mutant: Mutant, shot: Shot) -> Result:
+        expected = self.unbroken(shot)
+        if isinstance(mutant, Rendering):
+            try:
+                sketch = broken(mutant, self.sketch.for_shot(shot))
+            except DoesNotApply as reason:
+                return Result(mutant, shot.name, why_not=str(reason))
+            taken = self._take(sketch, shot, shot.time + mutant.later)
+        else:
+            taken = Taken(mutant.change(expected))
+        fingerprint = fingerprint_of(self.engine.info, taken.size, taken.drawn)
+        wrong = {"not_finite": taken.not_finite, "gl_error": taken.gl_error}
+        tiers = judged(taken.array, expected, fingerprint, **wrong)
+        return Result(mutant, shot.name, compare(taken.array, expected), tiers, picture=taken.array)
+
+
+def survivors(results: Sequence[Result], tier: int) -> list[str]:
+    """Return the names of the defects that a tier lets pass."""
+    return [result.mutant.name for result in results if result.counts and not result.caught(tier)]
+
+
+def kill_rate(results: Sequence[Result], tier: int) -> tuple[int, int]:
+    """Return how many defects a tier catches, and of how many."""
+    counted = [result for result in results if result.counts]
+    return sum(result.caught(tier) for result in counted), len(counted)

@@ -1,0 +1,423 @@
+"""The must-fail suite: no mutant of the default sketch passes, and nothing harmless is refused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from playground import cli
+from playground.engine.engine import Engine
+from playground.errors import DataError
+from playground.images.files import read_png
+from playground.shots import judge
+from playground.shots.compare import compare
+from playground.shots.mutants import again as again_module
+from playground.shots.mutants.again import Redrawn, again
+from playground.shots.mutants.breaking import broken
+from playground.shots.mutants.harmless import Drawing, Process, processes
+from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
+from playground.shots.mutants.pictures import FINISHED
+from playground.shots.mutants.redraw import commented
+from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.mutants.suite import (
+    Bench,
+    Result,
+    all_mutants,
+    kill_rate,
+    named,
+    shot_of,
+    survivors,
+)
+from playground.shots.mutants.tiers import TIERS
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+SIZE = (160, 90)
+SMALLER_LAND = {"size": [129, 151]}  # the file's is 344 × 403, and the colour sixteen times that
+
+SLOPE = """// slope.glsl -- slopes one beside the other, higher turn by turn and with time.
+#pragma kernel(output = "height:r32f", repeat = "3")
+uniform float rise = 1.0;  //! slider(0, 4) How high they rise
+float kernel(ivec2 texel) {
+    return previous(texel) + rise * (0.3 + time) * fract(dot(vec2(texel), vec2(0.2, 0.3)));
+}
+"""
+MINE = """format = 1
+title = "A slope"
+size = 33
+[[pass]]
+name = "height"
+use = "./slope"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+set = { channel = "red" }
+[[shot]]
+name = "dark"
+size = [66, 44]
+set = { "height.rise" = 0.25 }
+"""
+
+
+def mutant(name: str) -> Rendering:
+    (found,) = (m for m in rendering_mutants() if m.name == name)
+    return found
+
+
+def finished(name: str) -> Callable[[Picture], Picture]:
+    (found,) = (m for m in FINISHED if m.name == name)
+    return found.change
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Path:
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "sketch.toml").write_text(MINE)
+    (folder / "slope.glsl").write_text(SLOPE)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def default_sketch() -> Sketch:
+    return load().with_values(SMALLER_LAND)
+
+
+@pytest.fixture(scope="module")
+def bench(shared_context: moderngl.Context, default_sketch: Sketch) -> Iterator[Bench]:
+    with Engine(shared_context) as engine:
+        yield Bench(engine, default_sketch, size=SIZE)
+
+
+@pytest.fixture(scope="module")
+def results(bench: Bench) -> list[Result]:
+    return list(bench.run(all_mutants()))
+
+
+def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
+    picture = np.random.default_rng(5).integers(8, 240, (*shape, 4), np.uint8)
+    picture[..., 3] = 255
+    return picture
+
+
+# ── what the suite is there for ──────────────────────────────────────────────
+
+
+def test_the_same_build_catches_every_defect_of_the_default_sketch(results: list[Result]):
+    assert survivors(results, 0) == []
+    caught, of = kill_rate(results, 0)
+    assert caught == of >= 60
+    assert sum(r.counts and r.mutant.kind == "rendering" for r in results) >= 40
+
+
+def test_every_mutant_of_the_default_sketch_is_seen_or_says_why_not(results: list[Result]):
+    assert [r.mutant.name for r in results if r.unseen] == []
+    assert {r.mutant.name: r.why_not for r in results if not r.applies} == {
+        "one-turn-fewer": "nothing in the sketch repeats",
+        "one-frame-late": "nothing in the sketch changes with time",
+    }
+
+
+def test_noise_of_one_level_is_no_defect(results: list[Result]):
+    (exempt,) = (r for r in results if r.mutant.exempt)
+    assert exempt.comparison is not None and exempt.comparison.most == 1
+    assert exempt.well and not exempt.caught()
+
+
+def test_looser_tiers_catch_less_but_all_that_is_large(results: list[Result]):
+    passed = [set(survivors(results, number)) for number in range(len(TIERS))]
+    assert "specks" in passed[1]  # what another build may do is as small as this
+    assert "no-shadow" not in passed[1] and "no-shadow" in passed[2]
+    large = {"sun-from-behind", "layers-swapped", "upside-down", "no-gamma", "no-alpha", "no-haze"}
+    large |= {"magenta-square", "half-blank", "blank", "a-row-short"}
+    assert [large & names for names in passed] == [set(), set(), set()]
+
+
+@pytest.mark.parametrize("tolerance", [2, 8])
+def test_a_looser_comparison_is_seen(
+    tolerance: int, results: list[Result], bench: Bench, monkeypatch: pytest.MonkeyPatch
+):
+    """The suite is sharp: with a tolerance above 1, mutants survive, by name."""
+    monkeypatch.setattr(judge, "TOLERANCE", tolerance)
+    again_judged = list(bench.run(FINISHED))
+    survived = survivors(again_judged, 0)
+    assert {"two-levels-brighter", "noise-of-two"} <= set(survived)
+    assert not all(r.well for r in again_judged)
+    of_all = [
+        r.mutant.name
+        for r in results
+        if r.counts and compare(r.picture, bench.expected[r.shot], tolerance).ok
+    ]
+    assert len(of_all) >= (2 if tolerance == 2 else 7)
+
+
+def test_a_comparison_that_forgets_alpha_is_seen(bench: Bench, monkeypatch: pytest.MonkeyPatch):
+    def forgetful(actual: Picture, expected: Picture, tolerance: int = 1):
+        actual, expected = actual.copy(), expected.copy()
+        actual[..., 3] = expected[..., 3] = 255
+        return compare(actual, expected, tolerance)
+
+    monkeypatch.setattr(judge, "compare", forgetful)
+    assert survivors(list(bench.run([mutant("no-alpha"), mutant("no-gamma")])), 0) == ["no-alpha"]
+
+
+# ── the machinery breaks what it says, and nothing else ──────────────────────
+
+
+def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
+    shot = shot_of(bench.sketch, size=SIZE)
+    expected = bench.unbroken(shot)
+    bench.engine.render(bench.sketch.for_shot(shot), size=SIZE)
+    drawn = bench.engine.drawn()
+    edited = commented(bench.sketch)
+    assert edited.graph is not bench.sketch.graph
+    assert "says nothing" in "".join(
+        line.text for line in edited.graph.passes[2].technique.passes[-1].technique.source.lines
+    )
+    with Engine(bench.engine.ctx) as engine:
+        np.testing.assert_array_equal(engine.render(edited.for_shot(shot), size=SIZE).array, expected)
+        assert engine.drawn() == drawn
+        engine.render(broken(mutant("no-shadow"), bench.sketch.for_shot(shot)), size=SIZE)
+        assert engine.drawn() != drawn
+
+
+def test_values_are_changed_from_what_the_shot_has(default_sketch: Sketch):
+    evening = default_sketch.for_shot(default_sketch.shot("evening"))
+    turned = dict(broken(mutant("sun-from-behind"), evening).overrides)
+    assert turned["light.sun"] == (70.0, 9.0)  # 250 + 180 degrees, round the compass
+    assert dict(broken(mutant("haze-twice"), evening).overrides)["view.haze"] == pytest.approx(0.24)
+    wide = broken(mutant("field-of-view"), evening).camera
+    assert wide.field_of_view == pytest.approx(38.0 * 1.01)
+    assert broken(mutant("no-antialiasing"), evening).samples == 1
+
+
+def test_wires_are_exchanged(default_sketch: Sketch):
+    colour = broken(mutant("layers-swapped"), default_sketch).graph.find("colour")
+    assert colour is not None
+    mix = colour.technique.find("mix")
+    assert dict(mix.inputs) == {"height": "ragged", "grass": "rock", "rock": "grass"}
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (Edit("view/present.glsl", "no such words", ""), "expected once, found 0 times: no such words"),
+        (Edit("view/present.glsl", "light", ""), "expected once, found"),
+    ],
+)
+def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
+    edit: Edit, said: str, default_sketch: Sketch
+):
+    with pytest.raises(DataError, match=said) as caught:
+        broken(Rendering("old", "It is old.", (edit,)), default_sketch)
+    assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
+
+
+def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engine: Engine):
+    bench = Bench(any_engine, load(mine))
+    found = {r.mutant.name: r for r in bench.run(all_mutants())}
+    assert found["no-shadow"].why_not == "the sketch does not use lighting/ray_cast/visibility.glsl"
+    assert found["sun-1-degree"].why_not == "there is no parameter 'light.sun'"
+    assert found["layers-swapped"].why_not == "there is no input 'colour.mix.grass'"
+    assert [m.name for m in FINISHED if not (found[m.name].applies and found[m.name].well)] == []
+    assert found["one-turn-fewer"].caught() and found["one-frame-late"].caught()
+    # A third of the light is missing with one turn of three.
+    assert found["one-turn-fewer"].picture.mean() < bench.expected["dark"].mean()
+    assert found["one-frame-late"].picture.mean() > bench.expected["dark"].mean()
+
+
+def test_a_shot_that_does_not_show_a_defect_says_so(default_sketch: Sketch, bench: Bench):
+    unlit = bench.run([Rendering("none", "Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
+    (result,) = unlit
+    assert result.unseen and result.well and not result.counts
+
+
+def test_names_are_of_one_mutant_each_and_sentences_are_sentences():
+    names = [m.name for m in all_mutants()]
+    assert len(set(names)) == len(names) >= 60
+    assert all(m.broke[0].isupper() and m.broke.endswith(".") for m in all_mutants())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('name = "a"\nbroke = "It is."\nsett = {}', "no key 'sett'"),
+        ('name = "a"\nbroke = "It is"\nsamples = 1', "needs a name, and a sentence"),
+        ('name = "a"\nbroke = "It is."', "breaks nothing"),
+        (
+            'name = "a"\nbroke = "A."\nsamples = 1\n[[mutant]]\nname = "a"\nbroke = "A."\nsamples = 1',
+            "two mutants are called 'a'",
+        ),
+    ],
+)
+def test_a_mistake_in_the_table_is_told(text: str, said: str, tmp_path: Path):
+    table = tmp_path / "table.toml"
+    table.write_text(f"[[mutant]]\n{text}\n")
+    with pytest.raises(DataError, match=said):
+        rendering_mutants(table)
+
+
+# ── finished pictures ────────────────────────────────────────────────────────
+
+
+def test_pictures_are_broken_as_they_say_and_the_original_is_left_alone():
+    picture = noise_like()
+    kept = picture.copy()
+    for one in FINISHED:
+        changed = one.change(picture)
+        np.testing.assert_array_equal(picture, kept)
+        assert changed.dtype == np.uint8 and changed.shape[2] == 4
+        assert (changed.shape == picture.shape) is (one.name != "a-row-short")
+        np.testing.assert_array_equal(changed, one.change(picture))  # chance is seeded
+    for name in ("upside-down", "mirrored", "blue-for-red"):
+        np.testing.assert_array_equal(finished(name)(finished(name)(picture)), picture)
+    magenta = finished("magenta-square")(picture)
+    assert int((magenta != picture).any(axis=2).sum()) == 32 * 32
+    assert int((finished("dead-pixel")(picture) != picture).any(axis=2).sum()) == 1
+    assert np.flatnonzero((finished("dead-row")(picture) != picture).any(axis=(1, 2))).tolist() == [30]
+    np.testing.assert_array_equal(finished("one-pixel-along")(picture)[:, 7], picture[:, 6])
+    np.testing.assert_array_equal(finished("lost-row")(picture)[40], picture[41])
+
+
+def test_noise_is_as_strong_as_it_says():
+    picture = noise_like()
+    one = finished("noise-of-one")(picture).astype(int) - picture
+    assert set(np.unique(one[..., :3])) == {-1, 0, 1} and not one[..., 3].any()
+    two = finished("noise-of-two")(picture).astype(int) - picture
+    assert set(np.unique(two)) == {-2, 0, 2}
+    assert 0.005 < (two != 0).any(axis=2).mean() < 0.02
+
+
+# ── drawn again ──────────────────────────────────────────────────────────────
+
+
+def redrawn(bench: Bench, sketch: Sketch, count: int, expected: Picture | None = None) -> list[Redrawn]:
+    shot = shot_of(sketch, size=SIZE)
+    wanted = bench.unbroken(shot) if expected is None else expected
+    # The land's size is not in the file, but a process loads the file.
+    return list(
+        again(sketch, replace(shot, values=(("size", (129, 151)),)), wanted, bench.engine.info, count)
+    )
+
+
+def test_what_must_not_matter_does_not(bench: Bench, default_sketch: Sketch, monkeypatch: pytest.MonkeyPatch):
+    chosen = [
+        Process(
+            (
+                Drawing("auto", before="another camera", commented=True),
+                Drawing("auto", fresh=True, cache_bytes=2**20, before="a mutant"),
+            ),
+            (("LC_ALL", "de_DE.UTF-8"), ("LP_NUM_THREADS", "1"), ("MESA_GL_VERSION_OVERRIDE", "4.1")),
+            elsewhere=True,
+            moved=True,
+        )
+    ]
+    monkeypatch.setattr(again_module, "processes", lambda count, drivers: chosen)
+    found = redrawn(bench, default_sketch, 2)
+    assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
+
+
+def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
+    bench = Bench(any_engine, load(mine))
+    shot = shot_of(bench.sketch)
+    arguments = (bench.sketch, shot, bench.unbroken(shot), any_engine.info, 1)
+    (late,) = again(*arguments, limit=0.01)
+    assert late.refused == "the process took more than 0.01 s and was stopped"
+    (mine / "slope.glsl").write_text(SLOPE.replace("rise *", "ryse *"))
+    (wrong,) = again(*arguments)
+    assert "slope.glsl:" in wrong.refused and "ryse" in wrong.refused and not wrong.identical
+
+
+def test_a_picture_that_is_not_the_same_is_refused(mine: Path, any_engine: Engine):
+    bench = Bench(any_engine, load(mine))
+    shot = shot_of(bench.sketch)
+    expected = finished("two-levels-brighter")(bench.unbroken(shot))
+    (found,) = again(bench.sketch, shot, expected, any_engine.info, 1)
+    assert found.refused.startswith("differs: max difference 2") and not found.identical
+
+
+def test_two_hundred_drawings_have_every_condition():
+    drivers = ("auto", "fragment", "compute")
+    found = processes(200, drivers)
+    assert found == processes(200, drivers)
+    drawings = [drawing for process in found for drawing in process.drawings]
+    assert len(drawings) == 200
+    assert {drawing.driver for drawing in drawings} == set(drivers)
+    assert {"", "a mutant", "all shots", "another camera", "a smaller picture"} <= {
+        d.before for d in drawings
+    }
+    for condition in ("fresh", "commented", "cache_bytes"):
+        assert {bool(getattr(drawing, condition)) for drawing in drawings} == {True, False}
+    for condition in ("elsewhere", "moved", "cold"):
+        assert {getattr(process, condition) for process in found} == {True, False}
+    environment = {pair for process in found for pair in process.environment}
+    assert {("LP_NUM_THREADS", number) for number in "0124"} <= environment
+    assert {("MESA_GL_VERSION_OVERRIDE", "4.1"), ("MESA_SHADER_CACHE_DISABLE", "true")} <= environment
+
+
+@pytest.mark.slow
+def test_no_false_alarm_in_two_hundred_drawings(bench: Bench, default_sketch: Sketch):
+    refused = [f"{one.words}: {one.refused}" for one in redrawn(bench, default_sketch, 200) if one.refused]
+    assert refused == []
+
+
+# ── the command ──────────────────────────────────────────────────────────────
+
+
+def test_the_command_prints_a_row_a_mutant_and_writes_pictures(
+    mine: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(tmp_path)
+    chosen = ["--mutant", "upside-down", "--mutant", "no-shadow", "--mutant", "noise-of-one"]
+    assert cli.main(["shots", "mutants", "mine", *chosen, "--pictures", "seen", "--again", "1"]) == 0
+    out, error = capsys.readouterr()
+    rows = {line.split("\t")[0]: line.split("\t") for line in out.splitlines() if "\t" in line}
+    assert set(rows) == {"upside-down", "noise-of-one"}
+    assert rows["upside-down"][-1] == "Rows are read from the bottom up."
+    assert "same build: 1 of 1 caught" in out and "noise-of-one: passes, as it should" in out
+    assert "drawn again 1 time: 0 refused, 1 the same to the last bit" in out
+    assert "no-shadow does not apply: the sketch does not use" in error
+    expected, _ = read_png(tmp_path / "seen" / "unbroken.dark.png")
+    upside_down, _ = read_png(tmp_path / "seen" / "upside-down.png")
+    np.testing.assert_array_equal(upside_down, expected[::-1])
+    assert (tmp_path / "seen" / "upside-down.difference.png").is_file()
+
+
+def test_the_command_fails_where_a_defect_passes(
+    mine: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr(judge, "TOLERANCE", 2)
+    chosen = ["--mutant", "noise-of-two", "--mutant", "half-blank"]
+    assert cli.main(["shots", "mutants", str(mine), *chosen, "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert found["tiers"]["same build"] == {"caught": 1, "of": 2, "passed": ["noise-of-two"]}
+    assert [entry["tiers"]["same build"]["caught"] for entry in found["mutants"]] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--mutant", "no-shadows"], "no mutant 'no-shadows'; did you mean 'no-shadow'?"),
+        (["--shot", "mornin"], "no shot 'mornin' in sketch jacksboro; did you mean 'morning'?"),
+        (["--size", "12"], "--size 12: expected width and height"),
+        (["--again", "-1"], "invalid value for '--again'"),
+    ],
+)
+def test_a_mistake_is_one_sentence(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["shots", "mutants", *arguments]) == 2
+    out, error = capsys.readouterr()
+    assert out == "" and said in error and len(error.splitlines()) == 1
+
+
+def test_every_mutant_has_a_name_to_be_asked_for():
+    assert named(()) == all_mutants()
+    (one,) = named(["seam"])
+    assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)
+    with pytest.raises(DoesNotApply):
+        broken(Rendering("x", "X.", wires=(("colour.mix.grass", "nowhere"),)), load())
