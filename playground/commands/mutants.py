@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,6 +29,7 @@ from playground.terminal import note, painted, print_table, progress
 if TYPE_CHECKING:
     from playground.shots.mutants.again import Redrawn
     from playground.shots.mutants.suite import Result
+    from playground.shots.suite import Taken
 
 HELP = help_text(
     "Break a sketch in every known way, and see whether the comparison of its pictures tells.\n\n"
@@ -109,7 +111,7 @@ def mutants(
     if pictures is not None:
         _write(pictures, bench.expected, results)
     where: dict[str, Any] = {"software": renderer.software, "device": renderer.device}
-    with progress("drawn again", count) as advance:
+    with progress("drawn again", count) if count else nullcontext(lambda: None) as advance:
         for drawn in again(loaded, first, expected, info, count, **where):
             redrawn.append(drawn)
             advance()
@@ -204,15 +206,15 @@ def _make(folder: Path) -> None:
         raise DataError(f"no folder can be made: {error.strerror}", file=shown(folder)) from error
 
 
-def _write(folder: Path, expected: dict[str, Any], results: Sequence[Result]) -> None:
+def _write(folder: Path, expected: Mapping[str, Taken], results: Sequence[Result]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
     from playground.images.files import write_png
     from playground.shots.compare import difference_picture
 
     for name, picture in expected.items():
-        write_png(folder / f"unbroken.{name}.png", picture)
+        write_png(folder / f"unbroken.{name}.png", picture.array)
     for result in results:
         if result.picture is not None:
             write_png(folder / f"{result.mutant.name}.png", result.picture)
-            difference = difference_picture(result.picture, expected[result.shot])
+            difference = difference_picture(result.picture, expected[result.shot].array)
             write_png(folder / f"{result.mutant.name}.difference.png", difference)

@@ -35,6 +35,7 @@ from playground.shots.mutants.suite import (
     survivors,
 )
 from playground.shots.mutants.tiers import TIERS
+from playground.shots.suite import ShotCase, take
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
@@ -152,7 +153,7 @@ def test_a_looser_comparison_is_seen(
     of_all = [
         r.mutant.name
         for r in results
-        if r.counts and compare(r.picture, bench.expected[r.shot], tolerance).ok
+        if r.counts and compare(r.picture, bench.expected[r.shot].array, tolerance).ok
     ]
     assert len(of_all) >= (2 if tolerance == 2 else 7)
 
@@ -173,18 +174,27 @@ def test_a_comparison_that_forgets_alpha_is_seen(bench: Bench, monkeypatch: pyte
 def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
     shot = shot_of(bench.sketch, size=SIZE)
     expected = bench.unbroken(shot)
-    bench.engine.render(bench.sketch.for_shot(shot), size=SIZE)
-    drawn = bench.engine.drawn()
     edited = commented(bench.sketch)
     assert edited.graph is not bench.sketch.graph
     assert "says nothing" in "".join(
         line.text for line in edited.graph.passes[2].technique.passes[-1].technique.source.lines
     )
     with Engine(bench.engine.ctx) as engine:
-        np.testing.assert_array_equal(engine.render(edited.for_shot(shot), size=SIZE).array, expected)
-        assert engine.drawn() == drawn
-        engine.render(broken(mutant("no-shadow"), bench.sketch.for_shot(shot)), size=SIZE)
-        assert engine.drawn() != drawn
+        found = take(engine, ShotCase(edited, shot))
+    np.testing.assert_array_equal(found.array, expected.array)
+    assert found.drawn == expected.drawn != ""
+
+
+def test_the_hash_of_what_was_drawn_knows_every_defect_of_rendering(results: list[Result]):
+    for result in results:
+        if result.applies:
+            told = any("what is drawn has changed" in line for line in result.tiers[0].differences)
+            assert told is (result.mutant.kind == "rendering"), result.mutant.name
+
+
+def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: list[Result]):
+    (result,) = (r for r in results if r.mutant.name == "not-numbers")
+    assert [judgement.word for judgement in result.tiers] == ["nan"] * len(TIERS)
 
 
 def test_values_are_changed_from_what_the_shot_has(default_sketch: Sketch):
@@ -228,8 +238,8 @@ def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engi
     assert [m.name for m in FINISHED if not (found[m.name].applies and found[m.name].well)] == []
     assert found["one-turn-fewer"].caught() and found["one-frame-late"].caught()
     # A third of the light is missing with one turn of three.
-    assert found["one-turn-fewer"].picture.mean() < bench.expected["dark"].mean()
-    assert found["one-frame-late"].picture.mean() > bench.expected["dark"].mean()
+    assert found["one-turn-fewer"].picture.mean() < bench.expected["dark"].array.mean()
+    assert found["one-frame-late"].picture.mean() > bench.expected["dark"].array.mean()
 
 
 def test_a_shot_that_does_not_show_a_defect_says_so(default_sketch: Sketch, bench: Bench):
@@ -337,7 +347,8 @@ def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
 def test_a_picture_that_is_not_the_same_is_refused(mine: Path, any_engine: Engine):
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
-    expected = finished("two-levels-brighter")(bench.unbroken(shot))
+    unbroken = bench.unbroken(shot)
+    expected = replace(unbroken, array=finished("two-levels-brighter")(unbroken.array))
     (found,) = again(bench.sketch, shot, expected, any_engine.info, 1)
     assert found.refused.startswith("differs: max difference 2") and not found.identical
 

@@ -59,6 +59,11 @@ class Process:
     cold: bool = False  # the driver's shader cache is empty
 
     @property
+    def all_forms(self) -> bool:
+        """Whether it may have compute shaders, where there are any."""
+        return "MESA_GL_VERSION_OVERRIDE" not in dict(self.environment)
+
+    @property
     def words(self) -> str:
         """What is unusual about it."""
         found = [f"{name}={value}" for name, value in self.environment]

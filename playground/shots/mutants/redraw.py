@@ -19,8 +19,9 @@ from playground.errors import PlaygroundError
 from playground.gpu.context import open_context
 from playground.shots.mutants.breaking import broken, with_texts
 from playground.shots.mutants.harmless import Drawing
-from playground.shots.mutants.model import DoesNotApply, Picture
+from playground.shots.mutants.model import DoesNotApply
 from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.suite import ShotCase, Taken, take
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
 from playground.sketch.source import read_text
@@ -48,7 +49,7 @@ class _Painter:
         self.engine: Engine | None = None
         self.driver = ""
 
-    def draw(self, drawing: Drawing) -> Picture:
+    def draw(self, drawing: Drawing) -> Taken:
         if self.engine is None or drawing.fresh or drawing.driver != self.driver:
             self.release()
             context = open_context(software=self.task.software, device=self.task.device)
@@ -61,17 +62,13 @@ class _Painter:
             )
             self.driver = drawing.driver
         for sketch, shot in self._before(drawing.before):
-            self._render(sketch, shot)
+            self.engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
         sketch = commented(self.sketch) if drawing.commented else self.sketch
-        return self._render(sketch.for_shot(self.task.shot), self.task.shot)
+        return take(self.engine, ShotCase(sketch, self.task.shot))
 
     def release(self) -> None:
         if self.engine is not None:
             self.engine.release()
-
-    def _render(self, sketch: Sketch, shot: Shot) -> Picture:
-        assert self.engine is not None
-        return self.engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps)).array
 
     def _before(self, what: str) -> Iterator[tuple[Sketch, Shot]]:
         shot = self.task.shot
@@ -122,7 +119,7 @@ def main() -> None:
         except locale.Error:  # this machine does not know it
             pass
         task: Task = pickle.load(sys.stdin.buffer)
-        found: list[Picture | str] = []
+        found: list[Taken | str] = []
         painter: _Painter | None = None
         try:
             painter = _Painter(task)

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from playground.engine.engine import Engine
 from playground.errors import ContextError, SketchError, nearest
 from playground.shots.compare import Comparison, compare
-from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import Judgement, Seen
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
@@ -126,7 +125,7 @@ class Bench:
         self.sketch = sketch
         self.shot = shot  # which is drawn, whatever mutants ask for; "": each the one that shows it
         self.size = size  # [pixels] None: the shot's
-        self.expected: dict[str, Picture] = {}  # unbroken, by the shot's name
+        self.expected: dict[str, Taken] = {}  # unbroken, by the shot's name
 
     def run(self, mutants: Sequence[Mutant]) -> Iterator[Result]:
         """Yield what came of each mutant.
@@ -138,13 +137,13 @@ class Bench:
             shot = shot_of(self.sketch, self.shot or (mutant.shot if has else ""), self.size)
             yield self._result(mutant, shot)
 
-    def unbroken(self, shot: Shot) -> Picture:
+    def unbroken(self, shot: Shot) -> Taken:
         """Return the picture that a shot should be; raise ``ContextError`` for one that is not sound."""
         if shot.name not in self.expected:
             taken = self._take(self.sketch.for_shot(shot), shot, shot.time)
             if wrong := taken.gl_error or taken.not_finite:
                 raise ContextError(f"drawing {self.sketch.name}/{shot.name}, with nothing broken: {wrong}")
-            self.expected[shot.name] = taken.array
+            self.expected[shot.name] = taken
         return self.expected[shot.name]
 
     def _take(self, shown: Sketch, shot: Shot, time: float) -> Taken:
@@ -160,11 +159,10 @@ class Bench:
                 return Result(mutant, shot.name, why_not=str(reason))
             taken = self._take(sketch, shot, shot.time + mutant.later)
         else:
-            taken = Taken(mutant.change(expected))
-        fingerprint = fingerprint_of(self.engine.info, taken.size, taken.drawn)
-        wrong = {"not_finite": taken.not_finite, "gl_error": taken.gl_error}
-        tiers = judged(taken.array, expected, fingerprint, **wrong)
-        return Result(mutant, shot.name, compare(taken.array, expected), tiers, picture=taken.array)
+            taken = replace(expected, array=mutant.change(expected.array))
+        tiers = judged(taken, expected, self.engine.info)
+        comparison = compare(taken.array, expected.array)
+        return Result(mutant, shot.name, comparison, tiers, picture=taken.array)
 
 
 def survivors(results: Sequence[Result], tier: int) -> list[str]:

@@ -5,36 +5,30 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from playground.shots.fingerprint import Fingerprint
+from playground.gpu.context import ContextInfo
+from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, Judgement, judge
-from playground.shots.mutants.model import Picture
 from playground.shots.references import Reference
+from playground.shots.suite import Taken
 
 TIERS = (SAME_BUILD, OTHER_BUILD, OTHER_RENDERER)
 """The tiers, the strictest first."""
 
 
-def judged(
-    actual: Picture,
-    expected: Picture,
-    fingerprint: Fingerprint,
-    *,
-    not_finite: str = "",
-    gl_error: str = "",
-) -> tuple[Judgement, ...]:
-    """Return the judgement of each of `TIERS`.
+def judged(actual: Taken, expected: Taken, renderer: ContextInfo) -> tuple[Judgement, ...]:
+    """Return the judgement of each of `TIERS` of a picture and the one that it should be.
 
-    ``fingerprint`` is the actual picture's; ``not_finite`` and ``gl_error`` say what was wrong
-    when it was drawn. The pixels are the same in all three: what the other builds and renderers
-    would draw differently by themselves comes on top.
+    The same ``renderer`` drew both. The pixels are the same in all three tiers: what other
+    builds and renderers would draw differently by themselves comes on top.
     """
     found = []
+    fingerprint = fingerprint_of(renderer, actual.size, actual.drawn)
+    wrong = {"not_finite": actual.not_finite, "gl_error": actual.gl_error}
     for tier in TIERS:
-        origin = fingerprint
+        origin = fingerprint_of(renderer, expected.size, expected.drawn)
         if tier != SAME_BUILD:
-            origin = replace(fingerprint, version=f"{fingerprint.version}, {tier}")
-        reference = Reference(Path(), expected, origin.texts())
+            origin = replace(origin, version=f"{origin.version}, {tier}")
+        reference = Reference(Path(), expected.array, origin.texts())
         own, others = ((), (reference,)) if tier == OTHER_RENDERER else ((reference,), ())
-        judgement, _ = judge(actual, fingerprint, own, others, not_finite=not_finite, gl_error=gl_error)
-        found.append(judgement)
+        found.append(judge(actual.array, fingerprint, own, others, **wrong)[0])
     return tuple(found)
