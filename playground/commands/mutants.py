@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
@@ -133,9 +134,10 @@ def _print(results: Sequence[Result]) -> None:
     from playground.shots.mutants.tiers import TIERS
 
     rows = [_row(result) for result in results if result.applies and not result.unseen]
-    print_table(
-        "Mutants, and what the comparison says of them", ("mutant", *_NUMBERS, *TIERS, "broken"), rows
-    )
+    headings: tuple[str, ...] = ("mutant", *_NUMBERS, *TIERS, "broken")
+    if sys.stdout.isatty() and shutil.get_terminal_size().columns < _WIDE:
+        headings, rows = headings[:-1], [row[:-1] for row in rows]
+    print_table("Mutants, and what the comparison says of them", headings, rows)
     for number, tier in enumerate(TIERS):
         caught, of = kill_rate(results, number)
         passed = survivors(results, number)
@@ -152,6 +154,7 @@ def _print(results: Sequence[Result]) -> None:
             note(f"{result.mutant.name} does not apply: {result.why_not}")
 
 
+_WIDE = 120  # columns of a terminal that has room for sentences
 _NUMBERS = ("most", "over 1", "FLIP", "FLIP tile")
 
 
