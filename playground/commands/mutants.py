@@ -148,7 +148,7 @@ def _print(results: Sequence[Result]) -> None:
             print(f"{result.mutant.name}: {found} (same build)")
     unseen = [result.mutant.name for result in results if result.unseen]
     if unseen:
-        note(f"the shot does not show {', '.join(unseen)}: the picture is the same to the bit")
+        note(f"the shot does not show {', '.join(unseen)}: no level differs by more than one")
     for result in results:
         if not result.applies:
             note(f"{result.mutant.name} does not apply: {result.why_not}")

@@ -242,10 +242,15 @@ def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engi
     assert found["one-frame-late"].picture.mean() > bench.expected["dark"].array.mean()
 
 
-def test_a_shot_that_does_not_show_a_defect_says_so(default_sketch: Sketch, bench: Bench):
-    unlit = bench.run([Rendering("none", "Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
-    (result,) = unlit
-    assert result.unseen and result.well and not result.counts
+def test_a_shot_that_does_not_show_a_defect_says_so(bench: Bench):
+    def shown(by: int) -> Result:
+        change = Finished("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
+        return next(bench.run([change]))
+
+    (wire,) = bench.run([Rendering("none", "Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
+    for result in (wire, shown(1)):
+        assert result.unseen and result.well and not result.counts
+    assert shown(2).counts and not shown(2).unseen
 
 
 def test_names_are_of_one_mutant_each_and_sentences_are_sentences():
