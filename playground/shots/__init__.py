@@ -6,6 +6,7 @@
     references.py   where references live; reading, writing, finding those that nothing uses
     judge.py        a picture and its references → whether it passes, by which tier, and why
     suite.py        sketches → cases → frames → outcomes
+    results.py      a folder with a record of each checked shot and its pictures
     studio.py       a child process with the software renderer, which takes the pictures
     plugin.py       pytest: options, the ``shots`` fixture, what a failure prints
 

@@ -1,0 +1,334 @@
+"""Keep what came of each checked shot in a folder: one record a shot, as JSON, and its pictures.
+
+    <folder>/<sketch>/<shot>.json             what came of it: always
+    <folder>/<sketch>/<shot>.actual.png       unless it passed; with the texts of a reference
+    <folder>/<sketch>/<shot>.expected.png     the reference it was held against, if there is one
+    <folder>/<sketch>/<shot>.difference.png   16 times as strong
+    <folder>/<sketch>/<shot>.flip.png         where an eye would see it
+
+A record stands alone: the report, ``review`` and ``accept`` need neither the sketch nor a
+graphics card, so a folder that was made elsewhere (by a continuous integration, say) can be
+looked at and accepted here. Each file is written whole or not at all, so that several
+processes may fill one folder, a shot each.
+
+It judges nothing, and knows no pytest.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import MISSING, asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError
+from playground.images.files import encode_png, replacing
+
+FORMAT = 1
+"""What a record's ``format`` says; a record of another is refused in words."""
+
+FOLDER = "shots-report"
+"""Where results go unless something else is asked for: in the folder the tests were started in."""
+
+PICTURES = ("actual", "expected", "difference", "flip")
+"""The pictures a record can have, in the order in which they are shown."""
+
+PASSED = "same"
+"""The word of a shot that is what it should be."""
+
+NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang"})
+"""The words of results that no reference may be made of: the picture is broken, or there is none."""
+
+Digests = Mapping[str, str]
+
+_SHOT = re.compile(r"[^./\\\0][^./\\\0]*")
+_SKETCH = re.compile(r"(?!\.{1,2}$)[^/\\\0]+")
+
+
+@dataclass(frozen=True)
+class Record:
+    """What came of one checked shot. Everything in it is plain text and numbers."""
+
+    sketch: str  # its name: a folder here, and in screenshots/
+    shot: str  # its name, without dots
+    word: str  # "same" passed; else differs, crowded, structure, size, blank, nan, gl-error, missing, …
+    sentence: str  # what was found, for a person
+    renderer: str = ""  # slug of what drew it, as "llvmpipe"; "" where nothing was drawn
+    tier: str = ""  # how strictly it was compared, in a few words
+    catches: str = ""  # what that tier can catch and what it cannot, in a sentence
+    numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
+    size: tuple[int, int] | None = None  # [pixels] width and height of the actual picture
+    expected_size: tuple[int, int] | None = None  # [pixels] of the reference
+    place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one
+    texts: dict[str, str] = field(default_factory=dict)  # the fingerprint of what drew it now
+    expected_texts: dict[str, str] = field(default_factory=dict)  # the reference's fingerprint
+    fingerprint: tuple[str, ...] = ()  # how the two differ, a sentence each
+    home: str = ""  # the screenshots/ folder of the references: from the root, else absolute
+    compared: str = ""  # file name of the reference it was held against; "" for none
+    references: dict[str, str] = field(default_factory=dict)  # accepted file's name → its SHA-256, then
+    pictures: dict[str, str] = field(default_factory=dict)  # one of PICTURES → its file, from the folder
+    digest: str = ""  # SHA-256 of the actual picture's file
+    error: str = ""  # what the child process printed before it failed
+    node: str = ""  # pytest's node id, as tests/test_shots.py::test_shot[hills/dawn]
+    command: str = ""  # what accepts it, for a shell
+    seconds: float = 0.0  # [s] that taking and comparing took
+    when: float = 0.0  # [s since 1970, UTC] when it was checked
+    run: str = ""  # names the run of the tests; the same for all its processes
+
+    @property
+    def name(self) -> str:
+        """Return "sketch/shot"."""
+        return f"{self.sketch}/{self.shot}"
+
+    @property
+    def ok(self) -> bool:
+        """Whether the shot passed."""
+        return self.word == PASSED
+
+    @property
+    def stamp(self) -> str:
+        """Return a digest of all that is in it: another run of the same shot gives another."""
+        return hashlib.sha256(to_json(self).encode()).hexdigest()[:24]
+
+
+def to_json(record: Record) -> str:
+    """Return a record as JSON; `from_json` gives the same record back."""
+    return (
+        json.dumps({"format": FORMAT} | asdict(record), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    )
+
+
+def from_json(text: str, file: str | Path = "a record") -> Record:
+    """Read a record; raise ``DataError``, which names ``file``, for anything but what `to_json` writes.
+
+    What a later version of the playground adds would change the format's number, so a name
+    that is not known is a mistake too.
+    """
+    try:
+        found = json.loads(text, parse_constant=_no_constant)
+    except ValueError as error:
+        raise DataError(f"not the record of a shot: no JSON ({error})", file=file) from error
+    if not isinstance(found, dict) or "format" not in found:
+        raise DataError("not the record of a shot: expected an object with a 'format'", file=file)
+    if found.pop("format") != FORMAT:
+        raise DataError(f"a record of another format; this version reads format {FORMAT}", file=file)
+    unknown = sorted(found.keys() - _READERS.keys())
+    if unknown:
+        raise DataError(f"a record has no '{unknown[0]}'", file=file)
+    missing = sorted(_REQUIRED - found.keys())
+    if missing:
+        raise DataError(f"a record without its '{missing[0]}'", file=file)
+    values: dict[str, Any] = {}
+    for name, value in found.items():
+        expected, reader = _READERS[name]
+        try:
+            values[name] = reader(value)
+        except (TypeError, ValueError):
+            said = json.dumps(value, ensure_ascii=False)
+            said = said if len(said) < 60 else said[:57] + "…"
+            raise DataError(f"'{name}' in a record is {expected}; found {said}", file=file) from None
+    record = Record(**values)
+    for word, name in record.pictures.items():
+        if name != _picture_name(record, word):
+            expected = _picture_name(record, word)
+            raise DataError(f"picture '{word}' in a record is {expected}; found {name}", file=file)
+    return record
+
+
+def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np.uint8]]) -> Record:
+    """Leave a shot's record and its pictures in ``folder``, and remove what a run before left of them.
+
+    ``pictures`` has some of `PICTURES`, uint8 (height, width, 4), top row first; none for a
+    shot that passed. The record goes last, and an old one is removed first: one that can be
+    read has its pictures.
+    Returns it as written, with the pictures' names and the digest. A new folder gets a
+    ``.gitignore``, so that no repository takes it in. Raises ``DataError``, also for a name
+    that cannot be a file's.
+    """
+    _check_names(record.sketch, record.shot, folder)
+    make_folder(folder)
+    try:
+        (folder / record.sketch).mkdir(exist_ok=True)
+    except OSError as error:
+        raise DataError(f"no folder can be made: {error.strerror}", file=folder / record.sketch) from error
+    result_path(folder, record).unlink(missing_ok=True)
+    files: dict[str, str] = {}
+    digest = ""
+    for word in PICTURES:
+        name = _picture_name(record, word)
+        if word not in pictures:
+            (folder / name).unlink(missing_ok=True)
+            continue
+        data = encode_png(pictures[word], record.texts if word == "actual" else {})
+        with replacing(folder / name) as handle:
+            handle.write(data)
+        files[word] = name
+        if word == "actual":
+            digest = digest_of(data)
+    whole = replace(record, pictures=files, digest=digest)
+    with replacing(result_path(folder, whole)) as handle:
+        handle.write(to_json(whole).encode())
+    return whole
+
+
+def make_folder(folder: Path) -> Path:
+    """Make the results folder if it is not there, with a ``.gitignore`` of everything in it."""
+    try:
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            with replacing(folder / ".gitignore") as handle:
+                handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
+    except OSError as error:
+        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    return folder
+
+
+def read_results(folder: Path) -> list[Record]:
+    """Read every record in a folder, by sketch and shot.
+
+    Raises ``DataError`` where there is no such folder, none in it, or one that cannot be
+    read, or that lies where another shot's belongs.
+    """
+    if not folder.is_dir():
+        raise DataError("there is no such folder; pytest makes it when it checks shots", file=folder)
+    found = [read_result(path) for path in sorted(folder.glob("*/*.json"))]
+    if not found:
+        raise DataError("no record of a shot is in it; pytest leaves them when it checks shots", file=folder)
+    return sorted(found, key=lambda record: (record.sketch, record.shot))
+
+
+def read_result(path: Path) -> Record:
+    """Read one record from its file; raise ``DataError``."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise DataError(f"cannot be read: {error.strerror}", file=path) from error
+    except UnicodeDecodeError as error:
+        raise DataError("not the record of a shot: not text in UTF-8", file=path) from error
+    record = from_json(text, path)
+    if (record.sketch, record.shot) != (path.parent.name, path.stem):
+        raise DataError(f"the record of {record.name} lies where another belongs", file=path)
+    return record
+
+
+def result_path(folder: Path, record: Record) -> Path:
+    """Return where a shot's record is."""
+    return folder / record.sketch / f"{record.shot}.json"
+
+
+def digest_of(data: bytes) -> str:
+    """Return the SHA-256 of bytes, as records hold it."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def digests_of(files: Iterable[Path]) -> dict[str, str]:
+    """Return name → SHA-256 of files; raise ``DataError`` for one that cannot be read."""
+    found = {}
+    for path in files:
+        try:
+            found[path.name] = digest_of(path.read_bytes())
+        except OSError as error:
+            raise DataError(f"cannot be read: {error.strerror}", file=path) from error
+    return found
+
+
+def _picture_name(record: Record, word: str) -> str:
+    return f"{record.sketch}/{record.shot}.{word}.png"
+
+
+def _check_names(sketch: str, shot: str, file: str | Path) -> None:
+    if not _SKETCH.fullmatch(sketch):
+        raise DataError(f"{sketch!r} cannot be a sketch's folder", file=file)
+    if not _SHOT.fullmatch(shot):
+        raise DataError(f"{shot!r} cannot be a shot's name: no dot, no slash", file=file)
+
+
+# Reading, a kind of value each; ValueError or TypeError says that it is another
+
+
+def _no_constant(text: str) -> float:
+    raise ValueError(f"{text} is no number")
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def _matching(pattern: re.Pattern[str]) -> Callable[[object], str]:
+    def read(value: object) -> str:
+        if not pattern.fullmatch(_text(value)):
+            raise ValueError
+        return _text(value)
+
+    return read
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError
+    return value
+
+
+def _texts(value: object) -> dict[str, str]:
+    if not isinstance(value, dict):
+        raise TypeError
+    return {_text(key): _text(text) for key, text in value.items()}
+
+
+def _numbers(value: object) -> dict[str, float]:
+    if not isinstance(value, dict):
+        raise TypeError
+    return {_text(key): _number(number) for key, number in value.items()}
+
+
+def _lines(value: object) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise TypeError
+    return tuple(_text(line) for line in value)
+
+
+def _pair(lowest: int) -> Callable[[object], tuple[int, int] | None]:
+    def read(value: object) -> tuple[int, int] | None:
+        if value is None:
+            return None
+        if not isinstance(value, list) or len(value) != 2:
+            raise TypeError
+        if not all(isinstance(side, int) and side >= lowest for side in value):
+            raise ValueError
+        return value[0], value[1]
+
+    return read
+
+
+def _pictures(value: object) -> dict[str, str]:
+    found = _texts(value)
+    if not found.keys() <= set(PICTURES):
+        raise ValueError
+    return found
+
+
+_READERS: dict[str, tuple[str, Callable[[object], Any]]] = {
+    "sketch": ("the name of a sketch", _matching(_SKETCH)),
+    "shot": ("the name of a shot", _matching(_SHOT)),
+    "numbers": ("an object of numbers", _numbers),
+    "size": ("two numbers of pixels", _pair(1)),
+    "expected_size": ("two numbers of pixels", _pair(1)),
+    "place": ("x and y of a pixel", _pair(0)),
+    "texts": ("an object of texts", _texts),
+    "expected_texts": ("an object of texts", _texts),
+    "fingerprint": ("a list of texts", _lines),
+    "references": ("an object of texts", _texts),
+    "pictures": (f"an object of files, of {', '.join(PICTURES)}", _pictures),
+    "seconds": ("a number", _number),
+    "when": ("a number", _number),
+}
+_READERS |= {f.name: ("a text", _text) for f in fields(Record) if f.name not in _READERS}
+_REQUIRED = {f.name for f in fields(Record) if f.default is MISSING and f.default_factory is MISSING}

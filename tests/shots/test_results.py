@@ -1,0 +1,177 @@
+"""The records of checked shots: every one comes back as it was, and anything else is refused in words."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.errors import DataError
+from playground.images.files import read_png
+from playground.shots.results import (
+    PICTURES,
+    Record,
+    from_json,
+    read_result,
+    read_results,
+    result_path,
+    to_json,
+    write_result,
+)
+
+FULL = Record(
+    sketch="hills & dales",
+    shot="dawn",
+    word="differs",
+    sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
+    renderer="llvmpipe",
+    tier="same build",
+    catches="anything over one level",
+    numbers={"max difference [levels]": 12, "over [%]": 0.25},
+    size=(6, 4),
+    expected_size=(6, 4),
+    place=(3, 1),
+    texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
+    expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
+    fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
+    home="screenshots",
+    compared="dawn.2.png",
+    references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
+    error="<script>alert(1)</script>\n\x1b[31mred",
+    node="tests/test_shots.py::test_shot[hills/dawn]",
+    command="pytest --shots-update 'tests/test_shots.py::test_shot[hills/dawn]'",
+    seconds=0.25,
+    when=1.75e9,
+    run="abc",
+)
+PIXELS = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
+
+
+def test_every_field_of_the_example_says_something() -> None:
+    """So that a field that is lost on the way cannot go unseen."""
+    alone = {"pictures", "digest"}  # what write_result fills in
+    assert not [f.name for f in fields(Record) if not getattr(FULL, f.name) and f.name not in alone]
+
+
+@pytest.mark.parametrize("record", [FULL, Record("a", "b", "same", "every pixel")], ids=["full", "bare"])
+def test_a_record_comes_back_as_it_was(record: Record) -> None:
+    text = to_json(record)
+    assert from_json(text) == record
+    assert json.loads(text)["format"] == 1
+
+
+def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    pictures = {word: PIXELS + np.uint8(number) for number, word in enumerate(PICTURES)}
+    written = write_result(folder, FULL, pictures)
+    assert read_results(folder) == [written]
+    assert written.pictures == {word: f"hills & dales/dawn.{word}.png" for word in PICTURES}
+    assert written.digest == hashlib.sha256((folder / written.pictures["actual"]).read_bytes()).hexdigest()
+    for word, pixels in pictures.items():
+        read, texts = read_png(folder / written.pictures[word])
+        np.testing.assert_array_equal(read, pixels)
+        assert texts == (FULL.texts if word == "actual" else {})
+    passed = write_result(folder, replace(FULL, word="same"), {})
+    assert passed.pictures == {} and passed.digest == ""
+    assert [p.name for p in (folder / FULL.sketch).iterdir()] == ["dawn.json"]
+
+
+def test_a_new_folder_stays_out_of_a_repository_but_a_given_one_is_left_alone(tmp_path: Path) -> None:
+    write_result(tmp_path / "new", FULL, {})
+    assert "*" in (tmp_path / "new/.gitignore").read_text().splitlines()
+    (tmp_path / "mine").mkdir()
+    write_result(tmp_path / "mine", FULL, {})
+    assert [p.name for p in (tmp_path / "mine").iterdir()] == [FULL.sketch]
+
+
+def test_results_come_by_sketch_and_shot(tmp_path: Path) -> None:
+    for name in ("b/z", "b/a", "a/m"):
+        sketch, shot = name.split("/")
+        write_result(tmp_path, Record(sketch, shot, "same", "every pixel"), {})
+    assert [record.name for record in read_results(tmp_path)] == ["a/m", "b/a", "b/z"]
+
+
+def test_a_stamp_tells_one_result_from_the_next() -> None:
+    assert FULL.stamp == replace(FULL).stamp != replace(FULL, when=FULL.when + 1).stamp
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"format": 2}, "another format; this version reads format 1"),
+        ({"sketch": ".."}, "'sketch' in a record is the name of a sketch; found \"..\""),
+        ({"sketch": "a/b"}, "'sketch' in a record"),
+        ({"shot": "a.b"}, "'shot' in a record"),
+        ({"shot": "..\\x"}, "'shot' in a record"),
+        ({"word": 3}, "'word' in a record is a text; found 3"),
+        ({"numbers": {"a": "1"}}, "'numbers' in a record is an object of numbers"),
+        ({"numbers": {"a": True}}, "'numbers' in a record is an object of numbers"),
+        ({"size": [0, 4]}, "'size' in a record is two numbers of pixels; found [0, 4]"),
+        ({"place": [1]}, "'place' in a record is x and y of a pixel"),
+        ({"fingerprint": "x"}, "'fingerprint' in a record is a list of texts"),
+        ({"pictures": {"actual": "../../secret.png"}}, "picture 'actual' in a record is hills & dales/dawn."),
+        ({"pictures": {"other": "x.png"}}, "'pictures' in a record"),
+        ({"colour": "red"}, "a record has no 'colour'"),
+        ({"seconds": float("nan")}, "no JSON"),
+        ({"sentence": None}, "'sentence' in a record is a text; found null"),
+    ],
+)
+def test_what_is_no_record_is_refused_by_name(change: dict[str, object], said: str) -> None:
+    data = json.loads(to_json(FULL)) | change
+    with pytest.raises(DataError) as caught:
+        from_json(json.dumps(data), "out/hills/dawn.json")
+    assert said in str(caught.value)
+    assert str(caught.value).startswith("out/hills/dawn.json: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("", "no JSON"), ("[]", "expected an object"), ("{}", "expected an object with a 'format'")],
+)
+def test_what_is_no_json_is_refused(text: str, said: str) -> None:
+    with pytest.raises(DataError, match=said):
+        from_json(text)
+
+
+def test_a_record_without_a_word_is_refused() -> None:
+    data = json.loads(to_json(FULL))
+    del data["word"]
+    with pytest.raises(DataError, match="without its 'word'"):
+        from_json(json.dumps(data))
+
+
+def test_a_record_in_the_place_of_another_is_refused(tmp_path: Path) -> None:
+    written = write_result(tmp_path, FULL, {})
+    path = result_path(tmp_path, written)
+    path.rename(path.with_name("dusk.json"))
+    with pytest.raises(DataError, match="the record of hills & dales/dawn lies where another belongs"):
+        read_result(path.with_name("dusk.json"))
+
+
+def test_an_empty_or_missing_folder_is_said_to_be_one(tmp_path: Path) -> None:
+    with pytest.raises(DataError, match="no record of a shot is in it"):
+        read_results(tmp_path)
+    with pytest.raises(DataError, match="there is no such folder"):
+        read_results(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize(
+    ("sketch", "shot"), [("..", "a"), ("a/b", "a"), ("a", "../b"), ("a", "b.2"), ("", "a")]
+)
+def test_names_that_lead_elsewhere_are_not_written(tmp_path: Path, sketch: str, shot: str) -> None:
+    with pytest.raises(DataError, match="cannot be a"):
+        write_result(tmp_path / "out", Record(sketch, shot, "same", ""), {})
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_record_that_cannot_be_written_leaves_none_half_done(tmp_path: Path) -> None:
+    """The old record goes before the pictures change: no record ever speaks of another run's pictures."""
+    write_result(tmp_path, FULL, {"actual": PIXELS})
+    with pytest.raises(DataError, match="uint8 array"):
+        write_result(tmp_path, FULL, {"actual": PIXELS.astype(np.float32)})  # type: ignore[dict-item]
+    assert not list(tmp_path.glob("*/*.json"))
+    assert not list(tmp_path.glob("*/.*.part"))
