@@ -69,7 +69,8 @@ class Record:
     texts: dict[str, str] = field(default_factory=dict)  # the fingerprint of what drew it now
     expected_texts: dict[str, str] = field(default_factory=dict)  # the reference's fingerprint
     fingerprint: tuple[str, ...] = ()  # how the two differ, a sentence each
-    home: str = ""  # the screenshots/ folder of the references: from the root, else absolute
+    root: str = ""  # the folder that the tests were started in, whole
+    home: str = ""  # the screenshots/ folder of its references: from the root if it is inside, else whole
     compared: str = ""  # file name of the reference it was held against; "" for none
     references: dict[str, str] = field(default_factory=dict)  # accepted file's name → its SHA-256, then
     pictures: dict[str, str] = field(default_factory=dict)  # one of PICTURES → its file, from the folder

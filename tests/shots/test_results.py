@@ -38,6 +38,7 @@ FULL = Record(
     texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
     expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
     fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
+    root="/home/ada/land",
     home="screenshots",
     compared="dawn.2.png",
     references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
