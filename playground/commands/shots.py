@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from playground.commands import mutants
+from playground.commands import mutants, shots_results
 from playground.commands.arguments import JsonOption, complete_sketch, help_text
 from playground.terminal import print_table
 
@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
 HELP = help_text(
     "The pictures that sketches promise, and the references that they are compared with.\n\n"
-    "pytest compares them; here they are listed and looked at.",
+    "pytest compares them, and leaves its results in a folder; here they are listed, looked at and accepted.",
     "playground shots list jacksboro",
     "playground shots mutants --again 200",
     "playground shots list --json | jq '.[] | select(.references == {})'",
+    "playground shots review",
 )
 LIST_HELP = help_text(
     "List shots, their sizes, and whether there is a reference.\n\n"
@@ -77,6 +78,11 @@ def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> Non
     print_table(
         "Shots (playground render SKETCH --shot SHOT)", ("sketch", "shot", "size", "references"), table
     )
+
+
+app.command("report", help=shots_results.REPORT_HELP)(shots_results.report)
+app.command("review", help=shots_results.REVIEW_HELP)(shots_results.review)
+app.command("accept", help=shots_results.ACCEPT_HELP)(shots_results.accept)
 
 
 def _rows(sketch: Sketch) -> list[dict[str, Any]]:

@@ -42,7 +42,7 @@ PICTURES = ("actual", "expected", "difference", "flip")
 PASSED = "same"
 """The word of a shot that is what it should be."""
 
-NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang"})
+NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang", "error"})
 """The words of results that no reference may be made of: the picture is broken, or there is none."""
 
 Digests = Mapping[str, str]

@@ -1,0 +1,152 @@
+"""Look at the results that pytest left of checked shots, and accept pictures among them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from playground.commands.arguments import help_text
+from playground.errors import PlaygroundError
+from playground.terminal import complain, note
+
+MISTAKE = 2
+"""Exit status where a picture was refused."""
+
+REPORT_HELP = help_text(
+    "Make one HTML file of the results of screenshot tests.\n\n"
+    "Everything is inside, so that it can be sent, and opened with no network. Prints its path.",
+    "playground shots report",
+    "playground shots report ~/Downloads/shots-report -o report.html",
+)
+ACCEPT_HELP = help_text(
+    "Make references of pictures that were drawn.\n\n"
+    "Takes shots that failed, by name or with * and ?. A picture replaces the references of its shot;"
+    " with --also they stay, and it is a further one that may match. Broken pictures (blank, with"
+    " values that are no numbers) are refused, and so is one whose reference has changed since.",
+    "playground shots accept hills/dawn",
+    "playground shots accept 'hills/*' --also",
+    "playground shots accept ~/Downloads/shots-report --all",
+)
+REVIEW_HELP = help_text(
+    "Look at results in the browser, and accept pictures there.\n\n"
+    "A page on this machine alone; its address holds a secret, so keep that to yourself."
+    " Ends with Ctrl+C or the page's Done.",
+    "playground shots review",
+    "playground shots review out/shots --no-open --port 8000",
+)
+
+FolderArgument = Annotated[
+    Path | None,
+    typer.Argument(
+        help="The folder of results, as --shots-output of pytest named it (default: shots-report).",
+        metavar="DIR",
+        show_default=False,
+    ),
+]
+
+
+def report(
+    folder: FolderArgument = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The file to write (default: index.html in DIR).",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Make one HTML file of the results of screenshot tests."""
+    from playground.shots.report import write_report
+    from playground.shots.results import FOLDER
+
+    print(write_report(folder or Path(FOLDER), output))
+
+
+def accept(
+    shots: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Shots, as sketch/shot, or with * and ?; before them, the folder of results if it is"
+            " not shots-report.",
+            metavar="[DIR] SHOT...",
+            show_default=False,
+        ),
+    ] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", metavar="", help="Every shot that failed and can be accepted.")
+    ] = False,
+    also: Annotated[
+        bool, typer.Option("--also", metavar="", help="Keep the references that are there; add this one.")
+    ] = False,
+) -> None:
+    """Make references of pictures that were drawn."""
+    from playground.shots.accept import accept as accept_one
+    from playground.shots.accept import choose
+    from playground.shots.results import read_results
+
+    folder, patterns = _folder_and_shots(shots or [])
+    if everything == bool(patterns):
+        raise typer.BadParameter("expected the names of shots, or --all")
+    records = read_results(folder)
+    chosen = [record for record in records if not record.ok] if everything else choose(records, patterns)
+    if not chosen:
+        note("every shot passed: there is nothing to accept")
+    refused = 0
+    for record in chosen:
+        try:
+            change = accept_one(folder, record, also=also)
+        except PlaygroundError as error:
+            refused += 1
+            complain(str(error))
+            continue
+        for line in change.sentences:
+            print(line)
+    if refused:
+        raise typer.Exit(MISTAKE)
+
+
+def review(
+    folder: FolderArgument = None,
+    port: Annotated[
+        int, typer.Option("--port", help="Listen on this port; 0 takes a free one.", min=0, max=65535)
+    ] = 0,
+    opened: Annotated[bool, typer.Option("--open/--no-open", help="Open the page in the browser.")] = True,
+) -> None:
+    """Look at results in the browser, and accept pictures there."""
+    import webbrowser
+
+    from playground.shots.results import FOLDER
+    from playground.shots.review import Review
+
+    with Review(folder or Path(FOLDER), port) as server:
+        print(server.url, flush=True)
+        note("Ctrl+C, or Done on the page, ends it")
+        if opened and not webbrowser.open(server.url):
+            note("no browser could be opened: open the address above yourself")
+        try:
+            server.serve()
+        except KeyboardInterrupt:
+            note("")
+        for line in server.summary():
+            note(line)
+
+
+def _folder_and_shots(words: list[str]) -> tuple[Path, list[str]]:
+    """Part the folder, which may come first, from the shots."""
+    from playground.shots.results import FOLDER
+
+    if words and _is_folder(words[0]):
+        return Path(words[0]), words[1:]
+    return Path(FOLDER), words
+
+
+def _is_folder(word: str) -> bool:
+    """Whether a word means a folder: one that is there, unless a result has that very name."""
+    from playground.shots.results import FOLDER
+
+    return Path(word).is_dir() and not (Path(FOLDER) / f"{word}.json").is_file()

@@ -1,0 +1,140 @@
+// review.js -- accept pictures, and undo it, through the server that gave this page.
+//
+// What the server holds counts: each page asks it every two seconds, so that several tabs
+// agree. A request names the result it means by its stamp; where the tests have run again
+// since, the server refuses and this page says so.
+"use strict";
+
+const EVERY = 2000; // [ms]
+let states = {}; // name → {stamp, state, said}, as the server last gave them
+
+async function ask(path, body) {
+  const options = body && {
+    method: "POST",
+    headers: { "Content-Type": "application/json", "X-Shots-Token": location.pathname.split("/")[1] },
+    body: JSON.stringify(body),
+  };
+  const answer = await fetch(path, { cache: "no-store", ...options });
+  const text = await answer.text();
+  if (!answer.ok) throw new Error(text.trim() || `the server answered ${answer.status}`);
+  return JSON.parse(text);
+}
+
+function banner(text) {
+  byId("banner").textContent = text;
+  byId("banner").hidden = !text;
+}
+
+const ACCEPTED = { accepted: "accepted", further: "accepted as further" };
+
+function paint() {
+  for (const article of articles) {
+    const { name, stamp } = article.dataset;
+    const found = states[name];
+    const now = !found || found.stamp !== stamp ? "outdated" : found.state;
+    const row = rows.get(name);
+    article.dataset.state = row.dataset.state = now;
+    row.querySelector(".state")?.remove();
+    const text = now === "outdated" ? "run again" : ACCEPTED[now];
+    if (text) row.querySelector("a").append(make("span", { className: "state", textContent: text }));
+    for (const button of article.querySelectorAll("[data-do]")) {
+      button.disabled = now === "outdated" || (button.dataset.do === "undo") !== (now in ACCEPTED);
+    }
+    const said = article.querySelector(".said");
+    if (!said) continue;
+    if (now === "outdated") said.textContent = "The tests have run again since this page was loaded: load it again.";
+    else if (found.said !== said.dataset.from) said.textContent = found.said;
+    said.dataset.from = found?.said ?? "";
+  }
+  const button = byId("accept-shown");
+  if (button) button.disabled = !toAccept().length;
+}
+
+const toAccept = () =>
+  shownArticles().filter((a) => a.dataset.state === "open" && a.querySelector('[data-do="accept"]'));
+
+async function refresh() {
+  if (document.hidden) return;
+  try {
+    states = await ask("state");
+    banner("");
+    paint();
+  } catch {
+    banner("The server of this page has ended. Start playground shots review again to accept anything.");
+    for (const button of document.querySelectorAll("[data-do], #accept-shown, #done")) button.disabled = true;
+  }
+}
+
+async function act(action, some) {
+  const shots = some.map((article) => ({ name: article.dataset.name, stamp: article.dataset.stamp }));
+  try {
+    const results = await ask("act", { action, shots });
+    const refused = results.filter((result) => !result.ok);
+    for (const { name, ok, said } of results) {
+      const place = articles.find((article) => article.dataset.name === name).querySelector(".said");
+      place.textContent = said;
+      place.classList.toggle("refused", !ok);
+    }
+    if (some.length > 1 && refused.length)
+      tell("Not all were accepted", "These were refused:", refused.map((r) => `${r.name}: ${r.said}`));
+  } catch (error) {
+    banner(error.message);
+    return;
+  }
+  await refresh();
+}
+
+// Asking first
+
+function tell(title, text, lines, action, label) {
+  byId("ask-title").textContent = title;
+  byId("ask-text").textContent = text;
+  byId("ask-list").replaceChildren(...lines.map((line) => make("li", { textContent: line })));
+  byId("ask-yes").hidden = !action;
+  byId("ask-yes").textContent = label ?? "";
+  byId("ask-no").textContent = action ? "Cancel" : "Close";
+  byId("ask-yes").onclick = () => {
+    byId("ask").close();
+    action();
+  };
+  byId("ask").showModal();
+}
+
+byId("ask-no").addEventListener("click", () => byId("ask").close());
+
+byId("accept-shown")?.addEventListener("click", () => {
+  const some = toAccept();
+  const many = `${some.length} picture${some.length === 1 ? "" : "s"}`;
+  const text = "Each takes the place of its reference, and of the further ones accepted for it. It can be undone one by one.";
+  const names = some.map((article) => article.dataset.name);
+  tell(`Accept ${many}?`, text, names, () => act("accept", some), `Accept ${many}`);
+});
+
+byId("done")?.addEventListener("click", async () => {
+  try {
+    await ask("done", {});
+  } catch {
+    // it has ended already
+  }
+  clearInterval(asking);
+  banner("Done: the server has ended, and this page can be closed.");
+  for (const button of document.querySelectorAll("[data-do], #accept-shown, #done")) button.disabled = true;
+});
+
+for (const article of articles) {
+  for (const button of article.querySelectorAll("[data-do]")) {
+    button.addEventListener("click", () => act(button.dataset.do, [article]));
+  }
+}
+
+function press(action) {
+  const button = current?.querySelector(`[data-do="${action}"]`);
+  if (button && !button.disabled) button.click();
+}
+keys.y = () => press("accept");
+keys.u = () => press("undo");
+
+listeners.push(() => paint());
+document.addEventListener("visibilitychange", refresh);
+const asking = setInterval(refresh, EVERY);
+refresh();

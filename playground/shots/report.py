@@ -1,0 +1,109 @@
+"""Make one HTML file of a folder of results: what failed, to look at from all sides, with no network.
+
+Everything is inside, the pictures as data URLs, so that the file can be sent, or kept by a
+continuous integration. It can be read without its script, and printed; the script adds
+swiping, blinking, zooming and the values of pixels. Passed shots have a line each.
+
+Pictures are embedded until they would make the file too large to open; the others are then
+links to the files beside it, and the page says so.
+"""
+
+from __future__ import annotations
+
+import base64
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.errors import counted
+from playground.images.files import replacing
+from playground.paths import shown
+from playground.shots.page.document import page
+from playground.shots.page.shot import Setting
+from playground.shots.results import FOLDER, Record, read_results
+
+NAME = "index.html"
+"""The report's file in the folder of results, unless another is asked for."""
+
+EMBEDDED = 96 * 2**20
+"""[bytes] Of pictures that a report holds at most: about 80 failures of 640 × 360."""
+
+
+def write_report(folder: Path = Path(FOLDER), file: Path | None = None) -> Path:
+    """Write the report on a folder of results, whole or not at all, and return its path.
+
+    Raises ``DataError`` for a folder without records, a record that cannot be read, or a
+    place that cannot be written to.
+    """
+    target = file or folder / NAME
+    try:
+        beside = os.path.relpath(folder.absolute(), target.absolute().parent)
+    except ValueError:  # on Windows, another drive
+        beside = str(folder.absolute())
+    text = report_html(read_results(folder), folder, Path(beside))
+    with replacing(target) as handle:
+        handle.write(text.encode())
+    return target
+
+
+def report_html(records: Sequence[Record], folder: Path, beside: Path = Path(), most: int = EMBEDDED) -> str:
+    """Return the report on records whose pictures are in ``folder``, with at most ``most`` bytes of them.
+
+    ``beside`` is the folder as the report has to name it in links. A picture that is not there
+    any more is left out, which the page says.
+    """
+    pictures = _Pictures(folder, most)
+    links = "" if beside == Path() else f"{beside.as_posix()}/"
+    setting = Setting(shown(folder), pictures.source, links)
+    failed = [record for record in records if not record.ok]
+    for record in failed:  # in the order of the page: the first failures have their pictures
+        pictures.take(record)
+    return page(records, setting, pictures.notes())
+
+
+@dataclass
+class _Pictures:
+    """The pictures of a report, as data URLs, until there are too many bytes of them."""
+
+    folder: Path
+    left: int  # [bytes]
+    urls: dict[str, str] = field(default_factory=dict)
+    beside: int = 0  # how many failures are linked to instead
+    gone: list[str] = field(default_factory=list)
+
+    def take(self, record: Record) -> None:
+        """Embed a failure's pictures, all or none of them."""
+        found: dict[str, str] = {}
+        for name in record.pictures.values():
+            try:
+                data = (self.folder / name).read_bytes()
+            except OSError:
+                self.gone.append(name)
+                continue
+            found[name] = "data:image/png;base64," + base64.b64encode(data).decode()
+        size = sum(map(len, found.values()))
+        if size > self.left:
+            self.left = 0  # else smaller ones further down would have theirs, for no reason that one sees
+            self.beside += 1
+            return
+        self.left -= size
+        self.urls |= found
+
+    def source(self, record: Record, kind: str) -> str:
+        """Return a picture's data URL, or "" where the page has a link."""
+        return self.urls.get(record.pictures[kind], "")
+
+    def notes(self) -> list[str]:
+        """Say what is not inside."""
+        found = []
+        if self.beside:
+            found.append(
+                f"The pictures of {counted(self.beside, 'failure')} are not in this file, which would be too"
+                " large to open; they are links to the files beside it."
+            )
+        if self.gone:
+            found.append(
+                f"{counted(len(self.gone), 'picture')} could not be read: {', '.join(self.gone[:8])}."
+            )
+        return found
