@@ -46,6 +46,10 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     for path in glsl:
         assert f"playground/{path.relative_to(ROOT).as_posix()}" in inside
     assert "playground/py.typed" in inside
+    page = [p for p in (ROOT / "playground/shots/page").iterdir() if p.is_file()]
+    assert {"report.html", "report.css", "viewer.js"} <= {path.name for path in page}
+    for path in page:
+        assert f"playground/shots/page/{path.name}" in inside
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 

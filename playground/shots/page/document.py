@@ -37,6 +37,14 @@ _ASK = tag(
     tag("ul", id="ask-list", tabindex=0),
     tag(
         "p",
+        tag(
+            "label",
+            tag("input", type="checkbox", id="ask-also"),
+            " Keep the references that are there: these are further ones that may match",
+        ),
+    ),
+    tag(
+        "p",
         tag("button", "Cancel", type="button", id="ask-no"),
         tag("button", "", type="button", id="ask-yes", class_="main"),
         class_="buttons",
@@ -72,7 +80,7 @@ def page(records: Sequence[Record], setting: Setting, notes: Sequence[str] = ())
 
 def policy_of(setting: Setting) -> str:
     """Return the page's Content-Security-Policy: its style, its script, no other source than its own."""
-    sources = "img-src 'self'; connect-src 'self'" if setting.review else "img-src data:"
+    sources = "img-src 'self' data:; connect-src 'self'" if setting.review else "img-src data:"
     return (
         f"default-src 'none'; {sources};"
         f" style-src 'sha256-{_hash(_style())}'; script-src 'sha256-{_hash(_script(setting))}';"
@@ -112,26 +120,29 @@ def _facts(records: Sequence[Record], notes: Sequence[str]) -> Markup:
         tag("li", chip(word), f" {words[word]}")
         for word in sorted(words, key=lambda word: (word == "same", order.index(word)))
     ]
-    rows: list[Markup] = [tag("dt", "Results"), tag("dd", tag("ul", *counts, class_="counts"))]
+    said: list[Markup] = []
     builds = Counter(
         ", ".join(record.texts[key] for key in _BUILD if key in record.texts) or record.renderer
         for record in records
         if record.renderer
     )
     for build, number in builds.most_common():
-        rows.append(tag("dt", "Drawn by"))
-        rows.append(tag("dd", f"{build}{f' ({number})' if len(builds) > 1 else ''}"))
+        said.append(tag("li", f"drawn by {build}{f' ({number})' if len(builds) > 1 else ''}"))
     checked = [record.when for record in records if record.when]
     if checked:
-        rows += [tag("dt", "Checked"), tag("dd", moment(max(checked)))]
+        said.append(tag("li", f"checked {moment(max(checked))}"))
         latest = max(records, key=lambda record: record.when).run
         older = sum(record.run != latest for record in records)
         if older:
             notes = [*notes, f"{counted(older, 'shot')} of them in an earlier run."]
     taken = sum(record.seconds for record in records)
     if taken:
-        rows += [tag("dt", "Took"), tag("dd", f"{taken:.3g} s, all shots together")]
-    return joined(tag("dl", *rows), *(tag("p", note, class_="note") for note in notes))
+        said.append(tag("li", f"took {taken:.3g} s"))
+    return joined(
+        tag("ul", *counts, class_="counts", aria_label="Results"),
+        tag("ul", *said, class_="said-of-run"),
+        *(tag("p", note, class_="note") for note in notes),
+    )
 
 
 def _list(failed: Sequence[Record]) -> Markup:
@@ -148,9 +159,14 @@ def _list(failed: Sequence[Record]) -> Markup:
     ]
     return tag(
         "nav",
-        tag("div", *parts, class_="filters", hidden=True),
-        tag("p", counted(len(failed), "failure"), id="shown", role="status"),
-        tag("ol", *(row(record) for record in failed), id="rows"),
+        tag("div", tag("p", counted(len(failed), "failure"), id="shown", role="status"), class_="position"),
+        tag(
+            "details",
+            tag("summary", "List and filters"),
+            tag("div", *parts, class_="filters", hidden=True),
+            tag("ol", *(row(record) for record in failed), id="rows"),
+            open=True,
+        ),
         class_="list",
         aria_label="Failures",
     )
@@ -164,9 +180,12 @@ def _choice(name: str, label: str, values: Sequence[str]) -> Markup | None:
 
 
 def _tools(failed: Sequence[Record]) -> Markup:
-    accept = tag("button", "Accept all shown …", type="button", id="accept-shown")
     done = tag("button", "Done", type="button", id="done")
-    return joined(accept if any(map(can_be_accepted, failed)) else None, done)
+    if not any(map(can_be_accepted, failed)):
+        return done
+    accept = tag("button", "Accept all shown …", type="button", id="accept-shown")
+    undo = tag("button", "Undo all shown …", type="button", id="undo-shown", disabled=True)
+    return joined(accept, undo, done)
 
 
 def _passed(passed: Sequence[Record], *, opened: bool) -> Markup:

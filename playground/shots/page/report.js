@@ -49,7 +49,14 @@ function picturesOf(article) {
 
 function drawThumbnail(canvas, article) {
   const source = article.querySelector('figure[data-kind="actual"] img')?.getAttribute("src");
-  if (!source) return;
+  if (!source) {
+    const context = canvas.getContext("2d");
+    context.font = "11px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.fillStyle = getComputedStyle(canvas).color;
+    context.fillText("no picture", canvas.width / 2, canvas.height / 2 + 4);
+    return;
+  }
   const image = new Image();
   image.onload = () => {
     const context = canvas.getContext("2d");
@@ -74,7 +81,7 @@ async function show(article, { focus = false, remember = true } = {}) {
     const link = row.querySelector("a");
     if (name === article.dataset.name) {
       link.setAttribute("aria-current", "true");
-      row.scrollIntoView({ block: "nearest" });
+      showInList(row);
     } else link.removeAttribute("aria-current");
   }
   if (remember) history.replaceState(null, "", `#${article.id}`);
@@ -97,6 +104,15 @@ async function show(article, { focus = false, remember = true } = {}) {
     host.hidden = false;
     host.replaceChildren(make("p", { className: "note", textContent: `A picture cannot be shown: ${error.message}` }));
   }
+}
+
+/** Scroll the list, and nothing else, so that a row of it can be seen. */
+function showInList(row) {
+  const list = getComputedStyle(byId("rows")).overflowY === "auto" ? byId("rows") : document.querySelector(".list");
+  const [inner, outer] = [row.getBoundingClientRect(), list.getBoundingClientRect()];
+  const head = list.contains(document.querySelector(".position")) ? document.querySelector(".position").offsetHeight : 0;
+  if (inner.top < outer.top + head) list.scrollTop -= outer.top + head - inner.top;
+  else if (inner.bottom > Math.min(outer.bottom, innerHeight)) list.scrollTop += inner.bottom - Math.min(outer.bottom, innerHeight);
 }
 
 const shownArticles = () => articles.filter((article) => !rows.get(article.dataset.name).hidden);
@@ -255,6 +271,11 @@ function begin() {
     steps.append(button);
   }
   byId("shown").after(steps);
+  // On a phone the list would fill the first screen: there it is opened when it is wanted.
+  const narrow = matchMedia("(max-width: 52rem)");
+  const fold = () => (document.querySelector(".list details").open = !narrow.matches);
+  narrow.addEventListener("change", fold);
+  fold();
   const thumbnails = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) {
       if (!isIntersecting) continue;
@@ -271,6 +292,7 @@ function begin() {
     });
     thumbnails.observe(row.querySelector("canvas"));
   }
+  history.scrollRestoration = "manual";
   addEventListener("hashchange", () => show(named(location.hash), { remember: false }));
   show(named(location.hash) ?? articles[0], { remember: false });
 }

@@ -6,6 +6,7 @@
 "use strict";
 
 const EVERY = 2000; // [ms]
+let ended = false; // whether this page said that it is done
 let states = {}; // name → {stamp, state, said}, as the server last gave them
 
 async function ask(path, body) {
@@ -46,22 +47,30 @@ function paint() {
     else if (found.said !== said.dataset.from) said.textContent = found.said;
     said.dataset.from = found?.said ?? "";
   }
-  const button = byId("accept-shown");
-  if (button) button.disabled = !toAccept().length;
+  if (!byId("accept-shown")) return;
+  byId("accept-shown").disabled = !toAccept().length;
+  byId("undo-shown").disabled = !toUndo().length;
 }
 
 const toAccept = () =>
   shownArticles().filter((a) => a.dataset.state === "open" && a.querySelector('[data-do="accept"]'));
+const toUndo = () => shownArticles().filter((a) => a.dataset.state in ACCEPTED);
+
+/** Nothing can be accepted any more: say why. */
+function close(text) {
+  banner(text);
+  for (const button of document.querySelectorAll("[data-do], #accept-shown, #undo-shown, #done"))
+    button.disabled = true;
+}
 
 async function refresh() {
-  if (document.hidden) return;
+  if (document.hidden || ended) return;
   try {
     states = await ask("state");
     banner("");
     paint();
   } catch {
-    banner("The server of this page has ended. Start playground shots review again to accept anything.");
-    for (const button of document.querySelectorAll("[data-do], #accept-shown, #done")) button.disabled = true;
+    if (!ended) close("The server of this page has ended. Start playground shots review again to accept anything.");
   }
 }
 
@@ -76,7 +85,7 @@ async function act(action, some) {
       place.classList.toggle("refused", !ok);
     }
     if (some.length > 1 && refused.length)
-      tell("Not all were accepted", "These were refused:", refused.map((r) => `${r.name}: ${r.said}`));
+      tell("Some were refused", "Nothing has changed for these:", refused.map((r) => `${r.name}: ${r.said}`));
   } catch (error) {
     banner(error.message);
     return;
@@ -90,6 +99,7 @@ function tell(title, text, lines, action, label) {
   byId("ask-title").textContent = title;
   byId("ask-text").textContent = text;
   byId("ask-list").replaceChildren(...lines.map((line) => make("li", { textContent: line })));
+  byId("ask-also").closest("p").hidden = true;
   byId("ask-yes").hidden = !action;
   byId("ask-yes").textContent = label ?? "";
   byId("ask-no").textContent = action ? "Cancel" : "Close";
@@ -102,23 +112,34 @@ function tell(title, text, lines, action, label) {
 
 byId("ask-no").addEventListener("click", () => byId("ask").close());
 
+const many = (some) => `${some.length} picture${some.length === 1 ? "" : "s"}`;
+const namesOf = (some) => some.map((article) => article.dataset.name);
+
 byId("accept-shown")?.addEventListener("click", () => {
   const some = toAccept();
-  const many = `${some.length} picture${some.length === 1 ? "" : "s"}`;
-  const text = "Each takes the place of its reference, and of the further ones accepted for it. It can be undone one by one.";
-  const names = some.map((article) => article.dataset.name);
-  tell(`Accept ${many}?`, text, names, () => act("accept", some), `Accept ${many}`);
+  const text =
+    "Each takes the place of its reference, and of the further ones accepted for it. It can be undone, one by one or all.";
+  const accept = () => act(byId("ask-also").checked ? "also" : "accept", some);
+  tell(`Accept ${many(some)}?`, text, namesOf(some), accept, `Accept ${many(some)}`);
+  byId("ask-also").checked = false;
+  byId("ask-also").closest("p").hidden = false;
 });
 
-byId("done")?.addEventListener("click", async () => {
+byId("undo-shown")?.addEventListener("click", () => {
+  const some = toUndo();
+  const text = "Their references are put back as they were.";
+  tell(`Undo ${many(some)}?`, text, namesOf(some), () => act("undo", some), `Undo ${many(some)}`);
+});
+
+byId("done").addEventListener("click", async () => {
+  ended = true;
   try {
     await ask("done", {});
   } catch {
     // it has ended already
   }
   clearInterval(asking);
-  banner("Done: the server has ended, and this page can be closed.");
-  for (const button of document.querySelectorAll("[data-do], #accept-shown, #done")) button.disabled = true;
+  close("Done: the server has ended, and this page can be closed.");
 });
 
 for (const article of articles) {

@@ -86,7 +86,9 @@ def failure(record: Record, setting: Setting) -> Markup:
             ),
             chip(record.word),
             tag("span", record.tier, class_="tier") if record.tier else None,
+            _buttons(record) if setting.review and can_be_accepted(record) else None,
         ),
+        tag("p", class_="said", role="status") if setting.review else None,
         tag("p", _verdict(record), class_="verdict"),
         tag("p", " ".join(filter(None, explained)), class_="meaning") if any(explained) else None,
         _error(record),
@@ -146,6 +148,19 @@ def _error(record: Record) -> Markup | None:
     )
 
 
+def _buttons(record: Record) -> Markup:
+    """Return what accepts a picture, and undoes that; review.js lets the right ones be pressed."""
+    return tag(
+        "div",
+        tag("button", "Accept", type="button", data_do="accept", class_="main", disabled=True),
+        tag("button", "Accept as further", type="button", data_do="also", disabled=True)
+        if record.references
+        else None,
+        tag("button", "Undo", type="button", data_do="undo", disabled=True),
+        class_="buttons",
+    )
+
+
 def _accepting(record: Record, setting: Setting) -> Markup:
     if not can_be_accepted(record):
         why = "No reference can be made of it: mend the sketch or the shader, then run the tests again."
@@ -153,14 +168,6 @@ def _accepting(record: Record, setting: Setting) -> Markup:
             why = "There is no picture here to accept; run the tests again."
         return tag("section", tag("p", why), class_="accepting")
     parts: list[Markup] = [tag("h3", "If this is right")]
-    if setting.review:
-        buttons = [
-            tag("button", "Accept", type="button", data_do="accept", class_="main"),
-            tag("button", "Accept as further", type="button", data_do="also") if record.references else None,
-            tag("button", "Undo", type="button", data_do="undo", disabled=True),
-        ]
-        parts.append(tag("div", *buttons, class_="buttons"))
-        parts.append(tag("p", class_="said", role="status"))
     commands = [("accepts this very picture", accept_command(record, setting.folder))]
     if record.references:
         also = f"{accept_command(record, setting.folder)} --also"
@@ -188,11 +195,12 @@ def _figures(record: Record) -> Markup:
     for name, size in (("Size", record.size), ("Expected size", record.expected_size)):
         if size and (name == "Size" or size != record.size):
             rows.append((name, f"{size[0]} × {size[1]} pixels"))
-    reference = (
-        f"{record.home}/{record.sketch}/{record.renderer}/{record.compared}" if record.compared else ""
-    )
+    reference = f"{record.home}/{record.sketch}/{record.renderer}/{record.compared}"
+    if record.compared not in record.references:  # another renderer's, or none
+        other = record.expected_texts.get("renderer", "another renderer")
+        reference = f"{record.compared}, drawn by {other}" if record.compared else "none"
     if record.renderer:
-        rows.append(("Reference", reference or "none"))
+        rows.append(("Reference", reference))
     if len(record.references) > 1:
         rows.append(("Accepted so far", ", ".join(record.references)))
     if record.node:

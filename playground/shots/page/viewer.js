@@ -422,15 +422,13 @@ class Viewer {
     context.imageSmoothingQuality = "high";
     const left = width / 2 - this.x * scale;
     const top = height / 2 - this.y * scale;
-    const put = (kind, alpha = 1) => {
+    const put = (kind, on = context) => {
       const picture = this.pictures[kind];
-      if (!picture || !alpha) return;
+      if (!picture) return;
       const box = [left, top, picture.width * scale, picture.height * scale];
-      context.globalAlpha = alpha;
-      context.fillStyle = chequers(context);
-      context.fillRect(...box);
-      context.drawImage(picture.canvas, ...box);
-      context.globalAlpha = 1;
+      on.fillStyle = chequers(on);
+      on.fillRect(...box);
+      on.drawImage(picture.canvas, ...box);
     };
     const clipped = (from, to, action) => {
       context.save();
@@ -444,7 +442,15 @@ class Viewer {
     if (kind !== "both") put(kind);
     else if (this.mode === "onion") {
       put("expected");
-      put("actual", looks.blend);
+      const layer = new OffscreenCanvas(across, down); // first over its ground, then over the other
+      const above = layer.getContext("2d");
+      above.setTransform(ratio, 0, 0, ratio, 0, 0);
+      above.imageSmoothingEnabled = context.imageSmoothingEnabled;
+      above.imageSmoothingQuality = "high";
+      put("actual", above);
+      context.globalAlpha = looks.blend;
+      context.drawImage(layer, 0, 0, width, height);
+      context.globalAlpha = 1;
     } else if (this.mode === "blink") {
       put(looks.side);
       const turn = canvas.parentElement.querySelector(".turn");
