@@ -94,7 +94,7 @@ def test_the_divider_parts_expected_from_actual(leave, browser: Browser) -> None
     assert pixel(browser, 0.2, 0.9) == [0, 0, 255, 255]
     browser.press("3", "e")
     assert pixel(browser, 0.5, 0.9) == [255, 0, 0, 255]
-    browser.press("[", "]", "]")  # one step of 5 % to actual
+    browser.press("[", "]")  # none below nothing; one step of 5 % to actual
     red_now, _, blue_now, _ = pixel(browser, 0.5, 0.9)
     assert abs(red_now - 242) <= 2 and abs(blue_now - 13) <= 2
     browser.press("4", "e")

@@ -3,6 +3,7 @@
 // The page is whole without it: every failure below the other, with its pictures.
 "use strict";
 
+const PASSING = 60; // [ms] how long one looks at a shot at least
 const KEPT = 3; // shots whose decoded pictures are kept, for going back and forth
 
 const byId = (id) => document.getElementById(id);
@@ -31,12 +32,27 @@ async function readAll(article) {
   for (const figure of article.querySelectorAll("figure[data-kind]")) {
     const image = figure.querySelector("img");
     if (!image) continue;
-    const picture = await readPicture(await bytesOf(image.getAttribute("src")));
-    const canvas = make("canvas", { width: picture.width, height: picture.height });
-    canvas.getContext("2d").putImageData(new ImageData(picture.data, picture.width, picture.height), 0, 0);
-    found[figure.dataset.kind] = { ...picture, canvas };
+    const { kind } = figure.dataset;
+    const bytes = await bytesOf(image.getAttribute("src"));
+    found[kind] = kind === "expected" || kind === "actual" ? await exactly(bytes) : await asItLooks(bytes);
   }
   return found;
+}
+
+/** A picture whose values are asked for. */
+async function exactly(bytes) {
+  const { width, height, data } = await readPicture(bytes);
+  const canvas = make("canvas", { width, height });
+  canvas.getContext("2d").putImageData(new ImageData(data, width, height), 0, 0);
+  let opaque = true;
+  for (let i = 3; opaque && i < data.length; i += 4) opaque = data[i] === 255;
+  return { width, height, data, opaque, canvas };
+}
+
+/** A picture that is only looked at; it is opaque. */
+async function asItLooks(bytes) {
+  const canvas = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+  return { width: canvas.width, height: canvas.height, opaque: true, canvas };
 }
 
 function picturesOf(article) {
@@ -90,6 +106,9 @@ async function show(article, { focus = false, remember = true } = {}) {
   for (const listener of listeners) listener(article);
   const host = article.querySelector(".viewer");
   if (!article.querySelector("figure[data-kind] img")) return;
+  // Who only passes by on the way to another need not wait for these.
+  if (!decoded.has(article)) await new Promise((done) => setTimeout(done, PASSING));
+  if (current !== article) return;
   try {
     const pictures = await picturesOf(article);
     if (current !== article) return;
@@ -97,7 +116,8 @@ async function show(article, { focus = false, remember = true } = {}) {
     viewer = new Viewer(host, pictures, place, article.dataset.name);
     article.classList.add("looked-at");
     const next = neighbour(1);
-    if (next) picturesOf(next).catch(() => {}); // it says so itself when it is shown
+    const ahead = () => current === article && picturesOf(next).catch(() => {}); // shown, it says so itself
+    if (next) setTimeout(ahead, 4 * PASSING);
   } catch (error) {
     if (current !== article) return;
     decoded.delete(article);

@@ -76,6 +76,7 @@ async function refresh() {
 
 async function act(action, some) {
   const shots = some.map((article) => ({ name: article.dataset.name, stamp: article.dataset.stamp }));
+  if (some.length > 1) banner(`Working on ${some.length} pictures …`);
   try {
     const results = await ask("act", { action, shots });
     const refused = results.filter((result) => !result.ok);

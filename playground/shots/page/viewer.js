@@ -32,7 +32,7 @@ function make(name, properties = {}, ...inside) {
 }
 
 class Viewer {
-  /** pictures: kind → {width, height, data, canvas}; place: [x, y] of the worst pixel, or null. */
+  /** pictures: kind → {width, height, data, opaque, canvas}; place: [x, y] of the worst pixel, or null. */
   constructor(host, pictures, place, name) {
     this.host = host;
     this.pictures = pictures;
@@ -426,8 +426,10 @@ class Viewer {
       const picture = this.pictures[kind];
       if (!picture) return;
       const box = [left, top, picture.width * scale, picture.height * scale];
-      on.fillStyle = chequers(on);
-      on.fillRect(...box);
+      if (!picture.opaque) {
+        on.fillStyle = chequers(on);
+        on.fillRect(...box);
+      }
       on.drawImage(picture.canvas, ...box);
     };
     const clipped = (from, to, action) => {
@@ -492,7 +494,7 @@ function frame(context, left, top, scale, [x, y]) {
 
 function divider(context, at, height) {
   strokeTwice(context, () => (context.moveTo(at, 0), context.lineTo(at, height)), 2);
-  const middle = height / 2;
+  const middle = height - 24; // below the middle, where the worst pixel is gone to
   context.beginPath();
   context.arc(at, middle, 14, 0, 2 * Math.PI);
   context.fillStyle = "#fff";
