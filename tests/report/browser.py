@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -19,7 +20,7 @@ GENEROUS = 120  # [s] for what happens sooner or later
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 DRIVER = shutil.which("chromedriver")
-MISSING = "" if CHROMIUM and DRIVER else "needs Chromium and chromedriver"
+MISSING = "" if CHROMIUM and DRIVER and os.name == "posix" else "needs Chromium and chromedriver, on POSIX"
 
 _OPTIONS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"
 _OPTIONS += " --disable-component-update --disable-sync --hide-scrollbars"

@@ -249,12 +249,14 @@ def test_accept_writes_the_reference_and_undo_restores_it(client: Client) -> Non
     before = files()
     dawn = records()["dawn"]
     (answer,) = client.act("accept", dawn)
-    assert answer["ok"] and answer["said"] == f"wrote {PLACE}/dawn.png  (in place of the one before)"
+    assert (
+        answer["ok"] and answer["said"] == f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)"
+    )
     np.testing.assert_array_equal(read_png(PLACE / "dawn.png")[0], picture(1))
     assert client.state()["hills/dawn"]["state"] == "accepted"
     assert client.state()["hills/dusk"]["state"] == "open"
     (answer,) = client.act("undo", dawn)
-    assert answer["ok"] and answer["said"] == f"restored {PLACE}/dawn.png"
+    assert answer["ok"] and answer["said"] == f"restored {PLACE.as_posix()}/dawn.png"
     assert files() == before
     assert client.state()["hills/dawn"]["state"] == "open"
 
@@ -387,4 +389,4 @@ def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(le
         connection.close()
         said = process.stderr.read()
         assert process.wait(GENEROUS) == 0
-    assert f"wrote {PLACE}/dawn.png  (in place of the one before)" in said and found[2] not in said
+    assert f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)" in said and found[2] not in said
