@@ -87,7 +87,7 @@ def accept(
     """Make references of pictures that were drawn."""
     from playground.shots.accept import accept as accept_one
     from playground.shots.accept import choose
-    from playground.shots.results import read_results
+    from playground.shots.results import NEVER_ACCEPTED, read_results
 
     folder, patterns = _folder_and_shots(shots or [])
     if everything == bool(patterns):
@@ -101,6 +101,9 @@ def accept(
         try:
             change = accept_one(folder, record, also=also)
         except PlaygroundError as error:
+            if everything and record.word in NEVER_ACCEPTED:
+                note(f"left as it is: {error}")
+                continue
             refused += 1
             complain(str(error))
             continue

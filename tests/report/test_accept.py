@@ -210,11 +210,13 @@ def test_the_command_writes_and_says_what(leave, capsys) -> None:
         said.out == "wrote screenshots/hills/llvmpipe/dawn.png  (in place of the one before)\n"
         and not said.err
     )
-    assert main(["shots", "accept", "results", "--all", "--also"]) == 2
+    assert main(["shots", "accept", "results", "hills/n*"]) == 2, "asked for by name, it is a mistake"
+    assert "error: hills/night: no reference can be made" in capsys.readouterr().err
+    assert main(["shots", "accept", "results", "--all", "--also"]) == 0
     said = capsys.readouterr()
     assert "hills/dawn: a reference is this picture already" in said.out
     assert "dusk.png  (the first)" in said.out
-    assert "hills/night: no reference can be made of it (took more than 60 s)" in said.err
+    assert said.err == ("left as it is: hills/night: no reference can be made of it (took more than 60 s)\n")
     assert {record.name for record in read_results(RESULTS)} >= {"hills/noon"}
     assert sorted(files()) == ["dawn.png", "dusk.png", "noon.png"]
 
