@@ -248,6 +248,7 @@ class Shot:
     preset: str = ""
     samples: int | None = None  # None: the view's
     steps: tuple[tuple[str, int], ...] = ()  # pass → turn to stop at
+    marks: tuple[str, ...] = ()  # pytest's markers of its test, as "slow"
     line: int = 0
 
 

@@ -31,7 +31,7 @@ SKETCH_KEYS = frozenset({*LAND, "view", "shot", "preset"})
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
 _VIEW = ("use", "inputs", "set", "camera", "samples")
-_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps")
+_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps", "marks")
 _CAMERA = ("azimuth", "elevation", "distance", "target", "field_of_view")
 _LIMITS = {
     "azimuth": (-720, 720),
@@ -176,10 +176,19 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 preset,
                 _samples(file, table, sketch.samples, place) if "samples" in table else None,
                 _steps(file, sketch, table, place),
+                _marks(file, table, place),
                 file.line(*place),
             )
         )
     return tuple(found)
+
+
+def _marks(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str, ...]:
+    marks = file.take(table, "marks", list, [], *place)
+    if not all(isinstance(mark, str) and mark.isidentifier() for mark in marks):
+        message = f'marks = {spell(marks)}: expected names of pytest\'s markers, as ["slow"]'
+        raise file.error(message, *place, "marks")
+    return tuple(marks)
 
 
 def _steps(
