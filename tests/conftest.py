@@ -13,7 +13,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
 
-pytest_plugins = ["playground.shots.plugin", "pytester"]
+pytest_plugins = ["pytester"]
 
 ROOT = Path(__file__).resolve().parent.parent
 OBJECTS = (

@@ -514,7 +514,7 @@ def test_check_takes_a_companion_with_its_kernel(run: Run, tmp_path: Path):
 
 
 def test_what_ships_passes(run: Run):
-    """Every file of some folders; the sketches are drawn in test_shots, one by one."""
+    """Every file of some folders; the sketches are drawn as tests of their own."""
     folders = [GLSL / name for name in ("generation", "texturing", "view")]
     done = well(run("check", "--json", *map(str, folders), str(GLSL / "sketches" / "jacksboro.toml")))
     assert len(done.stdout.splitlines()) > 20

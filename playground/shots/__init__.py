@@ -1,10 +1,10 @@
 """Comparing the pictures that sketches promise with their references, by hand or in pytest.
 
-    compare.py      two arrays → a verdict, how much, how many, where
-    flip.py         two arrays → how different they look
-    fingerprint.py  what a picture comes from: which build of which renderer drew what
+    names.py        folders, and what tests tell the plugin
+    compare.py      two arrays → a verdict, how much, how many, where; flip.py: as an eye sees it
+    fingerprint.py  what a picture comes from
     references.py   where references live; reading, writing, finding those that nothing uses
-    judge.py        a picture and its references → whether it passes, by which tier, and why
+    judge.py        a picture, its fingerprint, references → whether it passes, in a word
     suite.py        sketches → cases → frames → outcomes
     results.py      a folder with a record of each checked shot and its pictures
     page/           what shows them, as HTML
@@ -12,8 +12,12 @@
     accept.py       a picture of them becomes a reference; undoing that
     session.py      what is reviewed: accepted, undone, changed meanwhile
     review.py       the same page, served on this machine alone
-    studio.py       a child process with the software renderer, which takes the pictures
-    plugin.py       pytest: options, the ``shots`` fixture, what a failure prints
+    studio.py       a child process with an OpenGL context, studio_child.py, which takes the pictures
+    recording.py, checking.py    draw, compare, write, and say it, for one process of pytest
+    collect.py, fixture.py       tests from sketches; the ``shot`` fixture of tests in Python
+    used.py         references of tests in Python that none uses any more
+    plugin.py       pytest: options, which sketches, the summary
+    mutants/        pictures broken on purpose, that no comparison may let pass
 
 Each knows only those above it. Importing this opens nothing.
 """

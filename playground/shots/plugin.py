@@ -1,157 +1,236 @@
-"""Hold sketches to their shots in pytest: options, the ``shots`` fixture, what a failure prints.
+"""Screenshot tests in pytest: options, which sketches are collected, the ``shot`` fixture.
 
-    pytest_plugins = ["playground.shots.plugin"]            # in the conftest.py at the top
+    pytest hills.toml                # one test for each shot of a sketch
 
-    CASES = shots_of(["mine.toml"])
+    [tool.pytest.ini_options]
+    shots = ["sketches/*.toml"]      # these sketches belong to the tests
 
-    @pytest.mark.parametrize("case", CASES, ids=str)
-    def test_shot(case, shots):
-        shots.check(case)
+    def test_evening(shot):          # a picture of any origin
+        shot.check(shot.render("hills.toml", time=20.0), "evening")
 
-Nothing passes in silence: a missing reference fails, and so does a missing reference
-renderer where ``CI`` is set; on a person's machine that is a skip that gives its reason.
-Pictures of a failure go to pytest's temporary folder, or to ``--shots-output``.
-
-It collects nothing by itself, and has one tier: the reference renderer, exactly.
+The package's entry point has this module's name, so that `pytest_plugins` and ``-p`` may name
+it too. It is loaded with every pytest that the package is installed beside, so it imports
+next to nothing, and does nothing until there is a shot: `collect`, `checking` and `fixture`
+come in then.
 """
 
 from __future__ import annotations
 
-import os
-import shlex
-from collections.abc import Iterable, Iterator
+import argparse
+import math
+from collections import Counter
+from collections.abc import Generator, Iterator
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING
 
 import pytest
 
-from playground.errors import ContextError, PlaygroundError, counted
-from playground.gpu.context import ContextInfo
-from playground.paths import shown
-from playground.shots.references import REFERENCE_RENDERER, drawn_by, stale_references, write_reference
-from playground.shots.studio import Studio
-from playground.shots.suite import Outcome, ShotCase, check, save_pictures
-from playground.sketch.model import Sketch
+from playground.shots import used
+from playground.shots.names import CHECKED, LEFT, LOOSE, REFERENCE_RENDERER, REPORT, SAID
 
-_SAID = "shots"  # the user property that carries a line for the summary, from a worker of xdist too
+if TYPE_CHECKING:
+    from playground.shots.fixture import ShotFixture
+
+_LISTED: pytest.StashKey[frozenset[Path]] = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the two options."""
-    group = parser.getgroup("shots", "pictures compared with their references")
-    group.addoption("--shots-update", action="store_true", help="rewrite the references that do not match")
+    """Add the options."""
+    group = parser.getgroup("shots", "screenshot tests of shaders")
+    group.addoption(
+        "--shots-update",
+        action="store_true",
+        help="write the references that are missing or do not match, and say which",
+    )
     group.addoption(
         "--shots-output",
         metavar="DIR",
         type=Path,
-        help="where the pictures of a failure go (default: pytest's temporary folder)",
+        default=REPORT,
+        help=f"where results go: a record of each shot, pictures of those that fail, the report "
+        f"(default: {REPORT}, which git is told to ignore)",
+    )
+    group.addoption(
+        "--shots-report",
+        action="store_true",
+        help="write the report index.html also when nothing failed",
+    )
+    group.addoption(
+        "--shots-renderer",
+        metavar="NAME",
+        default=REFERENCE_RENDERER,
+        help="the renderer that is expected to draw, as the folders of references are named: llvmpipe "
+        "(the default), nvidia-h200, …; without it shots fail if CI is set and are skipped elsewhere",
+    )
+    group.addoption(
+        "--shots-any-renderer",
+        action="store_true",
+        help="where the expected renderer is missing, compare what another draws with its references: "
+        "catches structural defects only",
+    )
+    group.addoption(
+        "--shots-timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default=120.0,
+        help="how long a shot may take to draw before it counts as hung (default: 120)",
+    )
+    parser.addini(
+        "shots",
+        "sketches whose shots are tests, by paths and patterns from this file's folder",
+        type="linelist",
+        default=[],
     )
 
 
-@pytest.fixture(scope="session")
-def shots_studio() -> Iterator[Studio]:
-    """Give the child process that takes the pictures; it starts with the first of them."""
-    with Studio() as studio:
-        yield studio
-
-
-@pytest.fixture
-def shots(
-    request: pytest.FixtureRequest, shots_studio: Studio, tmp_path_factory: pytest.TempPathFactory
-) -> Shots:
-    """Give what checks shots for this test."""
-    output: Path | None = request.config.getoption("--shots-output")
-    return Shots(request.node, shots_studio, output or tmp_path_factory.getbasetemp() / "shots")
-
-
-class Shots:
-    """Checks shots for one test, which it fails or skips in words."""
-
-    def __init__(self, node: pytest.Item, studio: Studio, output: Path) -> None:
-        self.node = node
-        self.studio = studio
-        self.output = output  # folder for the pictures of a failure
-        self.updating: bool = node.config.getoption("--shots-update")
-
-    def check(self, case: ShotCase) -> None:
-        """Take a shot; fail the test unless a reference matches, or ``--shots-update`` writes one."""
-        renderer = self._reference_renderer()
-        try:
-            outcome = check(case, self.studio.take(case), renderer)
-            if outcome.ok:
-                return
-            if self.updating and outcome.word not in ("blank", "nan", "gl-error"):
-                self._write(outcome)
-                return
-            message = self._explained(outcome)
-        except PlaygroundError as error:
-            message = f"{case}: {error}"
-        pytest.fail(message, pytrace=False)
-
-    def check_no_stale(self, sketches: Iterable[Sketch]) -> None:
-        """Fail the test if there are references, of any renderer, that no shot of these sketches uses."""
-        stale = stale_references(sketches)
-        if stale:
-            files = "".join(f"\n    {shown(path)}" for path in stale)
-            pytest.fail(f"no shot uses {counted(len(stale), 'reference')}; remove:{files}", pytrace=False)
-
-    def _reference_renderer(self) -> ContextInfo:
-        try:
-            renderer = self.studio.renderer
-        except ContextError as error:
-            self._without(str(error))
-        except PlaygroundError as error:
-            pytest.fail(str(error), pytrace=False)
-        if renderer.slug != REFERENCE_RENDERER:
-            self._without(f"OpenGL gave {renderer.renderer}")
-        return renderer
-
-    def _without(self, found: str) -> NoReturn:
-        message = f"the reference renderer is missing: shots are compared on {REFERENCE_RENDERER}; {found}"
-        if os.environ.get("CI", "").lower() not in ("", "0", "false"):
-            pytest.fail(message, pytrace=False)
-        pytest.skip(message)
-
-    def _write(self, outcome: Outcome) -> None:
-        case = outcome.case
-        written, removed = write_reference(
-            case.sketch, case.shot.name, outcome.renderer, outcome.frame.array, outcome.fingerprint.drawn
-        )
-        self._say(f"wrote {shown(written)}  ({outcome.sentence})")
-        for path in removed:
-            self._say(f"removed {shown(path)}  (it let the picture before this one pass)")
-
-    def _say(self, line: str) -> None:
-        self.node.user_properties.append((_SAID, line))
-
-    def _explained(self, outcome: Outcome) -> str:
-        lines = [f"{outcome.case}: {outcome.sentence}", f"    reference   {shown(outcome.path)}"]
-        files = save_pictures(outcome, self.output)
-        lines += [f"    {word:<11} {path.absolute()}" for word, path in files.items()]
-        if outcome.other_build:
-            lines.append(f"    drawn by    {drawn_by(outcome.renderer)}")
-            lines.append(f"    reference   by {outcome.other_build}")
-        if outcome.word not in ("blank", "nan", "gl-error"):
-            lines.append(f"    accept it   pytest --shots-update {shlex.quote(self.node.nodeid)}")
-        return "\n".join(lines)
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0.0 < seconds < 1e6:  # what a timer takes
+        raise argparse.ArgumentTypeError(f"{text!r}: expected seconds, more than 0")
+    return seconds
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Gather, for this session, what the tests say."""
-    config.pluginmanager.register(_Summary(), "shots-summary")
+    """Make the marker known, and add the sketches of the configuration to what is tested."""
+    config.addinivalue_line("markers", "shots: compares a picture with its reference")
+    config.pluginmanager.register(Results(config), "shots-results")
+    if config.args_source is config.ArgsSource.ARGS or not config.getini("shots"):
+        return
+    listed = _listed(config)
+    if config.args_source is config.ArgsSource.TESTPATHS:
+        there = [config.invocation_params.dir / arg for arg in config.args]
+        more = [path for path in sorted(listed) if not any(path.is_relative_to(known) for known in there)]
+        config.args += [str(path) for path in more]
 
 
-class _Summary:
-    """Gathers what tests said, from this process or from workers, and prints it at the end."""
+def _listed(config: pytest.Config) -> frozenset[Path]:
+    """Return the sketches that the configuration names."""
+    if _LISTED not in config.stash:
+        base = config.inipath.parent if config.inipath else config.rootpath
+        found: set[Path] = set()
+        for pattern in config.getini("shots"):
+            found.update(_matches(base, pattern))
+        config.stash[_LISTED] = frozenset(found)
+    return config.stash[_LISTED]
 
-    def __init__(self) -> None:
+
+def _matches(base: Path, pattern: str) -> Iterator[Path]:
+    whole = Path(pattern)
+    if whole.is_absolute():
+        base, pattern = Path(whole.anchor), str(whole.relative_to(whole.anchor))
+    try:
+        paths = list(base.glob(pattern))
+    except (ValueError, NotImplementedError, IndexError) as error:
+        raise pytest.UsageError(f"shots: {pattern!r} is no pattern of files ({error})") from None
+    files = [path / "sketch.toml" if path.is_dir() else path for path in paths]
+    files = [path for path in files if path.suffix == ".toml" and path.is_file()]
+    if not files:
+        raise pytest.UsageError(
+            f"shots: no sketch (a .toml, or a folder with sketch.toml) matches {pattern!r} in {base}"
+        )
+    yield from files
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Collect a sketch that the command line or the configuration names."""
+    if file_path.suffix != ".toml":
+        return None
+    config, session = parent.config, parent.session
+    named = session.isinitpath(file_path)
+    if file_path.name == "sketch.toml" and config.args_source is config.ArgsSource.ARGS:
+        named = named or session.isinitpath(file_path.parent)
+    if not named and not (config.getini("shots") and file_path in _listed(config)):
+        return None
+    from playground.shots.collect import SketchFile
+
+    return SketchFile.from_parent(parent, path=file_path)
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Count the tests of a file."""
+    used.count(item)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Let ``-m shots`` find the tests in Python that compare pictures, too."""
+    for item in items:
+        if "shot" in getattr(item, "fixturenames", ()):
+            item.add_marker("shots")
+    used.tell(config, items)
+
+
+@pytest.fixture
+def shot(request: pytest.FixtureRequest) -> ShotFixture:
+    """Draw sketches in a process of their own, and compare pictures with their references.
+
+    ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails unless it is
+    the reference in ``screenshots/<test file>/<renderer>/evening.png`` beside the test file.
+    """
+    from playground.shots.fixture import ShotFixture
+
+    return ShotFixture(request.node)
+
+
+class Results:
+    """Gathers what tests said, here or in workers of xdist; judges, writes and prints it at the end."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config = config
         self.lines: list[str] = []
+        self.left = 0  # references that --shots-update left alone
+        self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
+        self.seen = self.failed = False  # whether a shot was checked, and whether one failed
+        self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.when == "call":
-            self.lines += [str(value) for name, value in report.user_properties if name == _SAID]
+        """Take note of a finished test, which may come from another process."""
+        if report.when != "call":
+            return
+        self.uses.add(report)
+        for name, value in report.user_properties:
+            if name == SAID:
+                self.lines.append(str(value))
+            self.left += name == LEFT
+            if name == LOOSE:
+                self.loose[str(value)] += 1
+            self.seen = self.seen or name == CHECKED
+            self.failed = self.failed or (name == CHECKED and value != "same")
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
+        """When all tests have run, report the references that none of them uses, as failed tests."""
+        result = yield
+        if not hasattr(self.config, "workerinput"):
+            for node, message in self.uses.stale().items():
+                place = (node.partition("::")[0], None, "references")
+                report = pytest.TestReport(node, place, {"shots": 1}, "failed", message, "call")
+                self.config.hook.pytest_runtest_logreport(report=report)
+        return result
+
+    def pytest_sessionfinish(self) -> None:
+        """Write the report, where there is something to look at or it is asked for."""
+        if not self.seen or hasattr(self.config, "workerinput"):
+            return
+        if self.left:
+            self.lines.append(f"left {self.left} as they were, for they match")
+        for renderer, count in self.loose.items():
+            self.lines.append(
+                f"{count} drawn by {renderer} compared by structure only, as --shots-any-renderer allows"
+            )
+        folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
+        wanted = self.failed or self.config.getoption("--shots-report")
+        if wanted or (folder / "index.html").exists():  # one of a run before would not be true any more
+            from playground.shots.recording import report
+
+            lines = report(folder)
+            self.lines += lines if wanted else []
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Say what was written, what was left alone, and where there is something to look at."""
         if self.lines:
             terminalreporter.section("shots")
             for line in self.lines:

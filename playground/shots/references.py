@@ -23,12 +23,10 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import read_png, write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
+from playground.shots.names import SCREENSHOTS
 from playground.sketch.model import Sketch
 
-FOLDER = "screenshots"
-
-REFERENCE_RENDERER = "llvmpipe"
-"""Slug of the renderer that every shot has references of: it is the same on every machine."""
+FOLDER = SCREENSHOTS
 
 _NUMBERED = re.compile(r"(?P<shot>[^.]+)(?:\.(?P<number>[2-9]|[1-9][0-9]+))?\.png")
 

@@ -29,12 +29,13 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.files import encode_png, replacing
+from playground.shots.names import REPORT
 
 FORMAT = 1
 """What a record's ``format`` says; a record of another is refused in words."""
 
-FOLDER = "shots-report"
-"""Where results go unless something else is asked for: in the folder the tests were started in."""
+FOLDER = REPORT
+"""Where results go unless something else is asked for."""
 
 PICTURES = ("actual", "expected", "difference", "flip")
 """The pictures a record can have, in the order in which they are shown."""

@@ -20,8 +20,8 @@ from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
+from playground.shots.names import REFERENCE_RENDERER
 from playground.shots.references import (
-    REFERENCE_RENDERER,
     Reference,
     accepted,
     drawn_by,

@@ -1,0 +1,188 @@
+"""Check shots for pytest in one process: draw, compare, write what is asked, say it in words.
+
+Nothing passes in silence. A picture that is missing, broken or not the one expected fails the
+test and is shown; one that gives no picture fails in its own word, ``crash``, ``hang`` or
+``error``; without the expected renderer a test fails where ``CI`` is set and is skipped, with
+the reason, elsewhere. Each check leaves a record in the results folder.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import time
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from playground.errors import (
+    ContextError,
+    DataError,
+    OpenGLFault,
+    PlaygroundError,
+    TrialCrash,
+    TrialTimeout,
+)
+from playground.gpu.context import ContextInfo
+from playground.paths import shown
+from playground.shots.names import LEFT, REFERENCE_RENDERER, SAID
+from playground.shots.recording import Recorder
+from playground.shots.references import write_reference
+from playground.shots.results import NEVER_ACCEPTED
+from playground.shots.studio import Studio
+from playground.shots.suite import Outcome, ShotCase, Taken, check
+
+_ENDS = {TrialCrash: "crash", TrialTimeout: "hang", OpenGLFault: "gl-error"}
+"""The words for what gives no picture; anything else that a sentence explains is an "error"."""
+
+_CHECKER: pytest.StashKey[Checker] = pytest.StashKey()
+
+
+def checker_of(config: pytest.Config) -> Checker:
+    """Return what checks shots in this process; its child process starts with the first of them."""
+    if _CHECKER not in config.stash:
+        checker = config.stash[_CHECKER] = Checker(config)
+        config.add_cleanup(checker.close)  # also after Ctrl-C
+    return config.stash[_CHECKER]
+
+
+class Checker:
+    """Checks shots for the tests of one process; its child process draws them."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.expected: str = config.getoption("--shots-renderer")
+        self.any_renderer: bool = config.getoption("--shots-any-renderer")
+        self.updating: bool = config.getoption("--shots-update")
+        software = ContextInfo(0, self.expected, "", "", 0).software
+        renderer = "any" if not software else "either" if self.any_renderer else "software"
+        self.studio = Studio(config.getoption("--shots-timeout"), renderer)
+        self.recorder = Recorder(config)
+        self._written: dict[Path, tuple[str, NDArray[np.uint8]]] = {}  # by whom, and what
+
+    def close(self) -> None:
+        """End the child process."""
+        self.studio.close()
+
+    def shot(self, node: pytest.Item, case: ShotCase) -> None:
+        """Draw a shot and hold it to its reference."""
+        start = time.perf_counter()
+        renderer = self.renderer(node, case)
+        taken: Taken | PlaygroundError
+        try:
+            taken = self.studio.take(case)
+        except PlaygroundError as error:
+            taken = error  # failing here would show it twice
+        self.show_what_was_printed(node)
+        if isinstance(taken, PlaygroundError):
+            self._gave_none(node, case, taken, start)
+        self.hold(node, case, taken, renderer, start)
+
+    def hold(
+        self, node: pytest.Item, case: ShotCase, frame: Taken, renderer: ContextInfo, start: float
+    ) -> None:
+        """Fail the test unless a reference matches, or ``--shots-update`` writes one.
+
+        ``start`` is when drawing began, of `time.perf_counter`.
+        """
+        outcome: Outcome | PlaygroundError
+        try:
+            outcome = self._check(case, frame, renderer)
+            if outcome.ok and self.updating:
+                node.user_properties.append((LEFT, str(case)))
+            elif self.updating and outcome.word not in NEVER_ACCEPTED:
+                self._write(node, outcome)
+                outcome = self._check(case, frame, renderer)  # what was written is what will be read
+        except PlaygroundError as error:
+            outcome = error
+        if isinstance(outcome, PlaygroundError):
+            self._gave_none(node, case, outcome, start)
+        self.recorder.record(node, outcome, time.perf_counter() - start, self.accepting(node, outcome))
+        if not outcome.ok:
+            pytest.fail(self._explained(node, outcome), pytrace=False)
+
+    def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
+        """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
+        found: ContextInfo | PlaygroundError
+        start = time.perf_counter()
+        try:
+            found = self.studio.renderer
+        except PlaygroundError as error:
+            found = error
+        if isinstance(found, ContextError):
+            self._without(str(found))
+        if isinstance(found, PlaygroundError):
+            self.show_what_was_printed(node)
+            self._gave_none(node, case, found, start)
+        return self.expect(found)
+
+    def expect(self, renderer: ContextInfo) -> ContextInfo:
+        """Return a renderer whose pictures may be compared; else skip the test, or fail it."""
+        if renderer.slug != self.expected and not self.any_renderer:
+            self._without(f"OpenGL gave {renderer.renderer}")
+        return renderer
+
+    def show_what_was_printed(self, node: pytest.Item) -> None:
+        """Add what the child printed to the test's report, where pytest shows it if the test fails."""
+        said = self.studio.said()
+        if said.strip():
+            node.add_report_section("call", "of the process that draws", said)
+
+    def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
+        """Return the command that would accept the picture; "" where none would."""
+        if outcome.ok or outcome.word in NEVER_ACCEPTED:
+            return ""
+        options = ["--shots-update"]
+        if self.expected != REFERENCE_RENDERER:
+            options.append(f"--shots-renderer={self.expected}")
+        if outcome.renderer.slug != self.expected and self.any_renderer:
+            options.append("--shots-any-renderer")
+        return f"pytest {' '.join(options)} {shlex.quote(node.nodeid)}"
+
+    # ── in words ─────────────────────────────────────────────────────────────
+
+    def _without(self, found: str) -> NoReturn:
+        message = f"the expected renderer is missing: shots are compared on {self.expected}; {found}"
+        if os.environ.get("CI", "").lower() not in ("", "0", "false"):
+            pytest.fail(f"{message} (a failure, for CI is set)", pytrace=False)
+        pytest.skip(message)
+
+    def _gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> NoReturn:
+        """Fail the test for a shot of which there is no picture, or that cannot be compared."""
+        word = next((word for kind, word in _ENDS.items() if isinstance(error, kind)), "error")
+        self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
+        pytest.fail(f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}", pytrace=False)
+
+    def _check(self, case: ShotCase, frame: Taken, renderer: ContextInfo) -> Outcome:
+        return check(case, frame, renderer, self.expected if self.any_renderer else renderer.slug)
+
+    def _write(self, node: pytest.Item, outcome: Outcome) -> None:
+        case, pixels = outcome.case, outcome.frame.array
+        path = outcome.own_path
+        if path in self._written:
+            by, before = self._written[path]
+            if not np.array_equal(before, pixels):
+                raise DataError(f"{by} has just written another picture of that name", file=path)
+            return
+        written, removed = write_reference(
+            case.sketch, case.shot.name, outcome.renderer, pixels, outcome.fingerprint.drawn
+        )
+        self._written[written] = (node.nodeid, pixels)
+        node.user_properties.append((SAID, f"wrote {shown(written)}  ({outcome.sentence})"))
+        for other in removed:
+            line = f"removed {shown(other)}  (it let the picture before this one pass)"
+            node.user_properties.append((SAID, line))
+
+    def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
+        lines = [f"{outcome.case}: {outcome.sentence}"]
+        if self.updating:
+            lines.append("    not written: a broken picture is never a reference")
+        lines.append(f"    reference   {shown(outcome.path)}")
+        lines += [f"                {line}" for line in outcome.differences]
+        lines += [f"    {word:<11} {path}" for word, path in self.recorder.pictures(outcome.case)]
+        command = self.accepting(node, outcome)
+        if command:
+            lines.append(f"    accept it   {command}")
+        return "\n".join(lines)

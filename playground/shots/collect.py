@@ -1,0 +1,153 @@
+"""Collect a sketch's shots as tests, one each, and one for its references.
+
+``hills.toml::morning``: the picture of a shot is one of its references.
+``hills.toml::references``: no reference is there that no shot uses.
+``hills.toml::sketch``: only where it cannot be loaded, or promises no picture; says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground import paths
+from playground.errors import DataError, PlaygroundError, counted, nearest
+from playground.images.files import read_texts
+from playground.paths import shown
+from playground.shots.checking import checker_of
+from playground.shots.references import FOLDER, home_of, stale_references
+from playground.shots.suite import ShotCase
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+_HOMES: pytest.StashKey[set[Path]] = pytest.StashKey()
+
+
+class SketchFile(pytest.File):
+    """A sketch, whose shots are tests."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """Yield a test for each shot, and one for the references; one that fails for what is no sketch."""
+        try:
+            sketch = load(self.path)
+        except PlaygroundError as error:
+            yield from self._failing(str(error))
+            return
+        if not sketch.shots:
+            yield from self._failing(
+                f"{shown(self.path)}: this sketch promises no picture; add a [[shot]] table, or leave it out"
+            )
+        for shot in sketch.shots:
+            item = ShotItem.from_parent(self, name=shot.name, case=ShotCase(sketch, shot))
+            item.add_marker("shots")
+            known = _marks(self.config)
+            for mark in shot.marks:
+                if mark not in known and self.config.getoption("strict_markers", False):
+                    item.trouble = f"{shown(self.path)}:{shot.line}: marks: there is no marker '{mark}'"
+                    item.trouble += nearest(mark, known)
+                else:
+                    item.add_marker(mark)
+            yield item
+        names = {shot.name for shot in sketch.shots}
+        name = "references" if "references" not in names else "references of all shots"
+        last = ReferencesItem.from_parent(self, name=name, sketch=sketch)
+        last.add_marker("shots")
+        yield last
+
+    def _failing(self, message: str) -> Iterator[pytest.Item]:
+        """Yield the test that says what is wrong, under each name that was asked for."""
+        asked = [arg.partition("::") for arg in self.config.args]
+        here = self.config.invocation_params.dir
+        names = [name for file, _, name in asked if name and here / file == self.path]
+        for name in dict.fromkeys(names or ["sketch"]):
+            item = FailingItem.from_parent(self, name=name, message=message)
+            item.add_marker("shots")
+            yield item
+
+
+class ShotItem(pytest.Item):
+    """The test of one shot."""
+
+    def __init__(self, *, case: ShotCase, **named: object) -> None:
+        super().__init__(**named)  # type: ignore[arg-type]
+        self.case = case
+        self.trouble = ""  # what is wrong with it as a test
+
+    def runtest(self) -> None:
+        """Draw it and compare it."""
+        if self.trouble:
+            pytest.fail(self.trouble, pytrace=False)
+        checker_of(self.config).shot(self, self.case)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return where it is written, the line from 0, and its name."""
+        return self.path, max(self.case.shot.line - 1, 0), str(self.case)
+
+
+class ReferencesItem(pytest.Item):
+    """The test that no reference is there in vain."""
+
+    def __init__(self, *, sketch: Sketch, **named: object) -> None:
+        super().__init__(**named)  # type: ignore[arg-type]
+        self.sketch = sketch
+        try:
+            homes = self.config.stash.setdefault(_HOMES, set())
+            home = home_of(sketch)
+            # The first sketch of a folder also looks for pictures of sketches that are gone.
+            self.first_of_home = home not in homes
+            homes.add(home)
+        except DataError:
+            self.first_of_home = False
+
+    def runtest(self) -> None:
+        """Fail for references that no shot uses."""
+        try:
+            stale = stale_references([self.sketch])
+            home = home_of(self.sketch)
+        except DataError as error:
+            pytest.fail(str(error), pytrace=False)
+        own = [p for p in stale if p.relative_to(home).parts[0] == self.sketch.name]
+        if self.first_of_home:
+            own += [p for p in stale if p not in own and _is_reference(p, home)]
+        if own:
+            files = "".join(f"\n    {shown(path)}" for path in sorted(own))
+            pytest.fail(f"no shot uses {counted(len(own), 'reference')}; remove:{files}", pytrace=False)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return where it is written, the line from 0, and its name."""
+        return self.path, 0, f"references of {self.sketch.name}"
+
+
+class FailingItem(pytest.Item):
+    """A test that only says what is wrong with a sketch."""
+
+    def __init__(self, *, message: str, **named: object) -> None:
+        super().__init__(**named)  # type: ignore[arg-type]
+        self.message = message
+
+    def runtest(self) -> None:
+        """Fail."""
+        pytest.fail(self.message, pytrace=False)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return where it is written, the line from 0, and its name."""
+        return self.path, 0, self.name
+
+
+def _is_reference(path: Path, home: Path) -> bool:
+    """Say whether a picture is a reference of a sketch; others may keep their pictures beside them."""
+    folder, *others = path.relative_to(home).parts
+    if folder.endswith(".py"):  # of a test file
+        return False
+    if paths.CHECKOUT is not None and home == paths.CHECKOUT / FOLDER:
+        return True
+    try:
+        return len(others) == 2 and read_texts(path).get("sketch") == folder
+    except DataError:
+        return False
+
+
+def _marks(config: pytest.Config) -> set[str]:
+    return {line.split(":")[0].split("(")[0].strip() for line in config.getini("markers")}

@@ -1,0 +1,33 @@
+"""The names that are needed before anything heavy is loaded: folders, options' defaults, what tests tell.
+
+A test tells the summary of its run by user properties, which come along from workers of xdist.
+"""
+
+from __future__ import annotations
+
+SCREENSHOTS = "screenshots"
+"""The folder of references, beside a sketch or a test file."""
+
+REPORT = "shots-report"
+"""Where results go unless something else is asked for: in the folder the tests were started in."""
+
+REFERENCE_RENDERER = "llvmpipe"
+"""Slug of the renderer that every shot has references of: it is the same on every machine."""
+
+SAID = "shots"
+"""The user property that carries a line for the summary."""
+
+LEFT = "shots-left"
+"""… that says that a reference was left alone."""
+
+CHECKED = "shots-checked"
+"""… with the word of a shot that was checked."""
+
+LOOSE = "shots-structure-only"
+"""… that names the renderer whose picture could only be compared by its structure."""
+
+USED = "shots-used"
+"""… that names a reference which a test in Python has used, as "llvmpipe/dawn"."""
+
+TESTS = "shots-tests"
+"""… that says how many tests there are in the file of a test; 0: not known."""

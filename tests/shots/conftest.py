@@ -1,0 +1,119 @@
+"""A tiny sketch of a user's own, and pytest run on it inside pytest, with one child for all runs."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+# Here already, for what a run of pytest inside pytest imports first is forgotten after it.
+from playground.shots import checking, collect, fixture  # noqa: F401
+from playground.shots.studio import Studio
+from playground.shots.suite import ShotCase, Taken
+
+KERNEL = """// land.glsl -- a slope.
+#pragma kernel(output = "height:r32f")
+
+uniform float gain = 0.5;  //! slider(0, 1) How bright it is in the east
+
+float kernel(ivec2 texel) {
+    return gain * float(texel.x) / float(size.x);
+}
+"""
+
+SKETCH = """format = 1
+size = 32
+
+[[pass]]
+name = "height"
+use = "./land"
+
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+set = { channel = "red" }
+
+[[shot]]
+name = "plain"
+size = [32, 32]
+
+[[shot]]
+name = "bright"
+size = [40, 32]
+set = { "height.gain" = 1.0 }
+"""
+
+Run = Callable[..., pytest.RunResult]
+
+
+@pytest.fixture(scope="session")
+def warm_studio() -> Iterator[Studio]:
+    """Give one child that draws, for all runs of pytest inside pytest: starting it takes the most time."""
+    with Studio() as studio:
+        yield studio
+
+
+class Lent:
+    """A studio that is not the borrower's to close; a few shots do not come off."""
+
+    def __init__(self, studio: Studio, ends: dict[str, Exception]) -> None:
+        self._studio = studio
+        self._ends = ends  # by shot: what comes instead of a picture
+        self.renderer = studio.renderer
+
+    def take(self, case: ShotCase) -> Taken:
+        if case.shot.name in self._ends:
+            raise self._ends[case.shot.name]
+        return self._studio.take(case)
+
+    def said(self) -> str:
+        return self._studio.said()
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture
+def ends() -> dict[str, Exception]:
+    """Give what a test fills with what comes instead of a picture, by shot."""
+    return {}
+
+
+@pytest.fixture
+def run(
+    pytester: pytest.Pytester,
+    monkeypatch: pytest.MonkeyPatch,
+    warm_studio: Studio,
+    ends: dict[str, Exception],
+) -> Run:
+    """Give what runs pytest in a folder with the tiny sketch."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("the reference renderer, Mesa's llvmpipe, is chosen by name on Linux")
+    for variable in ("CI", "GALLIUM_DRIVER", "PYTEST_ADDOPTS", "PYTEST_XDIST_TESTRUNUID"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr(checking, "Studio", lambda *_: Lent(warm_studio, ends))
+    Path("land.glsl").write_text(KERNEL)
+    Path("slope.toml").write_text(SKETCH)
+    fixed = ("-p", "playground.shots.plugin", "-p", "no:cacheprovider", "-W", "error", "-ra")
+    return lambda *arguments: pytester.runpytest_inprocess(*fixed, *arguments)
+
+
+@pytest.fixture
+def accepted(run: Run) -> Run:
+    """Give the same, with references that match."""
+    run("slope.toml", "--shots-update").assert_outcomes(passed=3)
+    return run
+
+
+@pytest.fixture
+def edit() -> Callable[[str, str, str], None]:
+    """Give what replaces a part of a file that is there."""
+
+    def edited(file: str, old: str, new: str) -> None:
+        text = Path(file).read_text()
+        assert old in text
+        Path(file).write_text(text.replace(old, new))
+
+    return edited

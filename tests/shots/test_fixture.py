@@ -1,0 +1,181 @@
+"""The `shot` fixture: pictures of tests in Python, drawn apart or given, and references that none uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from playground.images.files import read_png
+
+Run = Callable[..., pytest.RunResult]
+Edit = Callable[[str, str, str], None]
+
+TESTS = """
+import numpy as np
+import pytest
+
+RAMP = np.linspace(0, 1, 4 * 5 * 3).reshape(4, 5, 3)
+
+def test_drawn(shot):
+    frame = shot.render("slope.toml", shot="bright", values={"height.gain": 0.7}, size=(32, 16))
+    assert frame.size == (32, 16)
+    shot.check(frame, "seven")
+
+def test_given(shot):
+    shot.check(RAMP, "ramp", by="numpy")
+    shot.check((255 * RAMP).round().astype(np.uint8), "ramp-of-bytes", by="numpy")
+"""
+FOLDER = Path("screenshots/test_slope.py")
+
+
+@pytest.fixture
+def tests(run: Run, pytester: pytest.Pytester) -> Run:
+    """Give what runs pytest where a test file has its references."""
+    pytester.makepyfile(test_slope=TESTS)
+    run("--shots-update").assert_outcomes(passed=2)
+    return run
+
+
+def test_references_lie_beside_the_test_file_by_renderer(tests: Run) -> None:
+    files = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.png"))
+    assert files == ["llvmpipe/seven.png", "numpy/ramp-of-bytes.png", "numpy/ramp.png"]
+    pixels, text = read_png(FOLDER / "numpy/ramp.png")
+    assert (text["sketch"], text["shot"]) == ("test_slope.py", "ramp")
+    assert pixels[0, 0].tolist() == [0, 4, 9, 255] and pixels.shape == (4, 5, 4)
+    assert "llvm" in read_png(FOLDER / "llvmpipe/seven.png")[1]
+    tests().assert_outcomes(passed=2)
+    tests("-m", "shots").assert_outcomes(passed=2)
+
+
+def test_a_change_fails_with_what_accepts_it(tests: Run, edit: Edit) -> None:
+    edit("test_slope.py", "0.7", "0.8")
+    edit("test_slope.py", "shot.check(RAMP,", "shot.check(RAMP[::-1],")
+    result = tests()
+    result.assert_outcomes(failed=2)
+    result.stdout.fnmatch_lines(
+        [
+            "test_slope.py/seven: differs: max difference *",
+            "    accept it   pytest --shots-update test_slope.py::test_drawn",
+            "test_slope.py/ramp: differs: max difference *",
+        ]
+    )
+    tests("--shots-update").assert_outcomes(passed=2)
+
+
+def test_broken_numbers_are_told_by_their_word(tests: Run, edit: Edit) -> None:
+    edit("test_slope.py", "shot.check(RAMP,", "RAMP[1, 2, 0] = np.nan; shot.check(RAMP,")
+    for arguments in ((), ("--shots-update",)):
+        result = tests("-k", "given", *arguments)
+        result.assert_outcomes(failed=1, deselected=1)
+        result.stdout.fnmatch_lines(["test_slope.py/ramp: nan: 1 of 20 pixels are not finite numbers"])
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (
+            "shot.check(RAMP, 'a', by='numpy'); shot.check(RAMP, 'a', by='numpy')",
+            "a second picture named 'a'",
+        ),
+        ("shot.check(RAMP, 'a b', by='numpy')", "a picture needs a name of letters, digits, _ and -"),
+        ("shot.check(RAMP, 'a')", "what drew this picture is not known: say by=engine"),
+        ("shot.check(RAMP, 'a', by='My GPU')", "by = 'My GPU': a folder's name is lower-case letters"),
+        ("shot.check(RAMP[0], 'a', by='numpy')", "a picture is an array (height, width, 3 or 4)"),
+        ("shot.check((9 * RAMP).astype(int), 'a', by='numpy')", "a picture is of uint8, or of floats"),
+        ("shot.render('slope.toml', shot='brihgt')", "no shot 'brihgt'*did you mean 'bright'"),
+        ("shot.render('slope.toml', values={'height.gian': 1})", "*did you mean 'height.gain'"),
+    ],
+)
+def test_a_mistake_is_told_at_the_tests_own_line(tests: Run, edit: Edit, call: str, sentence: str) -> None:
+    edit("test_slope.py", 'shot.check(RAMP, "ramp", by="numpy")', call)
+    result = tests("-k", "given", "--shots-update", "--tb=short")
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["test_slope.py:12: in test_given", f"E   *{sentence}*"])
+
+
+def test_two_tests_may_not_write_one_reference_differently(tests: Run, edit: Edit) -> None:
+    text = Path("test_slope.py").read_text()
+    both = "shot.check(RAMP * 0.5, 'one', by='numpy')"
+    Path("test_slope.py").write_text(
+        f"{text}\ndef test_a(shot):\n    {both}\ndef test_b(shot):\n    {both}\n"
+    )
+    tests("--shots-update", "-k", "test_a or test_b").assert_outcomes(passed=2, deselected=2)
+    edit(
+        "test_slope.py",
+        f"def test_b(shot):\n    {both}",
+        f"def test_b(shot):\n    {both.replace('0.5', '0.6')}",
+    )
+    (FOLDER / "numpy/one.png").unlink()
+    result = tests("--shots-update", "-k", "test_a or test_b")
+    result.assert_outcomes(passed=1, failed=1, deselected=2)
+    result.stdout.fnmatch_lines(
+        ["*one.png: test_slope.py::test_a has just written another picture of that name"]
+    )
+
+
+def test_without_the_expected_renderer_what_opengl_drew_is_skipped(tests: Run) -> None:
+    tests("--shots-renderer", "nvidia-h200").assert_outcomes(passed=1, skipped=1)
+
+
+STALE = ["no test uses 1 reference; remove:", "    screenshots/test_slope.py/llvmpipe/seven.png"]
+
+
+def test_a_reference_that_no_test_uses_fails_when_all_tests_of_its_file_ran(tests: Run, edit: Edit) -> None:
+    edit("test_slope.py", '"seven"', '"eight"')
+    result = tests("--shots-update")
+    result.assert_outcomes(passed=2, failed=1)
+    assert result.ret == pytest.ExitCode.TESTS_FAILED
+    result.stdout.fnmatch_lines([*STALE, "FAILED test_slope.py::references*"])
+    # Where not all of them ran, or one did not pass, nobody knows.
+    for arguments in (
+        ("-k", "drawn"),
+        ("test_slope.py::test_drawn",),
+        ("--deselect", "test_slope.py::test_given"),
+    ):
+        assert tests(*arguments).ret == pytest.ExitCode.OK
+    edit("test_slope.py", "def test_given(shot):", "def test_given(shot):\n    pytest.skip()")
+    tests().assert_outcomes(passed=1, skipped=1)
+    edit("test_slope.py", "    pytest.skip()", "    return")
+    result = tests()
+    result.assert_outcomes(
+        passed=2, failed=1
+    )  # of numpy, nothing was drawn: nothing is known of its references
+    result.stdout.fnmatch_lines(STALE)
+
+
+def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fail(tests: Run) -> None:
+    Path("test_other.py").write_text("def test_one(): pass\n")
+    FOLDER.with_name("test_other.py").joinpath("llvmpipe").mkdir(parents=True)
+    (FOLDER / "llvmpipe/seven.png").rename("screenshots/test_other.py/llvmpipe/old.png")
+    result = tests("test_other.py")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["no test uses 1 reference; remove:", "*test_other.py/llvmpipe/old.png"])
+    Path("test_slope.py").unlink()
+    result = tests()
+    result.stdout.fnmatch_lines(["no test uses 3 references; remove:", "*test_slope.py/numpy/ramp.png"])
+
+
+@pytest.mark.parametrize("dist", ["loadfile", pytest.param("each", marks=pytest.mark.slow)])
+def test_workers_of_xdist_tell_what_they_wrote_and_used(
+    run: Run, pytester: pytest.Pytester, dist: str
+) -> None:
+    """The pictures are given, so that no worker has to start a child."""
+    pytest.importorskip("xdist")
+    lines = ["import numpy as np"]
+    lines += [
+        f"def test_{n}(shot): shot.check(np.linspace(0, {n}/4, 48).reshape(4, 4, 3), 'p{n}', by='numpy')"
+        for n in (1, 2, 3, 4)
+    ]
+    pytester.makepyfile(test_some="\n".join(lines))
+    old = Path("screenshots/test_some.py/numpy/p9.png")
+    old.parent.mkdir(parents=True)
+    old.touch()
+    result = run("-n", "2", "--dist", dist, "--shots-update")
+    result.assert_outcomes(passed=8 if dist == "each" else 4, failed=1)
+    result.stdout.fnmatch_lines(["no test uses 1 reference; remove:", "*numpy/p9.png", "*= shots =*"])
+    result.stdout.fnmatch_lines_random(
+        [f"wrote screenshots/test_some.py/numpy/p{n}.png *" for n in (1, 2, 3, 4)]
+    )
+    assert len(list(old.parent.glob("p?.png"))) == 5
