@@ -23,7 +23,7 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Kernel, Parameter, Sampling, Value
-from playground.sketch.words import MATCHES, TOWARDS, WIRED
+from playground.sketch.words import MATCHES, TOWARDS, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
@@ -71,7 +71,9 @@ class Binder:
         kernel, unit = step.kernel, 0
         for name, value in given.items():
             program.set(name, value)
-        program.set("size", step.size)
+        program.set("size", step.whole_size)
+        if step.window is not None:
+            program.set(WINDOW, step.window.origin)
         for parameter in kernel.parameters:
             if parameter.widget.kind != "file":
                 program.set(parameter.name, step.values[parameter.name])

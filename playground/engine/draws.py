@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.kernels import Job, Kernels
+from playground.engine.plan import Window
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired
 from playground.errors import ContextError, SketchError
@@ -23,6 +24,7 @@ from playground.gpu.textures import drain, make_framebuffer, read_texture, split
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Value
+from playground.sketch.words import ZOOM
 from playground.terrain.lod import CHOOSERS
 from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
 from playground.terrain.sight import View
@@ -46,6 +48,8 @@ class Draws:
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
         self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
+        limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
+        self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
         self.triangles = 0  # of the last draw of a mesh that is chosen from
 
     def release(self) -> None:
@@ -69,6 +73,8 @@ class Draws:
         surface = self._surface(step.size, output.format, job.samples)
         self._start_from(job, surface)
         surface.framebuffer.use()
+        if step.window is not None:
+            self._look_through(step.window, program)
         self.kernels.binder.bind(program, step, job.given, job.inputs)
         try:
             _enable(ctx, kernel.depth, kernel.blend)
@@ -89,6 +95,20 @@ class Draws:
             while len(self._surfaces) > _MAX_SURFACES:
                 self._surfaces.pop(0).release()
         return result
+
+    def _look_through(self, window: Window, program: Program) -> None:
+        """Let a draw of the whole picture fall into a window of it.
+
+        The whole's viewport leaves clip space as it is; where the driver has none so large, clip
+        space is stretched instead, whose rounding is another.
+        """
+        (x, y), (width, height), (wide, tall) = window.origin, window.size, window.whole
+        if wide <= self.widest[0] and tall <= self.widest[1]:
+            self.ctx.viewport = (-x, -y, wide, tall)
+            program.set(ZOOM, (1.0, 1.0, 0.0, 0.0))
+            return
+        moved = (wide - 2 * x - width) / width, (tall - 2 * y - height) / height
+        program.set(ZOOM, (wide / width, tall / height, *moved))
 
     def _surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
         """Return something to draw on: a spare one where there is, cleared."""
@@ -142,7 +162,7 @@ class Draws:
         if missing:
             raise kernel.error(f"mesh '{kernel.registry}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T
-        view = View(matrix, given["eye"], given["extent"], given["relief"], job.step.size)
+        view = View(matrix, given["eye"], given["extent"], given["relief"], job.step.whole_size)
 
         def tables() -> dict[str, NDArray[np.float32]]:
             return {name: self._table(job, name) for name in chooser.inputs}

@@ -23,9 +23,10 @@ from playground.engine.execution import Execution
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker
-from playground.engine.plan import Plan, Step, make_plan, needed, repeated_in
+from playground.engine.plan import Plan, Step, Window, make_plan, needed, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
+from playground.engine.window import windowed
 from playground.errors import ContextError, OpenGLFault
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture, read_texture
@@ -33,7 +34,7 @@ from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flatten import Ref
 from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, Kernel, Sketch
+from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Kernel, Sketch
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ class Engine:
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
         self._plan: Plan | None = None
+        self._passing: list[str] = []  # keys of what shows a window, which no later frame will show again
         self._released = False
 
     @property
@@ -125,12 +127,19 @@ class Engine:
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
         wanted: str = "",
+        largest: int = LARGEST_SIDE,
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
         self._refuse_released()
         compute = self.info.compute and self.driver != FRAGMENT
         return make_plan(
-            opened(sketch), frame_size=size, time=time, compute=compute, steps=steps, wanted=wanted
+            opened(sketch),
+            frame_size=size,
+            time=time,
+            compute=compute,
+            steps=steps,
+            wanted=wanted,
+            largest=largest,
         )
 
     def render(
@@ -162,6 +171,25 @@ class Engine:
         plan = self.plan_for(sketch, size, time, steps)
         view = plan.flat.outputs["view"]
         return self._texture(plan, next(iter(view.values())))
+
+    def draw_window(
+        self,
+        sketch: Sketch | str | Path,
+        window: Window,
+        *,
+        time: float = 0.0,
+        steps: Mapping[str, int] | None = None,
+    ) -> moderngl.Texture:
+        """Draw a window of a picture and return its texture, which lives until the next frame.
+
+        The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
+        Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
+        """
+        found, (width, height) = opened(sketch), window.whole
+        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE)
+        other = self.plan_for(found, (width + 1, height + 1), time, steps, largest=LARGEST_PICTURE + 1)
+        view = plan.flat.outputs["view"]
+        return self._texture(windowed(plan, other, window), next(iter(view.values())))
 
     def texture(
         self,
@@ -242,9 +270,12 @@ class Engine:
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.cache.begin()
+        for key in self._passing:
+            self.cache.drop(key)
         self.runner.begin(plan)
         continued = _continued(plan)
         keys = self._keys.keys_of(plan, self.form_of, self._given_for, continued)
+        self._passing = [keys.steps[step.path] for step in plan.walk() if step.window is not None]
 
         def make(
             step: Step,

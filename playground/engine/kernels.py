@@ -22,7 +22,7 @@ from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.wiring import initial_names
-from playground.sketch.words import MATCHES, WIRED
+from playground.sketch.words import MATCHES, WINDOW, WIRED
 
 if TYPE_CHECKING:
     import moderngl
@@ -72,7 +72,8 @@ class Job:
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
-        found: dict[str, Number] = {"size.x": self.step.size[0], "size.y": self.step.size[1], **more}
+        width, height = self.step.whole_size
+        found: dict[str, Number] = {"size.x": width, "size.y": height, **more}
         return found | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
 
 
@@ -147,6 +148,8 @@ class Kernels:
         program = self.programs.get(kernel, driver)
         for name, value in step.values.items():
             program.set(name, value)
+        if step.window is not None:
+            program.set(WINDOW, step.window.origin)
         for meaning, values in usual.items():
             for name in PLAIN_UNIFORMS[meaning]:
                 if name in program:

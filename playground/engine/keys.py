@@ -145,7 +145,7 @@ class _Made:
             return
         kernel, driver = self.form(node)
         text = self.text_of(kernel)
-        parts: list[Any] = [text.digest, driver, node.size]
+        parts: list[Any] = [text.digest, driver, node.size, node.window]
         for parameter in kernel.parameters:
             value = node.values[parameter.name]
             if parameter.widget.kind == "file":

@@ -37,6 +37,15 @@ MAX_REPEAT = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
+class Window:
+    """A part of a picture, counted in pixels from the whole's lower left corner."""
+
+    origin: tuple[int, int]
+    size: tuple[int, int]
+    whole: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
 class Step:
     """A leaf pass made concrete."""
 
@@ -48,6 +57,12 @@ class Step:
     repeat: int  # turns to run
     whole: int  # turns in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
+    window: Window | None = None  # of the picture, that its textures hold; None: they hold all
+
+    @property
+    def whole_size(self) -> tuple[int, int]:
+        """Texels of what its textures are a window of; their own size where they are none."""
+        return self.window.whole if self.window else self.size
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,15 +152,17 @@ def make_plan(
     compute: bool = False,
     steps: Mapping[str, int] | None = None,
     wanted: str = "",
+    largest: int = LARGEST_SIDE,
 ) -> Plan:
-    """Make a sketch concrete for one frame.
+    """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
 
     ``compute`` lets companions stand for whole techniques, but not for those around the
     pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of
     a technique will do where one pass inside it repeats). Raises ``SketchError`` or
     ``DataError`` at the pass that is wrong, ``ShaderError`` at a kernel's header.
     """
-    size, seconds = _pixels(frame_size), _seconds(time)
+    size, seconds = _pixels(frame_size, largest), _seconds(time)
+    sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
     flat = flatten(sketch, compute=compute, opened=(*stopped, *filter(None, [wanted])))
     return _Planner(sketch, flat, size, seconds, stopped).plan()
@@ -188,15 +205,13 @@ def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     return DataError(found, file=spec.file, line=spec.line)
 
 
-def _pixels(size: object) -> tuple[int, int]:
+def _pixels(size: object, largest: int) -> tuple[int, int]:
     found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
     if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
         raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
     width, height = int(found[0]), int(found[1])
-    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
-        raise ParameterError(
-            f"a picture of {width} x {height} pixels; 1 to {LARGEST_SIDE} a side were expected"
-        )
+    if not (1 <= width <= largest and 1 <= height <= largest):
+        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
     return width, height
 
 

@@ -87,7 +87,7 @@ class Runner:
                 continue
             if name == "spacing":
                 extent = self._given["extent"]
-                found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.size, strict=True))
+                found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.whole_size, strict=True))
             else:
                 found[name] = self._given[name]
         return found
@@ -153,7 +153,7 @@ class Runner:
         return result
 
     def _usual(self, step: Step) -> dict[str, tuple[float, ...]]:
-        width, height = step.size
+        width, height = step.whole_size
         return {
             "time": (float(self._given["time"]),),
             "resolution": (float(width), float(height), 1.0),

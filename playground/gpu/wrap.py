@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from playground.errors import ShaderError
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import GIVEN, MATCHES, TOWARDS, WIRED
+from playground.sketch.words import GIVEN, MATCHES, TOWARDS, WINDOW, WIRED, ZOOM
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -148,6 +148,8 @@ def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
         for p in kernel.parameters
         if p.widget.kind == "direction" and kernel.reads(f"{TOWARDS}{p.name}")
     ]
+    if kernel.reads(WINDOW):
+        found.append(("ivec2", WINDOW))
     return [f"uniform {kind} {name};" for kind, name in found]
 
 
@@ -277,7 +279,9 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
     after = [f"in {kind} k_in_{name};" for kind, name in attributes]
     after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
     arguments = [f"k_to_{name}" if way == "out" else f"k_in_{name}" for way, _, name in vertex]
-    after.append(f"void main() {{ gl_Position = vertex({', '.join(arguments)}); }}")
+    zoom = f" gl_Position.xy = gl_Position.xy * {ZOOM}.xy + gl_Position.w * {ZOOM}.zw;"
+    stretched = zoom if kernel.reads(ZOOM) else ""
+    after.append(f"void main() {{ gl_Position = vertex({', '.join(arguments)});{stretched} }}")
     first = _stage(kernel, before, _without(code, "fragment"), after, expected)
     before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
     after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
 
-_PNG_START = b"\x89PNG\r\n\x1a\n"
+PNG_START = b"\x89PNG\r\n\x1a\n"
 _PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
 _WITH_ALPHA = frozenset({"RGBA", "RGBa", "LA", "La", "PA"})
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
@@ -193,7 +193,7 @@ def _png_header(handle: BinaryIO) -> tuple[int, int]:
     # (bit depth, colour type), (0, 0) for what is not a PNG; leaves the handle at the start.
     start = handle.read(26)
     handle.seek(0)
-    return (start[24], start[25]) if start.startswith(_PNG_START) and len(start) == 26 else (0, 0)
+    return (start[24], start[25]) if start.startswith(PNG_START) and len(start) == 26 else (0, 0)
 
 
 def _open(handle: BinaryIO, path: Path) -> _Picture:
@@ -300,6 +300,11 @@ def _texts(text: Mapping[str, str]) -> PngInfo:
     return chunks
 
 
+def text_chunks(text: Mapping[str, str]) -> list[bytes]:
+    """Return the chunks of a PNG that hold texts."""
+    return [chunk(kind, data) for kind, data, *_ in _texts(text).chunks]
+
+
 def encode_samples(
     samples: NDArray[np.uint8] | NDArray[np.uint16], text: Mapping[str, str] = _NO_TEXT
 ) -> bytes:
@@ -320,9 +325,8 @@ def encode_samples(
     np.subtract(stored[1:], stored[:-1], out=lines[1:, 1:])
     header = struct.pack(">IIBBBBB", cols, rows, depth, _PNG_KINDS[channels], 0, 0, 0)
     body = zlib.compress(lines.tobytes(), 6)
-    texts = [_chunk(kind, data) for kind, data, *_ in _texts(text).chunks]
-    chunks = [_chunk(b"IHDR", header), *texts, _chunk(b"IDAT", body), _chunk(b"IEND", b"")]
-    return _PNG_START + b"".join(chunks)
+    chunks = [chunk(b"IHDR", header), *text_chunks(text), chunk(b"IDAT", body), chunk(b"IEND", b"")]
+    return PNG_START + b"".join(chunks)
 
 
 def write_png(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, str] = _NO_TEXT) -> None:
@@ -407,7 +411,8 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
     return encode_samples(scaled.astype(np.uint16)), said
 
 
-def _chunk(kind: bytes, data: bytes) -> bytes:
+def chunk(kind: bytes, data: bytes) -> bytes:
+    """Return a chunk of a PNG."""
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 

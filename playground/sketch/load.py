@@ -128,6 +128,7 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         title=technique.title or path.stem,
         presets=(),
         shots=(),
+        keyframes=(),
         overrides=_stage_files(graph, stage),
     )
     flatten(sketch, compute=False)

@@ -14,6 +14,9 @@ Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
 LARGEST_SIDE = 16_384
 """Texels or pixels that a side may have: what common graphics cards take."""
 
+LARGEST_PICTURE = 65_536
+"""Pixels that a side of a picture drawn in parts may have: so far, single precision tells pixels apart."""
+
 DEFAULT_PICTURE = (1280, 720)
 """Size in pixels of a picture for which nobody asks another."""
 
@@ -261,6 +264,17 @@ class Preset:
 
 
 @dataclass(frozen=True)
+class Keyframe:
+    """What the camera and some parameters are at a time, and how they go on from there."""
+
+    time: float  # [s]
+    camera: tuple[tuple[str, float | tuple[float, ...]], ...] = ()  # fields of ``Camera`` → value
+    values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
+    ease: str = "smooth"  # smooth | linear | hold: to the next keyframe that says the same thing
+    line: int = 0
+
+
+@dataclass(frozen=True)
 class Sketch:
     """A whole sketch: what a user opens, shares and keeps under version control."""
 
@@ -278,6 +292,7 @@ class Sketch:
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
+    keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by hand stands over them
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -304,8 +319,15 @@ class Sketch:
         return assign(self, values)
 
     def with_camera(self, camera: Camera) -> Sketch:
-        """Return the sketch seen by another camera."""
-        return replace(self, camera=camera)
+        """Return the sketch seen by another camera, whatever its keyframes say of theirs."""
+        keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
+        return replace(self, camera=camera, keyframes=keyframes)
+
+    def at(self, time: float) -> Sketch:
+        """Return the sketch as its keyframes make it at a time in seconds, and without them."""
+        from playground.sketch.keyframes import at  # it needs this module
+
+        return at(self, time)
 
     def with_preset(self, name: str) -> Sketch:
         """Return the sketch with a preset's values; raise ``ParameterError`` if there is no such preset."""
@@ -319,7 +341,7 @@ class Sketch:
         sketch = self.with_preset(shot.preset) if shot.preset else self
         sketch = sketch.with_values(dict(shot.values))
         if shot.camera is not None:
-            sketch = replace(sketch, camera=shot.camera)
+            sketch = sketch.with_camera(shot.camera)
         if shot.samples is not None:
             sketch = replace(sketch, samples=shot.samples)
         return sketch

@@ -10,9 +10,10 @@ from typing import Any
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import wiring
-from playground.sketch.assign import flat_values, resolve
-from playground.sketch.model import Export, Graph, Parameter, PassSpec, Technique, Value
+from playground.sketch.assign import LAND, check_value, flat_values, resolve
+from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.places import leads_outside
+from playground.sketch.toml_lines import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
 
@@ -151,6 +152,18 @@ def read_values(
                 raise file.error(message, *at)
         found.append((path, value))
     return tuple(found)
+
+
+def read_set(
+    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place, who: str
+) -> tuple[tuple[str, Value], ...]:
+    """Return what a shot, a preset or a keyframe sets, checked; ``who`` begins the sentence of a mistake."""
+
+    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
+        value = check_value(sketch, path, raw)
+        return value, None if path in LAND else resolve(sketch.graph, path)[0].parameter
+
+    return read_values(file, table, place, sketch.graph, read_value, who)
 
 
 def _values(

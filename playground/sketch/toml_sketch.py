@@ -8,42 +8,33 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import LAND, check_value, resolve
+from playground.sketch.assign import LAND, check_value
 from playground.sketch.flatten import flatten, repeated_path, repeated_paths
 from playground.sketch.model import (
     LARGEST_SIDE,
     Camera,
     Graph,
-    Parameter,
     PassSpec,
     Preset,
     Shot,
     Sketch,
-    Value,
 )
-from playground.sketch.toml_graph import Read, read_pass, read_passes, read_values
+from playground.sketch.toml_camera import read_camera
+from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
+from playground.sketch.toml_keyframes import read_keyframes
+from playground.sketch.toml_lines import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 from playground.sketch.wiring import check_graph
 
-SKETCH_KEYS = frozenset({*LAND, "view", "shot", "preset"})
+SKETCH_KEYS = frozenset({*LAND, "view", "shot", "preset", "keyframe"})
 """What a sketch's TOML may hold and a technique's may not."""
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
 _VIEW = ("use", "inputs", "set", "camera", "samples")
 _SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps", "marks")
-_CAMERA = ("azimuth", "elevation", "distance", "target", "field_of_view")
-_LIMITS = {
-    "azimuth": (-720, 720),
-    "elevation": (-89, 89),
-    "distance": (0, 1e9),
-    "field_of_view": (5, 120),
-}  # degrees, degrees, metres, degrees
 _DEFAULT_VIEW = "view/terrain"
 _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
-_FARTHEST = 1e9  # [m] of a camera's target from the origin
-
-Place = tuple[str | int, ...]
 
 
 def read_sketch(file: TomlFile, read: Read) -> Sketch:
@@ -68,7 +59,8 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     check_graph(sketch.graph)
     flatten(sketch, compute=False)
     sketch = replace(sketch, presets=_presets(file, sketch))
-    return replace(sketch, shots=_shots(file, sketch))
+    sketch = replace(sketch, shots=_shots(file, sketch))
+    return replace(sketch, keyframes=read_keyframes(file, sketch))
 
 
 def _land(file: TomlFile, key: str) -> Any:
@@ -100,7 +92,7 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
         return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
     file.only(table, _VIEW, "view")
     spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
-    return spec, _camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
+    return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
 
 
 def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
@@ -108,31 +100,6 @@ def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Plac
     if found not in (1, 2, 4, 8):
         raise file.error(f"samples = {spell(found)}: expected 1, 2, 4 or 8", *place, "samples")
     return found
-
-
-def _camera(file: TomlFile, table: Mapping[str, Any], default: Camera, place: Place) -> Camera:
-    given = file.take(table, "camera", dict, None, *place)
-    if given is None:
-        return default
-    here = (*place, "camera")
-    file.only(given, _CAMERA, *here)
-    values: dict[str, Any] = {}
-    for key, (low, high) in _LIMITS.items():
-        number = file.take(given, key, float, getattr(default, key), *here)
-        if not low <= number <= high:
-            raise file.error(f"{key} = {number:g}: expected {low:g} to {high:g}", *here, key)
-        values[key] = number
-    values["target"] = default.target
-    if "target" in given:
-        target = given["target"]
-        numbers = target if isinstance(target, list) else []
-        good = len(numbers) == 3 and all(type(v) in (int, float) and abs(v) <= _FARTHEST for v in numbers)
-        if not good:
-            raise file.error(
-                f"target = {spell(target)}: expected [east, north, up] in metres", *here, "target"
-            )
-        values["target"] = tuple(float(v) for v in numbers)
-    return Camera(**values)
 
 
 def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
@@ -143,7 +110,7 @@ def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
         name = file.take(table, "name", str, "", *place)
         if not name or name in [p.name for p in found]:
             raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
-        found.append(Preset(name, _values(file, sketch, table, place, f"preset '{name}'")))
+        found.append(Preset(name, read_set(file, sketch, table, place, f"preset '{name}'")))
     return tuple(found)
 
 
@@ -171,8 +138,8 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 name,
                 (size[0], size[1]),
                 file.take(table, "time", float, 0.0, *place),
-                _camera(file, table, sketch.camera, place) if "camera" in table else None,
-                _values(file, sketch, table, place, f"shot '{name}'"),
+                read_camera(file, table, sketch.camera, place) if "camera" in table else None,
+                read_set(file, sketch, table, place, f"shot '{name}'"),
                 preset,
                 _samples(file, table, sketch.samples, place) if "samples" in table else None,
                 _steps(file, sketch, table, place),
@@ -202,13 +169,3 @@ def _steps(
                 message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"
                 raise file.error(message, *place, "steps", *path.split("."))
     return steps
-
-
-def _values(
-    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place, who: str
-) -> tuple[tuple[str, Value], ...]:
-    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
-        value = check_value(sketch, path, raw)
-        return value, None if path in LAND else resolve(sketch.graph, path)[0].parameter
-
-    return read_values(file, table, place, sketch.graph, read_value, who)

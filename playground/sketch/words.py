@@ -34,6 +34,12 @@ WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
 """What begins a given name for each input (bool: something is wired to it; it has the size of this
 pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""
 
+WINDOW = "k_window"
+"""Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
+
+ZOOM = "k_zoom"
+"""What stretches a draw's clip space to a window, a vec4: factors, then what is added."""
+
 _KEYWORDS = """
 attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly
 atomic_uint layout centroid flat smooth noperspective patch sample break continue do for while

@@ -1,0 +1,108 @@
+"""Draw a picture of any size part by part, and write it strip by strip.
+
+What is drawn at a time is a tile, what is held a row of tiles; ``playground.engine.window``
+says what makes the tiles one picture. Kernels and plain shaders give the same bytes however
+they are parted. A mesh is rasterised anew for each tile, and the driver rounds places and
+what is interpolated between vertices to single precision, from another corner: on llvmpipe
+one pixel in a thousand differs from the picture drawn whole, and by a few levels of 255.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine, opened
+from playground.engine.plan import Window
+from playground.errors import ParameterError
+from playground.gpu.textures import read_picture
+from playground.images.files import replacing
+from playground.images.png_strips import PngStrips
+from playground.sketch.model import Sketch
+
+TILE = (2048, 512)
+"""Width and height of a tile in pixels."""
+
+MOST_WHOLE = 2**23
+"""Pixels of a picture that is drawn whole: its samples and their depths take 12 bytes each."""
+
+
+def is_large(engine: Engine, size: tuple[int, int]) -> bool:
+    """Say whether a picture is drawn in parts: more than 3840 x 2160, or than the driver's textures hold."""
+    limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
+    longest = min(int(engine.ctx.info[name]) for name in limits)
+    return size[0] * size[1] > MOST_WHOLE or max(size) > longest
+
+
+def tiles_of(size: tuple[int, int], tile: tuple[int, int] = TILE) -> list[list[Window]]:
+    """Return a picture's tiles, row by row from the top; all but the last of each row are alike.
+
+    Raises ``ParameterError`` for odd sides: derivatives are worked out for squares of two
+    pixels, which must be those of the whole picture.
+    """
+    if min(tile) < 2 or tile[0] % 2 or tile[1] % 2:
+        raise ParameterError(f"tiles of {tile[0]} x {tile[1]} pixels: expected even numbers from 2")
+    (width, height), (wide, tall) = size, tile
+    return [
+        [Window((x, y), (min(wide, width - x), min(tall, height - y)), size) for x in range(0, width, wide)]
+        for y in reversed(range(0, height, tall))
+    ]
+
+
+def count_tiles(size: tuple[int, int], tile: tuple[int, int] = TILE) -> int:
+    """Return how many tiles a picture has."""
+    return sum(len(row) for row in tiles_of(size, tile))
+
+
+def strips(
+    engine: Engine,
+    sketch: Sketch | str | Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    tile: tuple[int, int] = TILE,
+    done: Callable[[], None] = lambda: None,
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield a picture's rows of tiles from the top, each (rows, width, 4), sRGB and alpha.
+
+    ``size`` and ``tile`` in pixels, ``time`` in seconds, ``steps`` as in ``Engine.render``;
+    ``done`` is called after each tile. Raises ``SketchError`` at a pass that cannot be drawn
+    in parts, before anything of it is drawn.
+    """
+    found = opened(sketch)
+    for row in tiles_of(size, tile):
+        strip = np.empty((row[0].size[1], size[0], 4), np.uint8)
+        for window in row:
+            left = window.origin[0]
+            texture = engine.draw_window(found, window, time=time, steps=steps)
+            strip[:, left : left + window.size[0]] = read_picture(texture)
+            done()
+        yield strip
+
+
+def write_large(
+    engine: Engine,
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    tile: tuple[int, int] = TILE,
+    done: Callable[[], None] = lambda: None,
+) -> Path:
+    """Write a picture of up to 65,536 pixels a side as a PNG, whole or not at all, and return its path.
+
+    Arguments as for ``strips``. Of the picture, what is held is one strip, ``tile[1]`` rows,
+    about five times over: 160 MiB at 16,384 pixels of width, whatever the height.
+    """
+    with replacing(path) as handle:
+        writer = PngStrips(handle, size)
+        for strip in strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done):
+            writer.write(strip)
+        writer.close()
+    return Path(path)

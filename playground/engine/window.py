@@ -1,0 +1,167 @@
+"""Draw a part of a picture so that it is what the whole picture would show there.
+
+A picture may be larger than any texture. Its passes that have a texel for each pixel then
+run for a window of it at a time: they are told the size of the whole and where the window
+lies, and everything else, the land, its light, is made once and stays. The camera is that
+of the whole picture, and so are a draw's clip space and its viewport, of which the window
+is all that is kept.
+
+A kernel's text is changed for that in three places: it gets the texel of the whole, reads
+the window's own textures at the window's texel, and `gl_FragCoord` counts from the whole's
+corner. What reads such a texture anywhere but at its own texel cannot be drawn in parts,
+and a sentence says so.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
+
+from playground.engine.plan import Plan, PlanNode, Turns, Window, sources_of, walk
+from playground.errors import SketchError
+from playground.sketch.flatten import Ref
+from playground.sketch.model import Kernel
+from playground.sketch.same import Same
+from playground.sketch.source import SourceText
+from playground.sketch.words import MATCHES, WINDOW, WIRED, ZOOM
+
+_KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
+_LOCAL = "k_local"
+_COORDINATES = re.compile(r"\bgl_FragCoord\b")
+
+
+def windowed(plan: Plan, other: Plan, window: Window) -> Plan:
+    """Return a plan whose passes with a texel for each pixel run for one window of the picture.
+
+    ``plan`` is that of the whole picture, ``other`` that of the same sketch in a picture of
+    another width and height: what is as large as the picture in both belongs to its pixels.
+    Raises ``SketchError`` at a pass that cannot be drawn in parts.
+    """
+    sizes = {step.path: step.size for step in other.walk()}
+    of_pixels = {
+        step.path
+        for step in plan.walk()
+        if step.size == plan.frame_size and sizes.get(step.path) == other.frame_size
+    }
+    nodes = tuple(_in_window(node, of_pixels, window) for node in plan.nodes)
+    return replace(plan, nodes=nodes)
+
+
+def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
+    inside = [step.path for step in walk((node,)) if step.path in of_pixels]
+    if isinstance(node, Turns):
+        if inside or _read(node, of_pixels):
+            raise _refused(node, "it repeats")
+        return node
+    read = _read(node, of_pixels)
+    if not inside:
+        if read:
+            raise _refused(node, f"it reads '{read[0]}', whose size is another")
+        return node
+    if node.kernel.kind in ("source", "compute", "plain_compute"):
+        raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
+    names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
+    kernel = _changed(Same(node.kernel), names)
+    if isinstance(kernel, str):
+        raise _refused(node, kernel)
+    return replace(node, kernel=kernel, size=window.size, window=window)
+
+
+def _read(node: PlanNode, of_pixels: set[str]) -> list[str]:
+    return [s.path for s in sources_of(node) if isinstance(s, Ref) and s.path in of_pixels]
+
+
+def _refused(node: PlanNode, why: str) -> SketchError:
+    return node.spec.error(f"pass '{node.path}' cannot be drawn in parts: {why}; choose a smaller picture")
+
+
+@lru_cache(maxsize=64)
+def _changed(key: Same[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
+    """Return a kernel that knows its window, or why there can be none."""
+    kernel = key.object
+    code = kernel.source.code
+    if kernel.kind == "kernel":
+        if kernel.repeat != "1" or kernel.visits or _names(code, "previous", *_previous(kernel)):
+            return "it goes by turns"
+        found = _kernel_code(kernel, code, inputs)
+    else:
+        beside = [name for name in inputs if name != "initial" and _names(code, name)]
+        if beside:
+            return f"it reads '{beside[0]}' while it draws"
+        found = _with_coordinates(kernel, code), ""
+    changed, why = found
+    return why if changed is None else replace(kernel, source=_source(kernel.source, changed))
+
+
+def _previous(kernel: Kernel) -> list[str]:
+    return [f"previous_{output.name}" for output in kernel.outputs]
+
+
+def _names(code: str, *names: str) -> bool:
+    """Say whether a text names something besides declaring a sampler of that name."""
+    return any(re.search(rf"(?<!sampler2D )\b{name}\b", code) for name in names)
+
+
+def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str | None, str]:
+    """Return a kernel's text for a window; or None, and why there is none."""
+    match = _KERNEL.search(code)
+    if match is None:  # the driver's wrapper says what is wrong with its signature
+        return code, ""
+    texel = match.group(2)
+    start, end = match.end(), _end_of_body(code, match.end())
+    body = code[start:end]
+    if re.search(rf"\b{texel}\s*(?:\.\w+\s*)?(?:[-+*/%]?=(?!=)|\+\+|--)|(?:\+\+|--)\s*{texel}\b", body):
+        return None, f"it changes its '{texel}'"
+    others = code[:start] + code[end:]
+    for name in inputs:
+        own = rf"\btexelFetch\s*\(\s*{name}\s*,\s*{texel}\s*,\s*0\s*\)"
+        body = re.sub(own, f"texelFetch(k_own_{name}, {_LOCAL}, 0)", body)
+        body = re.sub(rf"\btextureSize\s*\(\s*{name}\s*,\s*0\s*\)", "size", body)
+        if _names(body, name) or _names(others, name):
+            return None, f"it reads '{name}' elsewhere than at its own texel"
+        body = body.replace(f"k_own_{name}", name)
+    for wired in (i.name for i in kernel.inputs if i.name not in inputs):
+        whole = f"({WIRED}{wired} && textureSize({wired}, 0) == size)"
+        body, others = (re.sub(rf"\b{MATCHES}{wired}\b", whole, text) for text in (body, others))
+    head = code[: match.start(1)] + f"ivec2 {_LOCAL}" + code[match.end(2) : start]
+    if others != code[:start] + code[end:]:
+        return None, "a function of its own asks whether an input matches"
+    return f"{head} ivec2 {texel} = {_LOCAL} + {WINDOW};{body}{code[end:]}", ""
+
+
+def _end_of_body(code: str, start: int) -> int:
+    depth = 1
+    for place in range(start, len(code)):
+        depth += {"{": 1, "}": -1}.get(code[place], 0)
+        if depth == 0:
+            return place
+    return len(code)
+
+
+def _with_coordinates(kernel: Kernel, code: str) -> str:
+    """Let ``gl_FragCoord`` count from the whole picture's corner."""
+    changed = _COORDINATES.sub(f"(gl_FragCoord + vec4({WINDOW}, 0.0, 0.0))", code)
+    if kernel.kind == "draw":
+        return f"{changed}uniform vec4 {ZOOM};\n"  # a line of its own
+    if changed == code:
+        return changed
+    # A plain shader declares for itself: before its first line that is neither blank nor of the preprocessor.
+    lines, depth = changed.split("\n"), 0
+    for index, line in enumerate(lines):
+        word = re.match(r"\s*#\s*(\w+)", line)
+        if word:
+            depth += {"if": 1, "ifdef": 1, "ifndef": 1, "endif": -1}.get(word.group(1), 0)
+        elif line.strip() and depth == 0:
+            lines[index] = f"uniform ivec2 {WINDOW}; {line}"
+            break
+    return "\n".join(lines)
+
+
+def _source(source: SourceText, code: str) -> SourceText:
+    """Return a text with other code on the same lines; what comes after them is taken for the last."""
+    changed = code.removesuffix("\n").split("\n")
+    lines = (*source.lines, *source.lines[-1:] * (len(changed) - len(source.lines)))
+    together = zip(lines, changed, strict=True)
+    return SourceText(source.path, tuple(replace(line, code=now) for line, now in together), source.files)

@@ -1,0 +1,91 @@
+"""Read the keyframes of a sketch from its TOML."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from playground.sketch.assign import LAND, resolve
+from playground.sketch.keyframes import EASES
+from playground.sketch.model import Camera, Keyframe, Sketch
+from playground.sketch.toml_camera import read_camera
+from playground.sketch.toml_graph import read_set
+from playground.sketch.toml_lines import Place
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import spell
+
+_KEYS = ("time", "camera", "set", "ease")
+_LATEST = 1e6  # [s]
+
+
+def read_keyframes(file: TomlFile, sketch: Sketch) -> tuple[Keyframe, ...]:
+    """Return what the ``[[keyframe]]`` tables say; raise ``SketchError`` at the line that is wrong."""
+    found: list[Keyframe] = []
+    names: dict[str, str] = {}  # the path that a parameter inside was set by, by its own path
+    for index, table in enumerate(file.tables("keyframe")):
+        place: Place = ("keyframe", index)
+        file.only(table, _KEYS, *place)
+        time = _time(file, table, place, found)
+        who = f"keyframe at {time:g} s"
+        values = read_set(file, sketch, table, place, who)
+        for path, _ in values:
+            _check_path(file, sketch, table, place, who, path, names)
+        camera = _camera(file, table, place)
+        if not values and not camera:
+            raise file.error(f"{who}: it sets nothing; expected camera = {{ … }} or set = {{ … }}", *place)
+        ease = file.take(table, "ease", str, EASES[0], *place)
+        if ease not in EASES:
+            raise file.error(f"ease = {spell(ease)}: expected {', '.join(EASES)}", *place, "ease")
+        found.append(Keyframe(time, camera, values, ease, file.line(*place)))
+    _check_distances(file, found)
+    return tuple(found)
+
+
+def _time(file: TomlFile, table: Mapping[str, Any], place: Place, before: list[Keyframe]) -> float:
+    if "time" not in table:
+        raise file.error("a keyframe needs time = …, in seconds", *place)
+    time: float = file.take(table, "time", float, 0.0, *place)
+    if not 0.0 <= time <= _LATEST:
+        raise file.error(f"time = {time:g}: expected seconds from 0 to {_LATEST:g}", *place, "time")
+    if before and time <= before[-1].time:
+        last = before[-1]
+        what = "there is one at that time" if time == last.time else f"the one before is at {last.time:g} s"
+        raise file.error(f"time = {time:g}: {what}, on line {last.line}; times must increase", *place, "time")
+    return time
+
+
+def _check_path(
+    file: TomlFile,
+    sketch: Sketch,
+    table: Mapping[str, Any],
+    place: Place,
+    who: str,
+    path: str,
+    names: dict[str, str],
+) -> None:
+    """Raise ``SketchError`` for what is no parameter, or is set under another name as well."""
+    at = (*place, "set", *([path] if path in table["set"] else path.split(".")))
+    if path in LAND:
+        raise file.error(f"{who}: '{path}' is the land's; keyframes set parameters and the camera", *at)
+    for target in resolve(sketch.graph, path):
+        other = names.setdefault(target.path, path)
+        if other != path:
+            raise file.error(f"{who}: '{path}' is what '{other}' sets in another keyframe", *at)
+
+
+def _camera(
+    file: TomlFile, table: Mapping[str, Any], place: Place
+) -> tuple[tuple[str, float | tuple[float, ...]], ...]:
+    if "camera" not in table:
+        return ()
+    camera = read_camera(file, table, Camera(), place)
+    return tuple((name, getattr(camera, name)) for name in table["camera"])
+
+
+def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
+    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the land"."""
+    far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
+    for index, keyframe in enumerate(found):
+        if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:
+            message = "distance = 0 shows the whole land, to which no way leads from metres; give metres"
+            raise file.error(message, "keyframe", index, "camera", "distance")
