@@ -27,6 +27,10 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.api import parameters as parameters
     from playground.api import render as render
     from playground.capture.export import export as export
+    from playground.capture.film import render_video as render_video
+    from playground.capture.large import write_large as write_large
+    from playground.capture.sequence import render_sequence as render_sequence
+    from playground.capture.sheet import render_sweep as render_sweep
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
     from playground.errors import ContextError as ContextError
@@ -51,6 +55,10 @@ _HOMES = {
     "render": "playground.api",
     "parameters": "playground.api",
     "export": "playground.capture.export",
+    "render_video": "playground.capture.film",
+    "render_sequence": "playground.capture.sequence",
+    "render_sweep": "playground.capture.sheet",
+    "write_large": "playground.capture.large",
     "Engine": "playground.engine.engine",
     "Frame": "playground.engine.frame",
     "load": "playground.sketch.load",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,8 +81,28 @@ def strips(
             left = window.origin[0]
             texture = engine.draw_window(found, window, time=time, steps=steps)
             strip[:, left : left + window.size[0]] = read_picture(texture)
+            engine.forget_unused()
             done()
         yield strip
+
+
+def pack_large(
+    engine: Engine,
+    sketch: Sketch | str | Path,
+    handle: BinaryIO,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    tile: tuple[int, int] = TILE,
+    text: Mapping[str, str] | None = None,
+    done: Callable[[], None] = lambda: None,
+) -> None:
+    """Write a picture as a PNG to an open file; arguments as for ``write_large``."""
+    writer = PngStrips(handle, size, text=text)
+    for strip in strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done):
+        writer.write(strip)
+    writer.close()
 
 
 def write_large(
@@ -93,16 +114,15 @@ def write_large(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     tile: tuple[int, int] = TILE,
+    text: Mapping[str, str] | None = None,
     done: Callable[[], None] = lambda: None,
 ) -> Path:
     """Write a picture of up to 65,536 pixels a side as a PNG, whole or not at all, and return its path.
 
-    Arguments as for ``strips``. Of the picture, what is held is one strip, ``tile[1]`` rows,
-    about five times over: 160 MiB at 16,384 pixels of width, whatever the height.
+    Arguments as for ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
+    one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
+    whatever the height.
     """
     with replacing(path) as handle:
-        writer = PngStrips(handle, size)
-        for strip in strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done):
-            writer.write(strip)
-        writer.close()
+        pack_large(engine, sketch, handle, size, time=time, steps=steps, tile=tile, text=text, done=done)
     return Path(path)

@@ -124,16 +124,14 @@ def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
     return found
 
 
-def read_pixels(text: str | None) -> tuple[int, int] | None:
-    """Return the width and height of ``--size``; raise ``ParameterError``."""
+def read_pixels(text: str | None, most: int = LARGEST_SIDE) -> tuple[int, int] | None:
+    """Return the width and height of ``--size``, at most so many pixels; raise ``ParameterError``."""
     if text is None:
         return None
     width, _, height = text.lower().replace("×", "x").partition("x")
     sides = [int(side) if side.strip().isdecimal() else 0 for side in (width, height)]
-    if not all(1 <= side <= LARGEST_SIDE for side in sides):
-        raise ParameterError(
-            f"--size {text}: expected width and height, 1 to {LARGEST_SIDE} pixels, as 1280x720"
-        )
+    if not all(1 <= side <= most for side in sides):
+        raise ParameterError(f"--size {text}: expected width and height, 1 to {most} pixels, as 1280x720")
     return sides[0], sides[1]
 
 

@@ -13,6 +13,7 @@ import typer
 from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
+    Moment,
     Renderer,
     SetOption,
     SizeOption,
@@ -27,10 +28,11 @@ from playground.commands.arguments import (
     read_steps,
     read_values,
 )
+from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
 from playground.errors import DataError, ParameterError
-from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS
-from playground.sketch.model import DEFAULT_PICTURE
-from playground.terminal import busy, console_for, note
+from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
+from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -38,7 +40,11 @@ if TYPE_CHECKING:
 
 
 HELP = help_text(
-    "Render a sketch to a PNG and print its path.\n\n"
+    "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
+    "A picture may have up to 65536 pixels a side; a large one is drawn part by part. Time in a video"
+    " and in numbered pictures is that of the picture's number: keyframes of the sketch, if it has any,"
+    " say what changes. --sweep takes a range or values, of two parameters for a grid; a part of a vector"
+    " is named, as .azimuth, .r or .x.\n\n"
     "With --texture, write the values of one pass instead: "
     + either([f"{ending} ({what})" for ending, what in VALUE_ENDINGS.items()])
     + ".",
@@ -50,6 +56,13 @@ HELP = help_text(
     "playground render diamond_square --steps height=9",
     "playground render my-land/my_land.glsl --profile",
     "playground render shader.frag --time 2.5 -o - > frame.png",
+    "playground render jacksboro --size 20000x12000 -o poster.png",
+    "playground render sun_flight --video flight.mp4 --size 1920x1080",
+    "playground render jacksboro --shot evening --video still.webm --seconds 2 --fps 25",
+    "playground render sun_flight --frames 0..299 --fps 30 -o frames/%05d.png --resume",
+    "playground render jacksboro --sweep light.sun.elevation=5..60 -n 12 -o suns.png",
+    "playground render jacksboro --sweep light.gain=1,2,4 --sweep view.haze=0..0.4,3",
+    "playground render jacksboro --sweep light.sun.azimuth=0..350,36 --video day.mp4 --fps 12",
 )
 
 
@@ -68,6 +81,7 @@ class Picture:
     texture: str = ""
     profile: bool = False
     steps: dict[str, int] | None = None
+    asked: Asked | None = None  # more than one picture
 
 
 def render(
@@ -116,14 +130,88 @@ def render(
     profile: Annotated[
         bool, typer.Option("--profile", metavar="", help="Print the milliseconds of each pass.")
     ] = False,
+    video: Annotated[
+        str,
+        typer.Option(
+            "--video",
+            help=f"Write a video: {either([f'{e} ({what})' for e, what in VIDEO_ENDINGS.items()])}.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = "",
+    seconds: Annotated[
+        str,
+        typer.Option(
+            "--seconds",
+            help="With --video: how long. Without it, to the last keyframe.",
+            metavar="S",
+            show_default=False,
+        ),
+    ] = "",
+    fps: Annotated[
+        str,
+        typer.Option(
+            "--fps",
+            help="Pictures a second of --video and --frames: 30 unless told, 4 of a sweep.",
+            metavar="N",
+            show_default=False,
+        ),
+    ] = "",
+    quality: Annotated[
+        str,
+        typer.Option(
+            "--quality",
+            help="With --video: low, medium, high or best; high unless told.",
+            metavar="NAME",
+            show_default=False,
+        ),
+    ] = "",
+    frames: Annotated[
+        str,
+        typer.Option(
+            "--frames",
+            help="Write these pictures as PNG files, named by -o, as frames/%05d.png.",
+            metavar="FIRST..LAST",
+            show_default=False,
+        ),
+    ] = "",
+    resume: Annotated[
+        bool, typer.Option("--resume", metavar="", help="With --frames: keep good files that are there.")
+    ] = False,
+    sweep: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--sweep",
+            help="A picture for each value of a parameter, on one sheet. May be given twice.",
+            metavar="PATH=FROM..TO",
+            show_default=False,
+        ),
+    ] = None,
+    count: Annotated[
+        str,
+        typer.Option(
+            "-n", help="With --sweep: values of a range; 9 unless told.", metavar="N", show_default=False
+        ),
+    ] = "",
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
     """Render a sketch to a file and print its path."""
+    asked = Asked(
+        video,
+        read_number(seconds, "--seconds", "10"),
+        read_fps(fps),
+        quality,
+        read_frames(frames),
+        resume,
+        tuple(sweep or ()),
+        read_count(count),
+    )
+    asked.check(output, texture, profile)
     picture = Picture(
         sketch,
         output,
-        read_pixels(size),
+        read_pixels(size, LARGEST_PICTURE),
         read_seconds(time),
         read_values(settings),
         read_driver(driver),
@@ -132,6 +220,7 @@ def render(
         texture,
         profile,
         read_steps(steps),
+        asked,
     )
     make_picture(picture, ctx.obj.or_else(software, device))
 
@@ -148,37 +237,70 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         steps=picture.steps,
         time=picture.time,
     )
-    sketch, time, steps = moment.sketch, moment.time, moment.steps
+    if picture.asked is not None and picture.asked.many:
+        make_many(picture.asked, moment, picture.output, picture.size, renderer, picture.driver)
+        return
+    sketch = moment.sketch
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
 
     with (
         _target(picture, sketch) as target,
-        busy(f"rendering {sketch.name}"),
         headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
     ):
-        if picture.profile:
-            _prepare_profile(engine, sketch, picture.texture, size, time, steps)
-        if picture.texture:
-            from playground.images.files import write_values
+        from playground.capture.large import is_large
 
-            values = engine.read(sketch, picture.texture, size=size, time=time, steps=steps)
-            clamped = write_values(target, values)
-            if clamped:
-                note(clamped)
+        if not picture.texture and is_large(engine, size):
+            if picture.profile:
+                raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+            _draw_large(engine, moment, size, target, picture.output == "-")
         else:
-            frame = engine.render(sketch, size=size, time=time, steps=steps)
-            if picture.output == "-":
-                from playground.images.files import encode_png
-
-                sys.stdout.buffer.write(encode_png(frame.array))
-            else:
-                frame.save(target)
+            with busy(f"rendering {sketch.name}"):
+                _draw(engine, picture, moment, size, target)
         if picture.profile:
             _print_profile(engine)
     if picture.output != "-":
         print(target)
+
+
+def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int], target: Path) -> None:
+    sketch, time, steps = moment.sketch, moment.time, moment.steps
+    if picture.profile:
+        _prepare_profile(engine, sketch, picture.texture, size, time, steps)
+    if picture.texture:
+        from playground.images.files import write_values
+
+        values = engine.read(sketch, picture.texture, size=size, time=time, steps=steps)
+        clamped = write_values(target, values)
+        if clamped:
+            note(clamped)
+        return
+    frame = engine.render(sketch, size=size, time=time, steps=steps)
+    if picture.output == "-":
+        from playground.images.files import encode_png
+
+        sys.stdout.buffer.write(encode_png(frame.array))
+    else:
+        frame.save(target)
+
+
+def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path, piped: bool) -> None:
+    from playground.capture.large import count_tiles, pack_large, write_large
+
+    with progress(f"rendering {moment.sketch.name} in parts", count_tiles(size)) as done:
+        if piped:
+            pack_large(
+                engine,
+                moment.sketch,
+                sys.stdout.buffer,
+                size,
+                time=moment.time,
+                steps=moment.steps,
+                done=done,
+            )
+        else:
+            write_large(engine, moment.sketch, target, size, time=moment.time, steps=moment.steps, done=done)
 
 
 def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:

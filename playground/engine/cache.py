@@ -97,6 +97,11 @@ class Cache:
         if kept is not None:
             kept.let_go(self._pool)
 
+    def drop_unused(self) -> None:
+        """Drop whatever the current frame does not use."""
+        for key in [key for key in self._kept if key not in self._in_use]:
+            self.drop(key)
+
     def trim(self) -> None:
         """Drop what was used least recently until the bound holds or all that is left is in use."""
         total = self.bytes

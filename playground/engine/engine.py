@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
+from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +84,6 @@ class Engine:
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
         self._plan: Plan | None = None
-        self._passing: list[str] = []  # keys of what shows a window, which no later frame will show again
         self._released = False
 
     @property
@@ -262,6 +262,30 @@ class Engine:
         with self.borrowed():
             return self._finite.first()
 
+    def fingerprint(
+        self,
+        sketch: Sketch | str | Path,
+        *,
+        size: tuple[int, int] = DEFAULT_PICTURE,
+        time: float = 0.0,
+        steps: Mapping[str, int] | None = None,
+    ) -> str:
+        """Return letters and digits that are the same for the same picture, without drawing it.
+
+        They stand for all that it depends on, the renderer included.
+        """
+        plan = self.plan_for(sketch, size, time, steps, largest=LARGEST_PICTURE)
+        self.runner.begin(plan)
+        self._plan = plan
+        keys = self._keys.keys_of(plan, self.form_of, self._given_for, _continued(plan))
+        shown = next(iter(plan.flat.outputs["view"].values()))
+        made = f"{keys.steps[shown.path]} {shown.output} {self.info.renderer} {self.info.opengl}"
+        return blake2b(made.encode(), digest_size=16).hexdigest()
+
+    def forget_unused(self) -> None:
+        """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
+        self.cache.drop_unused()
+
     # ── running ──────────────────────────────────────────────────────────────
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
@@ -270,12 +294,9 @@ class Engine:
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.cache.begin()
-        for key in self._passing:
-            self.cache.drop(key)
         self.runner.begin(plan)
         continued = _continued(plan)
         keys = self._keys.keys_of(plan, self.form_of, self._given_for, continued)
-        self._passing = [keys.steps[step.path] for step in plan.walk() if step.window is not None]
 
         def make(
             step: Step,

@@ -12,3 +12,6 @@ VALUE_ENDINGS: dict[str, str] = {
     ".tiff": "float32",
 }
 """What a grid of values is written as, and what the file then holds."""
+
+VIDEO_ENDINGS: dict[str, str] = {".mp4": "H.264", ".webm": "VP9", ".gif": "256 colours"}
+"""What a video is written as."""

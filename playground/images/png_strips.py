@@ -57,7 +57,7 @@ class PngStrips:
             raise DataError(
                 f"a strip of {strip.dtype} {strip.shape} where at most {self._left} rows of {self._shape} fit"
             )
-        flat = strip.reshape(rows, -1)
+        flat = strip.reshape(rows, self._shape[0] * self._shape[1])
         self._packed(self._packer.compress(_filtered(flat, self._above, self._shape[1]).tobytes()))
         self._above = flat[-1].copy() if rows else self._above
         self._left -= rows

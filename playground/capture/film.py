@@ -1,0 +1,142 @@
+"""Films: pictures at one time after another, as a video or as numbered PNG files.
+
+Picture n of a film is that of the time ``n / fps``, whatever the machine's speed; what a
+sketch's keyframes, its text or its repeats make of the time is theirs. The land and its
+light are made anew only where they change with it, and nothing that a later picture does
+not use is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.api import headless
+from playground.capture.video import QUALITY, Video
+from playground.engine.engine import Engine, opened
+from playground.errors import ParameterError
+from playground.sketch.keyframes import duration
+from playground.sketch.model import Sketch
+
+FPS = 30
+USUAL_SIZE = (1280, 720)
+MOST_FRAMES = 1_000_000
+
+
+@dataclass(frozen=True)
+class Film:
+    """A sketch at so many times, one after another."""
+
+    sketch: Sketch
+    count: int  # pictures
+    fps: Fraction
+    size: tuple[int, int]  # [pixels]
+    start: float = 0.0  # [s] of the first picture
+    steps: Mapping[str, int] | None = None  # as in ``Engine.render``
+
+    def time(self, number: int) -> float:
+        """Return the time in seconds of a picture, from 0."""
+        return self.start + float(number / self.fps)
+
+
+def film_of(
+    sketch: Sketch | str | Path,
+    *,
+    seconds: float | None = None,
+    fps: float | Fraction = FPS,
+    size: tuple[int, int] = USUAL_SIZE,
+    start: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+) -> Film:
+    """Return the film of a sketch: ``seconds`` long, else from ``start`` to its last keyframe.
+
+    Raises ``ParameterError`` for a film of no picture, or of more than a million.
+    """
+    found = opened(sketch)
+    rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
+    if not Fraction(1, 60) <= rate <= 1000:
+        raise ParameterError(f"{float(fps):g} pictures a second: expected 1/60 to 1000")
+    if seconds is None:
+        seconds = duration(found) - start
+        if seconds <= 0.0:
+            raise ParameterError(
+                f"how long? sketch {found.name} has no keyframe after {start:g} s; say how many seconds"
+            )
+    count = round(Fraction(seconds) * rate) if abs(seconds) < 1e7 else 0
+    if not 1 <= count <= MOST_FRAMES:
+        raise ParameterError(
+            f"{seconds:g} s at {float(rate):g} pictures a second: expected 1 to {MOST_FRAMES} pictures"
+        )
+    return Film(found, count, rate, size, start, steps)
+
+
+@contextmanager
+def telling(engine: Engine, film: Film, number: int) -> Iterator[None]:
+    """Tell plain shaders the number of a picture and the time between two, in the block."""
+    before = engine.runner.frame, engine.runner.delta
+    engine.runner.frame, engine.runner.delta = number, float(1 / film.fps)
+    try:
+        yield
+    finally:
+        engine.runner.frame, engine.runner.delta = before
+
+
+def frames(engine: Engine, film: Film) -> Iterator[NDArray[np.uint8]]:
+    """Yield the pictures of a film, each (height, width, 4), top row first, sRGB and alpha."""
+    for number in range(film.count):
+        with telling(engine, film, number):
+            frame = engine.render(film.sketch, size=film.size, time=film.time(number), steps=film.steps)
+        engine.forget_unused()
+        yield frame.array
+
+
+def write_film(
+    engine: Engine,
+    film: Film,
+    path: str | Path,
+    *,
+    quality: str = QUALITY,
+    done: Callable[[], None] = lambda: None,
+) -> Path:
+    """Write a film as a video by the path's ending, whole or not at all, and return its path.
+
+    Each picture is encoded as it is drawn; ``done`` is called after each. The file is read
+    back before it takes its name: the pictures in it are counted. See ``Video`` for what is
+    refused, and for what is left of it when it is interrupted.
+    """
+    with Video(path, film.size, film.fps, film.count, quality=quality) as video:
+        for picture in frames(engine, film):
+            video.add(picture)
+            done()
+    return Path(path)
+
+
+def render_video(
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    *,
+    seconds: float | None = None,
+    fps: float | Fraction = FPS,
+    size: tuple[int, int] = USUAL_SIZE,
+    start: float = 0.0,
+    quality: str = QUALITY,
+    engine: Engine | None = None,
+) -> Path:
+    """Render a sketch as a video: ``.mp4`` (H.264), ``.webm`` (VP9) or ``.gif``, by the path's ending.
+
+    ``seconds`` long, to its last keyframe unless told, from ``start``; ``size`` in pixels,
+    both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
+    an ``engine`` one is opened. Needs PyAV: ``pip install "terrain-shader-playground[video]"``.
+    Raises ``PlaygroundError`` in a sentence; a file of that name is replaced at the end.
+    """
+    film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
+    if engine is not None:
+        return write_film(engine, film, path, quality=quality)
+    with headless() as made:
+        return write_film(made, film, path, quality=quality)

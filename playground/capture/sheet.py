@@ -1,0 +1,156 @@
+"""A contact sheet: pictures of a sketch side by side, each with its values written below it.
+
+Or a film of the same pictures, one after another. The letters are Pillow's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.api import headless
+from playground.capture.sweep import USUAL_STEPS, Swept, read_sweep, swept
+from playground.capture.video import QUALITY, Video
+from playground.engine.engine import Engine, opened
+from playground.errors import ParameterError
+from playground.images.files import write_png
+from playground.sketch.model import LARGEST_SIDE, Sketch
+
+if TYPE_CHECKING:
+    import PIL.ImageFont
+
+USUAL_SIZE = (320, 180)
+"""Width and height in pixels of a picture of a sheet."""
+
+_PAPER, _INK = (24, 25, 28), (232, 232, 228)
+_MARGIN = 8  # [pixels] around a picture
+_SMALLEST_TEXT = 9  # [pixels]
+
+
+def pictures(
+    engine: Engine, rows: Sequence[Sequence[Swept]], size: tuple[int, int], time: float = 0.0
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield the picture of each sketch, row by row, (height, width, 4) bytes, top row first."""
+    for row in rows:
+        for one in row:
+            yield engine.render(one.sketch, size=size, time=time).array
+            engine.forget_unused()
+
+
+def sheet(rows: Sequence[Sequence[Swept]], found: Iterator[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+    """Return pictures on one sheet with their captions, (height, width, 3) bytes, top row first.
+
+    ``found`` gives the picture of each of ``rows``. A caption is as large as fits its picture's width.
+    """
+    import PIL.Image
+    import PIL.ImageDraw
+
+    paper, drawn, font, line, whole = None, None, None, 0, (0, 0)
+    for down, row in enumerate(rows):
+        for along, one in enumerate(row):
+            picture = PIL.Image.fromarray(np.ascontiguousarray(next(found)[..., :3]))
+            if paper is None:
+                lines = len(one.caption)
+                captions = [text for each in rows for other in each for text in other.caption]
+                font, line = _font(captions, picture.width)
+                whole = (picture.width + _MARGIN, picture.height + lines * line + _MARGIN + 4)
+                size = _sheet_size(rows, whole)
+                paper = PIL.Image.new("RGB", size, _PAPER)
+                drawn = PIL.ImageDraw.Draw(paper)
+            assert drawn is not None and font is not None
+            x, y = _MARGIN + along * whole[0], _MARGIN + down * whole[1]
+            paper.paste(picture, (x, y))
+            for number, text in enumerate(one.caption):
+                place = (x + picture.width / 2, y + picture.height + 2 + (number + 0.5) * line)
+                drawn.text(place, text, _INK, font=font, anchor="mm")
+    assert paper is not None, "a sweep has a value"
+    return np.array(paper, np.uint8)
+
+
+def _sheet_size(rows: Sequence[Sequence[Swept]], each: tuple[int, int]) -> tuple[int, int]:
+    size = max(map(len, rows)) * each[0] + _MARGIN, len(rows) * each[1] + _MARGIN
+    if max(size) > LARGEST_SIDE:
+        raise ParameterError(
+            f"a sheet of {size[0]} x {size[1]} pixels; at most {LARGEST_SIDE} a side: "
+            "choose smaller pictures, or fewer"
+        )
+    return size
+
+
+def _font(captions: Sequence[str], width: int) -> tuple[PIL.ImageFont.FreeTypeFont, int]:
+    """Return letters with which every caption is narrower than the picture, and the height of a line."""
+    import PIL.ImageFont
+
+    size = max(min(width // 16, 18), _SMALLEST_TEXT)
+    while True:
+        font = PIL.ImageFont.load_default(size)
+        assert isinstance(font, PIL.ImageFont.FreeTypeFont)
+        if size <= _SMALLEST_TEXT or max(font.getlength(text) for text in captions) <= width:
+            return font, round(1.4 * size)
+        size -= 1
+
+
+def write_sheet(
+    engine: Engine,
+    rows: Sequence[Sequence[Swept]],
+    path: str | Path,
+    *,
+    size: tuple[int, int] = USUAL_SIZE,
+    time: float = 0.0,
+    done: Callable[[], None] = lambda: None,
+) -> Path:
+    """Write a contact sheet as a PNG, whole or not at all, and return its path."""
+    write_png(path, sheet(rows, _counted(pictures(engine, rows, size, time), done)))
+    return Path(path)
+
+
+def write_sweep_film(
+    engine: Engine,
+    rows: Sequence[Sequence[Swept]],
+    path: str | Path,
+    *,
+    fps: Fraction,
+    size: tuple[int, int],
+    time: float = 0.0,
+    quality: str = QUALITY,
+    done: Callable[[], None] = lambda: None,
+) -> Path:
+    """Write the pictures of a sweep as a video, one after another; arguments as for ``Video``."""
+    with Video(path, size, fps, sum(map(len, rows)), quality=quality) as video:
+        for picture in _counted(pictures(engine, rows, size, time), done):
+            video.add(picture)
+    return Path(path)
+
+
+def _counted(found: Iterator[NDArray[np.uint8]], done: Callable[[], None]) -> Iterator[NDArray[np.uint8]]:
+    for picture in found:
+        yield picture
+        done()
+
+
+def render_sweep(
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    *sweeps: str,
+    steps: int = USUAL_STEPS,
+    size: tuple[int, int] = USUAL_SIZE,
+    time: float = 0.0,
+    engine: Engine | None = None,
+) -> Path:
+    """Render a contact sheet of one sweep, or of two that make a grid, as a PNG.
+
+    A sweep is written ``"light.sun.elevation=5..60"``, ``"light.gain=1..3,5"`` for five steps,
+    ``"light.gain=1,2,4"``; ``steps`` for a range that does not say. ``size`` in pixels is that
+    of each picture, ``time`` in seconds. Raises ``ParameterError`` in a sentence.
+    """
+    found = opened(sketch)
+    rows = swept(found, [read_sweep(found, text, steps) for text in sweeps])
+    if engine is not None:
+        return write_sheet(engine, rows, path, size=size, time=time)
+    with headless() as made:
+        return write_sheet(made, rows, path, size=size, time=time)

@@ -1,0 +1,183 @@
+"""Sweep parameters: a sketch with one value after another.
+
+``light.sun.elevation=5..60,12`` is twelve values from 5 to 60, ends included; ``=1,2,4``
+those three. A sweep of a part of a vector names it: ``.azimuth`` and ``.elevation`` of a
+direction, ``.r`` to ``.a`` of a colour, ``.x`` to ``.w`` of any other. Two sweeps make a
+grid, the first along the rows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from playground.errors import ParameterError, nearest
+from playground.sketch.assign import LAND, check_value, resolve, value_of, values_of
+from playground.sketch.model import Parameter, Sketch, Value
+from playground.sketch.values import coerce, expected, is_whole, length_of, write
+
+USUAL_STEPS = 9
+MOST_PICTURES = 400
+_PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The values that one parameter, or a part of it, takes one after another."""
+
+    path: str  # as it was written, with the part
+    parameter: str  # path of the parameter
+    part: int | None  # which number of a vector; None: all of it
+    values: tuple[Value, ...]
+    said: tuple[str, ...]  # each value in words
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A sketch with one value of each sweep."""
+
+    sketch: Sketch
+    caption: tuple[str, ...]  # "light.sun.elevation = 5", a line for each sweep
+
+
+def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
+    """Return what ``path=a..b``, ``path=a..b,steps`` or ``path=1,2,4`` says; raise ``ParameterError``.
+
+    ``steps`` is how many values a range has that does not say. Values of a whole vector are
+    parted by semicolons, as ``light.sun=135,25;250,12``.
+    """
+    path, equals, given = (each.strip() for each in text.partition("="))
+    if not equals or not path or not given:
+        raise ParameterError(f"sweep {text}: expected PATH=FROM..TO, as light.gain=0.5..3, or PATH=1,2,4")
+    whole_path, part, parameter = _target(sketch, path)
+    try:
+        raw: list[object]
+        if ".." in given:
+            raw = _range(given, steps, parameter, part)
+        else:
+            vector = parameter is not None and part is None and length_of(parameter.type) > 1
+            raw = [each.strip() for each in given.split(";" if vector or ";" in given else ",")]
+        values, said = [], []
+        for each in raw:
+            value = _value(sketch, whole_path, part, parameter, each)
+            if value not in values:  # a range of whole numbers may have more steps than numbers
+                values.append(value)
+                said.append(_say(parameter, part, value))
+    except ParameterError as error:
+        raise ParameterError(f"sweep {text}: {error.diagnostics[0].message}") from None
+    return Sweep(path, whole_path, part, tuple(values), tuple(said))
+
+
+def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
+    """Return the parameter that a path names, and which of its numbers; raise ``ParameterError``."""
+    if path in LAND:
+        return path, None, None
+    around, _, last = path.rpartition(".")
+    for whole in (path, around):
+        try:
+            parameter = resolve(sketch.graph, whole)[0].parameter
+        except ParameterError:
+            continue
+        if whole == path:
+            return path, None, parameter
+        names = _PARTS.get(parameter.widget.kind, tuple("xyzw"))[: length_of(parameter.type)]
+        if last in names and len(names) > 1:
+            return around, names.index(last), parameter
+        hint = nearest(last, names if len(names) > 1 else ())
+        raise ParameterError(f"sweep {path}: {around} has no part '{last}'{hint}")
+    check_value(sketch, path, 0)  # says which path is nearest
+    raise ParameterError(f"sweep {path}: no such parameter")
+
+
+def _range(given: str, steps: int, parameter: Parameter | None, part: int | None) -> list[object]:
+    """Return the numbers of ``a..b`` or ``a..b,steps``, ends included."""
+    ends, _, count = given.partition(",")
+    low, _, high = ends.partition("..")
+    if count.strip():
+        if not count.strip().isdecimal():
+            raise ParameterError(f"'{count.strip()}' steps: expected a whole number from 2")
+        steps = int(count)
+    if not 2 <= steps <= MOST_PICTURES:
+        raise ParameterError(f"{steps} steps: expected 2 to {MOST_PICTURES}")
+    if parameter is not None and (
+        (part is None and length_of(parameter.type) > 1) or parameter.type in ("bool", "sampler2D")
+    ):
+        raise ParameterError(f"a range needs a number; {parameter.name} takes {expected(parameter)}")
+    try:
+        first, last = float(low), float(high)
+    except ValueError:
+        raise ParameterError(f"'{ends}': expected two numbers, as 5..60") from None
+    if not (abs(first) < 1e12 and abs(last) < 1e12):
+        raise ParameterError(f"'{ends}': expected two finite numbers, as 5..60")
+    numbers = [first + (last - first) * k / (steps - 1) for k in range(steps)]
+    whole = parameter is not None and is_whole(parameter.type)
+    return [round(number) if whole else float(f"{number:.9g}") for number in numbers]
+
+
+def _value(sketch: Sketch, path: str, part: int | None, parameter: Parameter | None, given: object) -> Value:
+    if part is None or parameter is None:
+        return check_value(sketch, path, given)
+    now: list[object] = list(_now(sketch, path))
+    try:
+        now[part] = float(str(given))
+    except ValueError:
+        raise ParameterError(f"{path} = '{given}': expected a number") from None
+    found = coerce(parameter, now, path)
+    assert isinstance(found, tuple)
+    return found[part]
+
+
+def _say(parameter: Parameter | None, part: int | None, value: Value) -> str:
+    if parameter is not None and part is None:
+        return write(parameter, value)
+    numbers = value if isinstance(value, tuple) else (value,)
+    return ",".join(f"{number:.6g}" if isinstance(number, float) else str(number) for number in numbers)
+
+
+def swept(sketch: Sketch, sweeps: Sequence[Sweep]) -> list[list[Swept]]:
+    """Return rows of sketches: the first sweep along a row, the second down the rows, if there is one.
+
+    Raises ``ParameterError`` for more than two sweeps, for two of one parameter's same part,
+    and for more than 400 pictures.
+    """
+    if not 1 <= len(sweeps) <= 2:
+        raise ParameterError(f"{len(sweeps)} sweeps: expected one, or two that make a grid")
+    if len({sweep.path for sweep in sweeps}) < len(sweeps):
+        raise ParameterError(f"two sweeps of {sweeps[0].path}: expected two parameters")
+    count = math.prod(len(sweep.values) for sweep in sweeps)
+    if count > MOST_PICTURES:
+        raise ParameterError(f"{count} pictures are more than the {MOST_PICTURES} that a sheet may have")
+    along, *down = ([(sweep, index) for index in range(len(sweep.values))] for sweep in sweeps)
+    if down:
+        return [[_set(sketch, [one, other]) for one in along] for other in down[0]]
+    columns = columns_of(len(along))
+    alone = [_set(sketch, [one]) for one in along]
+    return [alone[first : first + columns] for first in range(0, len(alone), columns)]
+
+
+def columns_of(count: int) -> int:
+    """Return how many of so many pictures stand side by side: all rows full if that leaves few columns."""
+    best = math.ceil(math.sqrt(count))
+    full = [columns for columns in range(best, min(count, 2 * best) + 1) if count % columns == 0]
+    return full[0] if full else best
+
+
+def _set(sketch: Sketch, chosen: Sequence[tuple[Sweep, int]]) -> Swept:
+    caption = []
+    for sweep, index in chosen:
+        value = sweep.values[index]
+        if sweep.part is not None:
+            now: list[object] = list(_now(sketch, sweep.parameter))
+            now[sweep.part] = value
+            sketch = sketch.with_values({sweep.parameter: now})
+        else:
+            sketch = sketch.with_values({sweep.parameter: value})
+        caption.append(f"{sweep.path} = {sweep.said[index]}")
+    return Swept(sketch, tuple(caption))
+
+
+def _now(sketch: Sketch, path: str) -> tuple[float, ...]:
+    value = value_of(sketch, path, values_of(sketch))
+    assert isinstance(value, tuple)
+    return value

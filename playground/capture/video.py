@@ -1,0 +1,231 @@
+"""Encode pictures as a video, one by one, into a file that is whole or not there.
+
+PyAV brings FFmpeg's encoders. The pictures are sRGB: they become BT.709 Y'CbCr of limited
+range, and the file says so, which every player shows as it was drawn; each second pixel has
+a colour of its own, all have their brightness. A GIF has 256 colours a picture, chosen for
+each. Alpha is dropped: the pictures of a view are opaque.
+"""
+
+from __future__ import annotations
+
+import secrets
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import ContextError, DataError, ParameterError, nearest
+from playground.images.endings import VIDEO_ENDINGS
+from playground.images.files import reason
+from playground.paths import shown
+
+if TYPE_CHECKING:
+    import av.container
+
+QUALITIES: dict[str, tuple[int, int]] = {
+    "low": (30, 44),
+    "medium": (23, 36),
+    "high": (18, 28),
+    "best": (10, 16),
+}
+"""Name → constant rate factor of H.264 and of VP9: the lower, the better and the larger."""
+
+QUALITY = "high"
+_BT709, _LIMITED = 1, 1  # as in ITU-T H.273
+_GIF_RATES = "1, 2, 4, 5, 10, 20, 25, 50"  # a picture of a GIF is shown for whole hundredths of a second
+_LONGEST = 16_384  # [pixels] of a side: H.264's and VP9's encoders take no more
+
+
+class Stopped(KeyboardInterrupt):
+    """A video was interrupted; ``path`` is the shorter one that is left, None where there is none."""
+
+    def __init__(self, path: Path | None, count: int) -> None:
+        super().__init__()
+        self.path = path
+        self.count = count  # pictures in it
+
+
+class Video:
+    """A video being written: use it with ``with``, and ``add()`` every picture.
+
+    ``size`` in pixels; ``count`` pictures are expected. At the end the file is read back,
+    and takes its name if all are in it at the rate asked for. When the block fails,
+    nothing is left; when it is interrupted, what is there becomes a shorter video, as
+    ``film-first-120.mp4``, and ``Stopped`` tells its name.
+
+    Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
+    ending, odd sides, a rate that a GIF has not, a missing folder, and where PyAV is missing.
+    """
+
+    def __init__(
+        self, path: str | Path, size: tuple[int, int], fps: Fraction, count: int, *, quality: str = QUALITY
+    ) -> None:
+        self.path = Path(path).expanduser()
+        self.size, self.fps, self.count = size, fps, count
+        self.added = 0
+        self._ending = check_video(self.path, size, fps, quality)
+        self._av = _pyav()
+        self._temporary = self.path.with_name(f".{self.path.name[:40]}.{secrets.token_hex(6)}.part")
+        try:
+            self._open(quality)
+        except BaseException:
+            self._temporary.unlink(missing_ok=True)
+            raise
+
+    def __enter__(self) -> Video:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None:
+                self._finish(self.path, self.count)
+            elif issubclass(kind, KeyboardInterrupt):
+                raise Stopped(self._shorter(), self.added) from None
+        finally:
+            self._container.close()
+            self._temporary.unlink(missing_ok=True)
+
+    def add(self, picture: NDArray[np.uint8]) -> None:
+        """Encode the next picture, (height, width, 3 or 4) bytes, top row first, sRGB."""
+        frame = self._indexed(picture) if self._ending == ".gif" else self._yuv(picture)
+        frame.pts, frame.time_base = self.added, 1 / self.fps
+        self._mux(frame)
+        self.added += 1
+
+    def _open(self, quality: str) -> None:
+        form, codec, pixels, options = {
+            ".mp4": ("mp4", "libx264", "yuv420p", {"crf": str(QUALITIES[quality][0]), "preset": "medium"}),
+            ".webm": ("webm", "libvpx-vp9", "yuv420p", {"crf": str(QUALITIES[quality][1]), "b": "0"}),
+            ".gif": ("gif", "gif", "pal8", {}),
+        }[self._ending]
+        if codec == "libvpx-vp9":
+            options |= {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
+        moved = {"movflags": "+faststart"} if form == "mp4" else {}
+        try:
+            self._container: av.container.OutputContainer = self._av.open(
+                str(self._temporary), "w", format=form, options=moved
+            )
+            self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
+        except OSError as error:
+            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
+        except ValueError as error:  # an encoder that this build has not
+            raise ContextError(f"this PyAV cannot write {self._ending}: {reason(error)}") from None
+        self._stream.width, self._stream.height = self.size
+        self._stream.pix_fmt = pixels
+        self._stream.time_base = 1 / self.fps
+        if pixels == "yuv420p":
+            context = self._stream.codec_context
+            context.color_primaries = context.color_trc = context.colorspace = _BT709
+            context.color_range = _LIMITED
+
+    def _yuv(self, picture: NDArray[np.uint8]) -> Any:
+        rgb = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3]), format="rgb24")
+        return rgb.reformat(
+            format="yuv420p",
+            src_colorspace="ITU709",
+            dst_colorspace="ITU709",
+            src_color_range="JPEG",
+            dst_color_range="MPEG",
+            interpolation="AREA",
+        )
+
+    def _indexed(self, picture: NDArray[np.uint8]) -> Any:
+        import PIL.Image
+
+        found = PIL.Image.fromarray(np.ascontiguousarray(picture[..., :3])).quantize(256)
+        colours = np.zeros((256, 4), np.uint8)
+        given = np.array(found.getpalette() or [], np.uint8).reshape(-1, 3)[:256]
+        colours[: len(given), 1:], colours[:, 0] = given, 255  # alpha, red, green, blue
+        return self._av.VideoFrame.from_ndarray((np.array(found, np.uint8), colours), format="pal8")
+
+    def _mux(self, frame: Any) -> None:
+        try:
+            for packet in self._stream.encode(frame):
+                self._container.mux(packet)
+        except OSError as error:
+            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
+
+    def _finish(self, path: Path, count: int) -> None:
+        self._mux(None)
+        try:
+            self._container.close()
+            found, rate = count_pictures(self._temporary)
+            if found != count or rate != self.fps:
+                raise DataError(
+                    f"the encoder wrote {found} pictures at {float(rate):g} a second, not {count} at "
+                    f"{float(self.fps):g}",
+                    file=path,
+                )
+            self._temporary.replace(path)
+        except OSError as error:
+            raise DataError(f"cannot be written: {reason(error)}", file=path) from None
+
+    def _shorter(self) -> Path | None:
+        """Return where the pictures so far are, once they are a video; None for none."""
+        if not self.added:
+            return None
+        path = self.path.with_name(f"{self.path.stem}-first-{self.added}{self.path.suffix}")
+        self._finish(path, self.added)
+        return path
+
+
+def check_video(path: Path, size: tuple[int, int], fps: Fraction, quality: str) -> str:
+    """Return the ending of a video that can be written; raise ``DataError`` or ``ParameterError``."""
+    ending = path.suffix.lower()
+    if ending not in VIDEO_ENDINGS:
+        kinds = ", ".join(f"{e} ({what})" for e, what in VIDEO_ENDINGS.items())
+        raise DataError(f"a video is written to a name ending in {kinds}", file=str(path))
+    if quality not in QUALITIES:
+        hint = nearest(quality, QUALITIES)
+        raise ParameterError(f"quality '{quality}': expected {', '.join(QUALITIES)}{hint.partition(';')[0]}")
+    width, height = size
+    if ending != ".gif" and (width % 2 or height % 2):
+        near = f"{width + width % 2}x{height + height % 2}"
+        raise ParameterError(f"a video of {width} x {height} pixels: both must be even, as {near}")
+    if max(size) > _LONGEST:
+        raise ParameterError(f"a video of {width} x {height} pixels: at most {_LONGEST} a side")
+    if ending == ".gif" and (100 / fps).denominator != 1:
+        raise ParameterError(
+            f"a GIF cannot show {float(fps):g} pictures a second: it counts in hundredths of a second; "
+            f"choose one of {_GIF_RATES}"
+        )
+    if path.is_dir():
+        raise DataError("is a folder; expected the name of a file to write", file=str(path))
+    if not path.parent.is_dir():
+        raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=str(path))
+    return ending
+
+
+def count_pictures(path: str | Path) -> tuple[int, Fraction]:
+    """Return how many pictures a video has and how many a second, without decoding them."""
+    module = _pyav()
+    try:
+        with module.open(str(path), format=None) as container:
+            stream = container.streams.video[0]
+            packets = [packet for packet in container.demux(stream) if packet.size]
+            times = sorted(packet.pts * packet.time_base for packet in packets if packet.pts is not None)
+    except (OSError, IndexError) as error:
+        raise DataError(f"cannot be read back: {reason(error)}", file=Path(path)) from None
+    rate = Fraction(stream.average_rate or 0)
+    if len(times) > 1:  # what is written is times; some formats round them to thousandths
+        mean = Fraction(len(times) - 1) / (times[-1] - times[0])
+        rate = rate if abs(mean / rate - 1) < Fraction(1, 100) else mean.limit_denominator(1001)
+    return len(packets), rate
+
+
+def _pyav() -> Any:
+    try:
+        import av
+    except ImportError:
+        raise ContextError(
+            'a video needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
+            "python -m pip install av; --frames writes PNG files without it"
+        ) from None
+    # What an encoder has to say goes nowhere: its errors are exceptions.
+    av.logging.set_level(av.logging.PANIC)
+    return av

@@ -1,0 +1,313 @@
+"""Videos and numbered pictures: the right pictures, all of them, in the right colours, whole or not there."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from collections import Counter
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.capture.film import Film, film_of, frames, render_video, write_film
+from playground.capture.sequence import render_sequence, write_sequence
+from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
+from playground.engine.engine import Engine
+from playground.errors import ContextError, DataError, ParameterError
+from playground.images.files import read_png, write_png
+from playground.sketch.load import load
+
+av = pytest.importorskip("av")
+
+CLOCK = """#version 330
+uniform vec2 u_resolution;
+uniform float u_time;
+uniform int iFrame;
+uniform float iTimeDelta;
+out vec4 colour;
+void main() { colour = vec4(u_time / 10.0, float(iFrame) / 255.0, iTimeDelta, 1.0); }
+"""
+KEYS = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+[[keyframe]]
+time = 0.0
+camera = { azimuth = 100.0 }
+set = { "light.sun" = [90, 20] }
+[[keyframe]]
+time = 0.4
+camera = { azimuth = 190.0 }
+set = { "light.sun" = [200, 60] }
+[view]
+use = "view/terrain"
+set = { grid = 9 }
+"""
+
+
+@pytest.fixture
+def clock(tmp_path: Path):
+    (tmp_path / "clock.frag").write_text(CLOCK, encoding="utf-8")
+    return load(tmp_path / "clock.frag")
+
+
+@pytest.fixture
+def keyed(tmp_path: Path):
+    (tmp_path / "keyed.toml").write_text(KEYS, encoding="utf-8")
+    return load(tmp_path / "keyed.toml")
+
+
+def decoded(path: Path) -> np.ndarray:
+    with av.open(str(path)) as container:
+        return np.stack(
+            [
+                frame.reformat(
+                    format="rgb24", src_colorspace="ITU709", src_color_range="MPEG", dst_color_range="JPEG"
+                ).to_ndarray()
+                if frame.format.name.startswith("yuv")
+                else frame.reformat(format="rgb24").to_ndarray()
+                for frame in container.decode(video=0)
+            ]
+        )
+
+
+# ── time ─────────────────────────────────────────────────────────────────────
+
+
+def test_a_picture_is_that_of_its_number(any_engine: Engine, clock):
+    film = film_of(clock, seconds=0.5, fps=20, size=(4, 2), start=1.0)
+    found = np.stack(list(frames(any_engine, film)))[:, 0, 0]
+    times = 1.0 + np.arange(10) / 20
+    np.testing.assert_allclose(found[:, 0] / 255, times / 10, atol=0.5 / 255)
+    np.testing.assert_array_equal(found[:, 1], np.arange(10))
+    np.testing.assert_allclose(found[:, 2] / 255, 0.05, atol=0.5 / 255)
+    assert any_engine.runner.frame == 0, "as it was"
+
+
+def test_keyframes_move_what_a_film_shows(any_engine: Engine, keyed):
+    film = film_of(keyed, fps=10, size=(64, 36))
+    assert film.count == 4, "to the last keyframe"
+    found = list(frames(any_engine, film))
+    for number, picture in enumerate(found):
+        alone = any_engine.render(keyed.at(film.time(number)), size=(64, 36))
+        np.testing.assert_array_equal(picture, alone.array)
+    assert all((one != other).any() for one, other in itertools.pairwise(found))
+
+
+def test_how_long_a_film_is(clock, keyed):
+    assert film_of(clock, seconds=2, fps=Fraction(30000, 1001)).count == 60
+    assert film_of(clock, seconds=2, fps=29.97).fps == Fraction(2997, 100)
+    with pytest.raises(ParameterError, match="how long"):
+        film_of(clock)
+    with pytest.raises(ParameterError, match="no keyframe after 9 s"):
+        film_of(keyed, start=9.0)
+    with pytest.raises(ParameterError, match="expected 1 to"):
+        film_of(clock, seconds=0.001)
+    with pytest.raises(ParameterError, match="pictures a second"):
+        film_of(clock, seconds=1, fps=0.0)
+
+
+@pytest.mark.slow
+def test_a_thousand_pictures_leave_as_many_objects_as_ten(any_engine: Engine, keyed, alive: Counter[str]):
+    film = Film(keyed, 10, Fraction(25), (32, 18))
+    list(frames(any_engine, film))
+    before, kept = Counter(alive), any_engine.cache.bytes
+    for number, _ in enumerate(frames(any_engine, Film(keyed, 1000, Fraction(2500), (32, 18)))):
+        assert number % 100 or alive == before
+    assert alive == before and any_engine.cache.bytes == kept
+
+
+def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str]):
+    list(frames(any_engine, Film(keyed, 5, Fraction(25), (32, 18))))
+    before, kept = Counter(alive), any_engine.cache.bytes
+    list(frames(any_engine, Film(keyed, 60, Fraction(150), (32, 18))))
+    assert alive == before and any_engine.cache.bytes == kept
+
+
+# ── what is in the file ──────────────────────────────────────────────────────
+
+
+def ramps(count: int, size=(128, 72)) -> list[np.ndarray]:
+    width, height = size
+    found = []
+    for number in range(count):
+        picture = np.full((height, width, 4), 255, np.uint8)
+        picture[..., 0] = np.linspace(0, 255, width)
+        picture[..., 1] = np.linspace(0, 255, height)[:, None]
+        picture[..., 2] = 255 * number // max(count - 1, 1)
+        found.append(picture)
+    return found
+
+
+@pytest.mark.parametrize(("ending", "worst"), [(".mp4", 2.0), (".webm", 2.0), (".gif", 12.0)])
+def test_colours_come_back(tmp_path: Path, ending: str, worst: float):
+    path, pictures = tmp_path / f"film{ending}", ramps(6)
+    with Video(path, (128, 72), Fraction(20), 6) as video:
+        for picture in pictures:
+            video.add(picture)
+    found = decoded(path)
+    assert found.shape == (6, 72, 128, 3)
+    error = np.abs(found.astype(int) - np.stack(pictures)[..., :3])
+    assert error.mean() < worst
+    assert abs(found.astype(float).mean() - np.stack(pictures)[..., :3].mean()) < 2.0, (
+        "neither darker nor paler"
+    )
+    assert count_pictures(path) == (6, Fraction(20))
+    assert [p.name for p in tmp_path.iterdir()] == [path.name], "nothing half written is left"
+
+
+@pytest.mark.parametrize("ending", [".mp4", ".webm"])
+def test_the_file_says_what_its_colours_mean(tmp_path: Path, ending: str):
+    path = tmp_path / f"film{ending}"
+    with Video(path, (64, 36), Fraction(30000, 1001), 3) as video:
+        for picture in ramps(3, (64, 36)):
+            video.add(picture)
+    with av.open(str(path)) as container:
+        context = container.streams.video[0].codec_context
+        marks = context.color_primaries, context.color_trc, context.colorspace, context.color_range
+        assert marks == (1, 1, 1, 1) and context.pix_fmt == "yuv420p"
+    assert count_pictures(path) == (3, Fraction(30000, 1001))
+
+
+def test_better_quality_is_nearer_and_larger(tmp_path: Path):
+    random = np.random.default_rng(2)
+    picture = random.integers(0, 256, (72, 128, 4), np.uint8)
+    sizes, errors = [], []
+    for quality in QUALITIES:
+        path = tmp_path / f"{quality}.mp4"
+        with Video(path, (128, 72), Fraction(10), 2, quality=quality) as video:
+            video.add(picture)
+            video.add(picture)
+        sizes.append(path.stat().st_size)
+        errors.append(np.abs(decoded(path).astype(int) - picture[..., :3]).mean())
+    assert sizes == sorted(sizes) and errors == sorted(errors, reverse=True) and sizes[0] < sizes[-1]
+
+
+# ── interrupted, failed, refused ─────────────────────────────────────────────
+
+
+def test_an_interrupted_video_is_a_shorter_one(any_engine: Engine, keyed, tmp_path: Path):
+    (tmp_path / "film.mp4").write_bytes(b"what was there")
+    shown = Counter()
+
+    def done() -> None:
+        shown.update(["picture"])
+        if shown["picture"] == 3:
+            raise KeyboardInterrupt
+
+    film = Film(keyed, 8, Fraction(10), (64, 36))
+    with pytest.raises(Stopped) as caught:
+        write_film(any_engine, film, tmp_path / "film.mp4", done=done)
+    path = tmp_path / "film-first-3.mp4"
+    assert caught.value.path == path and caught.value.count == 3
+    assert decoded(path).shape == (3, 36, 64, 3)
+    assert (tmp_path / "film.mp4").read_bytes() == b"what was there"
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_nothing_is_left_of_a_video_that_fails(tmp_path: Path):
+    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5):
+        raise KeyboardInterrupt
+    assert caught.value.path is None
+    with pytest.raises(ZeroDivisionError), Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
+        video.add(ramps(1, (64, 36))[0])
+        raise ZeroDivisionError
+    with (
+        pytest.raises(DataError, match="wrote 1 pictures"),
+        Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video,
+    ):
+        video.add(ramps(1, (64, 36))[0])
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "fps", "quality", "said"),
+    [
+        ("a.avi", (64, 36), 30, "high", "ending in .mp4 (H.264), .webm (VP9), .gif"),
+        ("a.mp4", (65, 36), 30, "high", "both must be even, as 66x36"),
+        ("a.mp4", (64, 36), 30, "hihg", "quality 'hihg': expected low, medium, high, best"),
+        ("a.gif", (64, 36), 30, "high", "choose one of 1, 2, 4, 5, 10, 20, 25, 50"),
+        ("no/a.mp4", (64, 36), 30, "high", "there is no folder"),
+        ("a.mp4", (32770, 36), 30, "high", "at most 16384 a side"),
+    ],
+)
+def test_what_cannot_be_written_is_a_sentence(tmp_path: Path, name, size, fps, quality, said):
+    with pytest.raises((DataError, ParameterError)) as caught:
+        Video(tmp_path / name, size, Fraction(fps), 1, quality=quality)
+    assert said in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_pyav_a_sentence_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(ContextError, match="pip install"):
+        Video(tmp_path / "a.mp4", (64, 36), Fraction(30), 1)
+
+
+def test_render_video_needs_no_engine(clock, tmp_path: Path):
+    path = render_video(clock, tmp_path / "a.mp4", seconds=0.1, fps=20, size=(32, 18))
+    assert decoded(path).shape == (2, 18, 32, 3)
+
+
+# ── numbered pictures ────────────────────────────────────────────────────────
+
+
+def test_numbered_pictures(any_engine: Engine, keyed, tmp_path: Path):
+    found = render_sequence(
+        keyed, tmp_path / "new" / "%03d.png", range(2, 5), fps=10, size=(64, 36), engine=any_engine
+    )
+    assert [path.name for path in found.drawn] == ["002.png", "003.png", "004.png"] and not found.kept
+    for number, path in enumerate(found.drawn, 2):
+        alone = any_engine.render(keyed, size=(64, 36), time=number / 10).array
+        np.testing.assert_array_equal(read_png(path)[0], alone)
+    assert len(list((tmp_path / "new").iterdir())) == 3
+
+
+def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed, tmp_path: Path):
+    pattern = tmp_path / "%d.png"
+    film = Film(keyed, 6, Fraction(20), (64, 36))
+    write_sequence(any_engine, film, pattern)
+    truth = [read_png(tmp_path / f"{n}.png")[0] for n in range(6)]
+    (tmp_path / "1.png").write_bytes((tmp_path / "1.png").read_bytes()[:-200])  # cut short
+    write_png(tmp_path / "2.png", truth[0])  # of something else
+    (tmp_path / "3.png").unlink()
+    (tmp_path / "4.png").write_bytes(b"")
+    before = (tmp_path / "0.png").stat().st_mtime_ns
+    found = write_sequence(any_engine, film, pattern, resume=True)
+    assert [path.name for path in found.kept] == ["0.png", "5.png"]
+    assert [path.name for path in found.drawn] == ["1.png", "2.png", "3.png", "4.png"]
+    assert (tmp_path / "0.png").stat().st_mtime_ns == before
+    for number in range(6):
+        np.testing.assert_array_equal(read_png(tmp_path / f"{number}.png")[0], truth[number])
+    # Another sketch or another time: no picture is the one wanted, but where nothing differs.
+    other = Film(keyed.with_values({"light.gain": 1.25}), 6, Fraction(20), (64, 36))
+    assert not write_sequence(any_engine, other, pattern, resume=True).kept
+    later = Film(other.sketch, 6, Fraction(20), (64, 36), start=0.1)
+    assert not write_sequence(any_engine, later, pattern, numbers=[0, 1], resume=True).kept
+    without = write_sequence(any_engine, other, pattern, numbers=[3], resume=False)
+    assert len(without.drawn) == 1
+
+
+@pytest.mark.parametrize("pattern", ["a.png", "%d", "%d-%d.png", "%s.png", "%5.2f.png", "%d.jpg", "%d%%.png"])
+def test_a_name_without_a_number_is_refused(any_engine: Engine, keyed, tmp_path: Path, pattern: str):
+    with pytest.raises(DataError, match=r"frames/%05d\.png"):
+        write_sequence(any_engine, Film(keyed, 1, Fraction(1), (8, 8)), tmp_path / pattern)
+
+
+def test_a_fingerprint_stands_for_the_picture(any_engine: Engine, keyed):
+    def of(sketch=keyed, **more):
+        return any_engine.fingerprint(sketch, **{"size": (64, 36), "time": 0.1, **more})
+
+    first = of()
+    any_engine.render(keyed, size=(64, 36), time=0.3)
+    assert of() == first
+    others = [of(time=0.2), of(size=(64, 38)), of(keyed.with_values({"view.haze": 0.5}))]
+    others.append(of(keyed.with_values({"height.seed": 99})))
+    assert len({first, *others}) == 5
+    assert of(time=0.4) == of(time=7.0), "after its last keyframe nothing changes"

@@ -1,0 +1,210 @@
+"""A picture drawn part by part is the picture drawn whole."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.capture.large import TILE, count_tiles, is_large, strips, tiles_of, write_large
+from playground.engine.engine import Engine
+from playground.engine.plan import Window
+from playground.errors import ParameterError, SketchError
+from playground.gpu.textures import read_picture
+from playground.images.files import read_png
+from playground.sketch.load import load
+
+SIZE, TILES = (640, 360), (100, 70)
+SMALL = {"size": 129}
+
+PLAIN = """#version 330
+uniform vec3 iResolution;
+uniform float iTime;
+out vec4 colour;
+void main() {
+    vec2 place = gl_FragCoord.xy / iResolution.xy;
+    float rings = sin(40.0 * distance(place, vec2(0.4, 0.6)) + iTime);
+    colour = vec4(place, 0.5 + 0.5 * rings, 1.0) + 0.001 * dFdx(gl_FragCoord.x);
+}
+"""
+VIEW = """#pragma kernel(output = "frame:rgba8")
+uniform sampler2D shown;  //! input
+{above}
+vec4 kernel(ivec2 texel) {{
+    {body}
+}}
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[[pass]]
+name = "first"
+use = "view/map"
+inputs = {{ shown = "height" }}
+[view]
+use = "./both"
+inputs = {{ height = "height" }}
+"""
+BOTH = """format = 1
+[[pass]]
+name = "first"
+use = "view/map"
+[[pass]]
+name = "last"
+use = "./last"
+inputs = {{ shown = "first" }}
+[inputs]
+height = "first.shown"
+"""
+
+
+def together(engine: Engine, sketch, size=SIZE, tile=TILES, **more) -> np.ndarray:
+    return np.concatenate(list(strips(engine, sketch, size, tile=tile, **more)))
+
+
+def two_passes(folder: Path, body: str, above: str = ""):
+    (folder / "sketch.toml").write_text(SKETCH.format().replace("{{", "{"), encoding="utf-8")
+    (folder / "both.toml").write_text(BOTH.format(), encoding="utf-8")
+    (folder / "last.glsl").write_text(VIEW.format(body=body, above=above), encoding="utf-8")
+    return load(folder)
+
+
+# ── exactly the same ─────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("name", ["contours_map", "white_noise_image", "profile", "diamond_square_steps"])
+def test_kernels_give_the_same_bytes(any_engine: Engine, name: str):
+    sketch = load(name)
+    whole = any_engine.render(sketch, size=SIZE).array
+    np.testing.assert_array_equal(together(any_engine, sketch), whole)
+    np.testing.assert_array_equal(together(any_engine, sketch, tile=(640, 64)), whole)
+
+
+def test_a_plain_shader_gives_the_same_bytes(any_engine: Engine, tmp_path: Path):
+    (tmp_path / "plain.frag").write_text(PLAIN, encoding="utf-8")
+    sketch = load(tmp_path / "plain.frag")
+    whole = any_engine.render(sketch, size=SIZE, time=1.5).array
+    np.testing.assert_array_equal(together(any_engine, sketch, time=1.5), whole)
+
+
+def test_both_drivers_give_the_same_bytes(engine: Engine, tmp_path: Path):
+    place = "vec2(texel) / vec2(textureSize(shown, 0))"
+    body = f"return vec4({place}, texelFetch(shown, texel, 0).r, 1.0);"
+    sketch = two_passes(tmp_path, body)
+    whole = engine.render(sketch, size=(90, 50)).array
+    assert whole[..., 2].std() > 10
+    np.testing.assert_array_equal(together(engine, sketch, (90, 50), (32, 24)), whole)
+
+
+# ── as good as the same ──────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("zoomed", [False, True], ids=["viewport", "stretched"])
+@pytest.mark.parametrize("name", ["jacksboro", "geomipmap"])
+def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: str, zoomed: bool):
+    """Rounding of single precision from another corner: few pixels, little, and anywhere."""
+    sketch = load(name).with_values(SMALL)
+    whole = any_engine.render(sketch, size=SIZE).array.astype(int)
+    if zoomed:  # as where the driver's viewports are smaller than the picture
+        any_engine.runner.draws.widest = (64, 64)
+    apart = np.abs(together(any_engine, sketch) - whole).max(axis=2)
+    assert np.count_nonzero(apart) < 0.002 * apart.size
+    assert apart.mean() < 0.005, "of 255 levels"
+    assert apart.max() <= 32
+    seams = np.zeros(apart.shape, bool)
+    for x in range(TILES[0], SIZE[0], TILES[0]):
+        seams[:, x - 1 : x + 1] = True
+    for y in range(TILES[1], SIZE[1], TILES[1]):
+        seams[SIZE[1] - y - 1 : SIZE[1] - y + 1] = True
+    assert apart[seams].mean() < 0.02, "no more there than elsewhere"
+
+
+def test_levels_of_detail_are_those_of_the_whole_picture(any_engine: Engine):
+    """The mesh chosen by pixels is that of the whole: a tile of its own size would take a coarser one."""
+    sketch = load("geomipmap").with_values(SMALL)
+    any_engine.render(sketch, size=SIZE)
+    triangles = any_engine.runner.draws.triangles
+    list(strips(any_engine, sketch, SIZE, tile=TILES))
+    assert any_engine.runner.draws.triangles == triangles
+
+
+# ── sizes, memory, files ─────────────────────────────────────────────────────
+
+
+def test_tiles_cover_a_picture_once():
+    seen = np.zeros((361, 643), int)
+    for row in tiles_of((643, 361), TILES):
+        for tile in row:
+            (x, y), (width, height) = tile.origin, tile.size
+            assert tile.whole == (643, 361) and x % 2 == y % 2 == 0
+            seen[y : y + height, x : x + width] += 1
+    assert (seen == 1).all()
+    assert count_tiles((643, 361), TILES) == 7 * 6
+    with pytest.raises(ParameterError, match="even"):
+        tiles_of(SIZE, (99, 70))
+
+
+def test_what_is_large(any_engine: Engine):
+    assert not is_large(any_engine, (3840, 2160))
+    assert is_large(any_engine, (7680, 4320)) and is_large(any_engine, (20000, 2))
+
+
+def test_a_picture_wider_than_any_texture(any_engine: Engine, tmp_path: Path):
+    """20,000 pixels: its columns are those of a small picture, each eight times."""
+    sketch = load("white_noise_image")
+    done = Counter()
+    path = write_large(
+        any_engine, sketch, tmp_path / "wide.png", (20000, 6), done=lambda: done.update(["tile"])
+    )
+    pixels, _ = read_png(path)
+    assert pixels.shape == (6, 20000, 4) and done["tile"] == count_tiles((20000, 6)) == -(-20000 // TILE[0])
+
+
+def test_the_far_end_of_a_picture_wider_than_any_viewport(any_engine: Engine):
+    """16,640 pixels: what is there is what a tenth of the size shows there, pixel by hundred pixels."""
+    sketch = load("jacksboro").with_values(SMALL)
+    window = Window((16000, 100), (640, 100), (16640, 9360))
+    texture = any_engine.draw_window(sketch, window)
+    wide = read_picture(texture)[..., :3].astype(float)
+    small = any_engine.render(sketch, size=(1664, 936)).array[-20:-10, 1600:, :3]
+    means = wide.reshape(10, 10, 64, 10, 3).mean(axis=(1, 3))
+    assert small.std() > 5, "there is something to see"
+    assert np.abs(means - small).mean() < 3.0
+    assert np.abs(means - small).mean() < 0.5 * np.abs(means[:, ::-1] - small).mean()
+
+
+def test_nothing_is_left_of_a_picture_that_fails(any_engine: Engine, tmp_path: Path):
+    sketch = two_passes(tmp_path, "return texelFetch(shown, texel + 1, 0);")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    with pytest.raises(SketchError, match="cannot be drawn in parts"):
+        write_large(any_engine, sketch, folder / "a.png", (64, 64), tile=(32, 32))
+    assert not list(folder.iterdir())
+
+
+def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Counter[str]):
+    sketch = load("l_dot_n")
+    list(strips(any_engine, sketch, (64, 36), tile=(32, 18)))
+    before = Counter(alive)
+    list(strips(any_engine, sketch, (128, 72), tile=(32, 18)))
+    assert alive == before
+
+
+@pytest.mark.parametrize(
+    ("body", "above", "said"),
+    [
+        ("return texelFetch(shown, texel + 1, 0);", "", "it reads 'shown' elsewhere than at its own texel"),
+        ("return textureLod(shown, vec2(0.5), 0.0);", "", "it reads 'shown' elsewhere"),
+        ("texel += 1; return texelFetch(shown, texel, 0);", "", "it changes its 'texel'"),
+        ("return of(texel);", "vec4 of(ivec2 texel) { return texelFetch(shown, texel, 0); }", "elsewhere"),
+    ],
+)
+def test_what_reads_its_neighbours_is_refused(any_engine: Engine, tmp_path: Path, body, above, said):
+    sketch = two_passes(tmp_path, body, above)
+    with pytest.raises(SketchError, match=r"pass 'view.last' cannot be drawn in parts") as caught:
+        together(any_engine, sketch, (64, 64), (32, 32))
+    assert said in str(caught.value) and caught.value.diagnostics[0].file.endswith("both.toml")
