@@ -1,0 +1,184 @@
+"""``playground render`` for films, numbered pictures, sweeps and large pictures, as a user meets it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from playground import cli
+from playground.images.files import read_png
+
+ROOT = Path(__file__).resolve().parents[2]
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+[view]
+use = "view/terrain"
+set = { grid = 9 }
+[[keyframe]]
+time = 0.0
+set = { "light.gain" = 1.0 }
+[[keyframe]]
+time = 0.5
+set = { "light.gain" = 2.0 }
+[[shot]]
+name = "late"
+time = 0.3
+size = [48, 28]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "land.toml").write_text(SKETCH, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
+    status = cli.main(["render", "land.toml", *words])
+    out, err = capsys.readouterr()
+    assert status == 0, err
+    return out.splitlines()
+
+
+def test_a_video(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("av")
+    from playground.capture.video import count_pictures
+
+    assert run(capsys, "--video", "a.mp4", "--size", "64x36", "--fps", "20") == ["a.mp4"]
+    assert count_pictures(folder / "a.mp4") == (10, Fraction(20)), "to the last keyframe"
+    run(capsys, "--video", "b.gif", "--shot", "late", "--seconds", "0.3", "--fps", "10")
+    assert count_pictures(folder / "b.gif")[0] == 3
+    assert run(capsys, "--video", "c.webm", "--sweep", "light.gain=1..3", "-n", "4", "--size", "64x36")
+    assert count_pictures(folder / "c.webm") == (4, Fraction(4))
+
+
+def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("--frames", "3..5", "--fps", "10", "-o", "new/f%03d.png", "--size", "64x36")
+    paths = [Path(line) for line in run(capsys, *words)]
+    assert [path.as_posix() for path in paths] == ["new/f003.png", "new/f004.png", "new/f005.png"]
+    (folder / "new" / "f004.png").unlink()
+    before = paths[0].stat().st_mtime_ns
+    assert cli.main(["render", "land.toml", *words, "--resume"]) == 0
+    out, err = capsys.readouterr()
+    assert out.count("\n") == 3 and "2 pictures kept, 1 drawn" in err
+    assert paths[0].stat().st_mtime_ns == before and paths[1].is_file()
+    assert [Path(p).name for p in run(capsys, "--frames", "0", "-o", "new")] == ["00000.png"]
+
+
+def test_a_sheet(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "--sweep", "light.sun.elevation=5..60", "-n", "4", "--size", "64x36") == [
+        "land-sweep.png"
+    ]
+    assert read_png(folder / "land-sweep.png")[0].shape[1] == 2 * 72 + 8
+    run(capsys, "--sweep", "light.gain=1,2", "--sweep", "view.haze=0,1,2", "--size", "64x36", "-o", "b.png")
+    assert read_png(folder / "b.png")[0].shape[0] > 3 * 36
+
+
+def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "--size", "17000x20", "-o", "wide.png") == ["wide.png"]
+    pixels = read_png(folder / "wide.png")[0]
+    assert pixels.shape == (20, 17000, 4) and pixels[..., :3].std() > 5
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--seconds", "3"], "--seconds needs --video FILE"),
+        (["--quality", "low"], "--quality needs --video FILE"),
+        (["--fps", "3"], "--fps needs --video or --frames"),
+        (["--resume"], "--resume needs --frames FIRST..LAST"),
+        (["-n", "3"], "-n needs --sweep"),
+        (["--video", "a.mp4", "--frames", "0..2"], "a film is one file, or many"),
+        (["--video", "a.mp4", "-o", "b.mp4"], "--video says which file to write"),
+        (["--sweep", "light.gain=1..2", "--frames", "0..2"], "--sweep and --frames"),
+        (["--video", "a.mp4", "--texture", "height"], "--texture is for one pass's values"),
+        (["--frames", "0..2", "--profile"], "--profile is for one picture"),
+        (["--video", "a.mp4", "--seconds", "none"], "--seconds none: expected a number above 0"),
+        (["--video", "a.mp4", "--fps", "0"], "--fps 0: expected pictures a second"),
+        (["--video", "a.mp4", "--size", "65x36"], "both must be even, as 66x36"),
+        (["--video", "a.mov"], "a video is written to a name ending in"),
+        (["--video", "a.gif"], "a GIF cannot show 30 pictures a second"),
+        (["--video", "no/a.mp4"], "there is no folder 'no'"),
+        (["--video", "a.mp4", "--quality", "hgih"], "quality 'hgih': expected low, medium, high, best"),
+        (["--frames", "5..2"], "--frames 5..2: expected FIRST..LAST"),
+        (["--frames", "0..2", "-o", "a.png"], "a.png: expected a name for numbered files"),
+        (["--sweep", "light.gian=1..2"], "did you mean 'light.gain'?"),
+        (["--sweep", "light.gain=1..2", "-n", "1"], "-n 1: expected a whole number from 2"),
+        (["--sweep", "light.gain=1..2", "-o", "a.jpg"], "a sheet is written to a name ending in .png"),
+        (["--size", "70000x20"], "1 to 65536 pixels"),
+        (["--set", "light.gain=1", "--video", "a.mp4", "--time", "4"], "no keyframe after 4 s"),
+    ],
+)
+def test_a_mistake_is_one_sentence(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    status = cli.main(["render", "land.toml", *words])
+    out, err = capsys.readouterr()
+    assert status == 2 and out == "" and said in err
+    assert err.startswith("error: ") and "Traceback" not in err
+    assert [path.name for path in folder.iterdir()] == ["land.toml"]
+
+
+def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["render", "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "--sweep light.sun.elevation=5..60 -n 12" in out and "--video flight.mp4" in out
+
+
+@pytest.fixture
+def film(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    command = [sys.executable, "-m", "playground", "render", "land.toml", "--video", "long.mp4"]
+    process = subprocess.Popen(
+        [*command, "--seconds", "9000", "--size", "64x36"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    yield process
+    process.kill()
+    process.wait()
+    for stream in (process.stdout, process.stderr):
+        assert stream is not None
+        stream.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
+def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]) -> None:
+    pytest.importorskip("av")
+    import time
+
+    from playground.capture.video import count_pictures
+
+    end = time.monotonic() + 120
+    # The first bytes are in the file once some pictures are encoded; then it is well under way.
+    while time.monotonic() < end and film.poll() is None:
+        if any(part.stat().st_size > 0 for part in folder.glob(".long.mp4.*")):
+            break
+        time.sleep(0.05)
+    time.sleep(1.0)
+    film.send_signal(signal.SIGINT)
+    out, err = film.communicate(timeout=120)
+    assert film.returncode == 130 and out == "" and "Traceback" not in err
+    left = sorted(path.name for path in folder.iterdir())
+    if "before the first" in err:  # on a machine so slow that no picture was drawn in time
+        assert left == ["land.toml"]
+        return
+    assert err.startswith("stopped; the first ")
+    (path,) = folder.glob("long-first-*.mp4")
+    assert count_pictures(path)[0] == int(path.stem.rpartition("-")[2]) and len(left) == 2
