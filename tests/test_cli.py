@@ -180,7 +180,7 @@ def test_completion_offers_the_shipped_sketches(run: Run):
         (["render", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
         (["render", "no/such.toml"], "there is no file and no shipped sketch 'no/such.toml'"),
         (["render", "empty"], "this folder holds no sketch.toml"),
-        (["render", "--size", "12"], "--size 12: expected width and height, 1 to 16384 pixels, as 1280x720"),
+        (["render", "--size", "12"], "--size 12: expected width and height, 1 to 65536 pixels, as 1280x720"),
         (["render", "--size", "0x20"], "--size 0x20: expected"),
         (["render", "--size", "-3x20"], "--size -3x20: expected"),
         (["render", "--size", "99999x2"], "--size 99999x2: expected"),
