@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Window
-from playground.errors import ParameterError
+from playground.errors import ParameterError, SketchError
 from playground.gpu.textures import read_picture
 from playground.images.files import replacing
 from playground.images.png_strips import PngStrips
@@ -31,11 +31,22 @@ MOST_WHOLE = 2**23
 """Pixels of a picture that is drawn whole: its samples and their depths take 12 bytes each."""
 
 
-def is_large(engine: Engine, size: tuple[int, int]) -> bool:
-    """Say whether a picture is drawn in parts: more than 3840 x 2160, or than the driver's textures hold."""
+def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
+    """Say whether a picture is drawn in parts.
+
+    More than the driver's textures hold must be; more than 3840 x 2160 is, where the sketch's
+    passes allow it.
+    """
     limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
-    longest = min(int(engine.ctx.info[name]) for name in limits)
-    return size[0] * size[1] > MOST_WHOLE or max(size) > longest
+    if max(size) > min(int(engine.ctx.info[name]) for name in limits):
+        return True
+    if size[0] * size[1] <= MOST_WHOLE:
+        return False
+    try:
+        engine.plan_for_window(sketch, tiles_of(size)[0][0])
+    except SketchError:
+        return False  # drawing it whole says what else may be wrong
+    return True
 
 
 def tiles_of(size: tuple[int, int], tile: tuple[int, int] = TILE) -> list[list[Window]]:

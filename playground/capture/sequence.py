@@ -88,7 +88,7 @@ def write_sequence(
 def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) -> None:
     text, time = {MADE_OF: made_of}, film.time(number)
     with telling(engine, film, number):
-        if is_large(engine, film.size):
+        if is_large(engine, film.sketch, film.size):
             write_large(engine, film.sketch, path, film.size, time=time, steps=film.steps, text=text)
         else:
             frame = engine.render(film.sketch, size=film.size, time=time, steps=film.steps)

@@ -251,7 +251,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     ):
         from playground.capture.large import is_large
 
-        if not picture.texture and is_large(engine, size):
+        if not picture.texture and is_large(engine, sketch, size):
             if picture.profile:
                 raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
             _draw_large(engine, moment, size, target, picture.output == "-")

@@ -185,11 +185,22 @@ class Engine:
         The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
+        plan = self.plan_for_window(sketch, window, time, steps)
+        view = plan.flat.outputs["view"]
+        return self._texture(plan, next(iter(view.values())))
+
+    def plan_for_window(
+        self,
+        sketch: Sketch | str | Path,
+        window: Window,
+        time: float = 0.0,
+        steps: Mapping[str, int] | None = None,
+    ) -> Plan:
+        """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
         found, (width, height) = opened(sketch), window.whole
         plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE)
         other = self.plan_for(found, (width + 1, height + 1), time, steps, largest=LARGEST_PICTURE + 1)
-        view = plan.flat.outputs["view"]
-        return self._texture(windowed(plan, other, window), next(iter(view.values())))
+        return windowed(plan, other, window)
 
     def texture(
         self,

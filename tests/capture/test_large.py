@@ -148,9 +148,13 @@ def test_tiles_cover_a_picture_once():
         tiles_of(SIZE, (99, 70))
 
 
-def test_what_is_large(any_engine: Engine):
-    assert not is_large(any_engine, (3840, 2160))
-    assert is_large(any_engine, (7680, 4320)) and is_large(any_engine, (20000, 2))
+def test_what_is_large(any_engine: Engine, tmp_path: Path):
+    land = load("l_dot_n")
+    assert not is_large(any_engine, land, (3840, 2160))
+    assert is_large(any_engine, land, (7680, 4320)) and is_large(any_engine, land, (20000, 2))
+    blurred = two_passes(tmp_path, "return texelFetch(shown, texel + 1, 0);")
+    assert not is_large(any_engine, blurred, (7680, 4320)), "its textures still hold that"
+    assert is_large(any_engine, blurred, (20000, 2)), "to be refused in a sentence"
 
 
 def test_a_picture_wider_than_any_texture(any_engine: Engine, tmp_path: Path):
