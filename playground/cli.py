@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
-from playground.commands import check, doctor, export, fly, listing, live, new, render, shots
+from playground.commands import check, doctor, export, fly, listing, live, new, reduce, render, shots
 from playground.commands.arguments import (
     DeviceOption,
     Renderer,
@@ -155,6 +155,7 @@ app.command("render", help=render.HELP)(render.render)
 app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
+app.command("reduce", help=reduce.HELP)(reduce.reduce)
 app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("new", help=new.HELP)(new.new)

@@ -22,6 +22,7 @@ LAYERS = (
     ("commands",),
     ("terminal",),
     ("live",),
+    ("reduce",),
     ("shots",),
     ("lessons",),
     ("capture", "flight", "templates"),

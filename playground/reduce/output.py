@@ -1,0 +1,177 @@
+"""Write what is left into a folder: a sketch that reproduces the failure, and a text that says how."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from shlex import quote as quoted
+
+from playground._version import __version__
+from playground.errors import DataError, counted
+from playground.gpu.context import ContextInfo
+from playground.gpu.wrap import wrap
+from playground.images.files import replacing
+from playground.paths import shown
+from playground.reduce.case import SHOT, Case, copied
+from playground.reduce.child import Task
+from playground.reduce.faults import Commanded, Died, Fault, Finding, Refused
+from playground.reduce.probe import Probe
+from playground.reduce.start import Question
+from playground.reduce.worker import Worker
+from playground.sketch.load import load
+from playground.sketch.model import kernels_of
+
+RECORD = "reduced.json"
+"""The file by which a folder is known to be one of ours."""
+
+
+@dataclass(frozen=True, eq=False)
+class Account:
+    """What the text in the folder says."""
+
+    asked: str  # the command line
+    sketch: str
+    before: Case
+    after: Case
+    finding: Finding
+    renderers: tuple[ContextInfo, ...]
+    environments: tuple[Mapping[str, str], ...]
+    tries: int
+    seconds: float
+    finished: bool  # nothing more goes; else it was stopped
+    reproduce: tuple[str, ...]  # commands
+
+
+def claim(folder: Path) -> None:
+    """See that a folder can be written: it is not there, is empty, or an earlier one of ours."""
+    if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+        raise DataError("is no folder; choose another name with -o", file=shown(folder))
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / RECORD).is_file():
+        raise DataError(
+            "this folder holds other things, and nothing is overwritten; choose another with -o",
+            file=shown(folder),
+        )
+    if not folder.parent.is_dir():
+        raise DataError(f"there is no folder '{folder.parent}' to make it in", file=shown(folder))
+
+
+def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> list[Path]:
+    """Write the folder, and some texts ``more``, and return its files.
+
+    The files of an earlier one of ours go, any others stay.
+
+    Raises ``DataError`` where it cannot be written.
+    """
+    claim(folder)
+    texts = account.after.texts()
+    data = copied(account.after.files, texts)
+    texts |= {"README.txt": told(account), **more}
+    names = sorted([*texts, *(name for name, _ in data), RECORD])
+    try:
+        folder.mkdir(exist_ok=True)
+        for name in set(_earlier(folder)) - set(names):
+            (folder / name).unlink(missing_ok=True)
+        record = {"playground": __version__, "sketch": account.sketch, "files": names}
+        texts[RECORD] = json.dumps(record, indent=2) + "\n"
+        for name, text in texts.items():
+            _write(folder / name, text)
+        for name, source in data:
+            shutil.copyfile(source, folder / name)
+    except OSError as error:
+        raise DataError(f"cannot be written: {error.strerror}", file=shown(folder)) from error
+    return [folder / name for name in names]
+
+
+def _write(path: Path, text: str) -> None:
+    with replacing(path) as handle:
+        handle.write(text.encode())
+
+
+def _earlier(folder: Path) -> list[str]:
+    """Return the names of the files that an earlier run wrote, none that lead elsewhere."""
+    try:
+        names = json.loads((folder / RECORD).read_text(encoding="utf-8"))["files"]
+        return [name for name in names if isinstance(name, str) and Path(name).name == name]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def told(account: Account) -> str:
+    """Return the text that goes with a report of the failure."""
+    before, after = account.before, account.after
+    lines = [
+        f"{account.sketch}, reduced: {account.finding.word}",
+        "",
+        f"    {account.finding.told.strip()}".replace("\n", "\n    "),
+        "",
+        "To see it:",
+        "",
+        *(f"    {command}" for command in account.reproduce),
+        "",
+        f"Looked at: pass '{after.target}', the last of {len(after.live)}.",
+        f"Reduced from {before.lines} to {counted(after.lines, 'line')} of GLSL,"
+        f" from {before.settings} to {counted(after.settings, 'parameter')},"
+        f" from {len(before.live)} to {len(after.live)} passes,"
+        f" in {account.tries} tries and {account.seconds:.0f} s.",
+        "Nothing more goes: without any one of its lines it fails no more, or otherwise."
+        if account.finished
+        else "It was stopped before nothing more went: it may be shortened further.",
+        "",
+    ]
+    for index, info in enumerate(account.renderers):
+        name = "Renderer" if len(account.renderers) == 1 else f"Renderer {index + 1}"
+        lines += [f"{name}:", f"    {info.renderer}", f"    {info.version}", f"    {info.vendor}"]
+        environment = account.environments[index] if index < len(account.environments) else {}
+        lines += [f"    {key}={value}" for key, value in environment.items()]
+    lines += ["", f"Made by terrain-shader-playground {__version__}:", f"    {account.asked}", ""]
+    return "\n".join(lines)
+
+
+def to_reproduce(question: Question, folder: Path, case: Case, fault: Fault) -> tuple[str, ...]:
+    """Return the commands that show the failure of what is left, from the folder that holds the folder."""
+    name = quoted(folder.name)
+    if isinstance(fault, Commanded):
+        return (f"cd {name}", fault.command)
+    place = name if case.file == "sketch.toml" else f"{name}/{case.file}"
+    shot = f" --shot {SHOT}" if case.file == "sketch.toml" else ""
+    look = "" if fault.as_picture or not shot else f" --texture {case.target}"
+    ending = ".npy" if look else ".png"
+    found = []
+    for index, side in enumerate(fault.sides):
+        other = index > 0 and question.kind == "against"
+        pairs = question.environment.items() if other else ()
+        device = question.other_device if other and question.other_device is not None else question.device
+        before = "".join(f"{key}={quoted(value)} " for key, value in pairs)
+        options = f" --driver {side.driver}" if side.driver != "auto" else ""
+        options += " --software" if question.software else ""
+        options += f" --device {device}" if device is not None else ""
+        number = "" if len(fault.sides) == 1 else f"-{index + 1}"
+        command = f"playground render {place}{shot}{look}{options} -o {SHOT}{number}{ending}"
+        found.append(before + command)
+    return tuple(found)
+
+
+def plain_texts(case: Case, probe: Probe, finding: Finding, worker: Worker) -> dict[str, str]:
+    """Return the reduced pass as the driver sees it, all wrapping in place, if that still fails so.
+
+    By file name; empty where the plain shader does not fail in the same way. The probe's
+    folder must hold the case. Raises ``DataError`` for a fault that is not the compiler's.
+    """
+    fault = probe.fault
+    if not isinstance(fault, Refused | Died):
+        raise DataError("--plain is for what the compiler refuses, or dies of")
+    graph = load(probe.folder / case.file).graph
+    kernel = next(kernel for path, kernel in kernels_of(graph) if path in (case.target, "view"))
+    driver = fault.sides[0].driver
+    stages = wrap(kernel, driver).stages
+    endings = {"vertex": ".vert", "fragment": ".frag", "compute": ".comp"}
+    texts = {f"plain{endings[stage]}": stages[stage].text for stage in stages}
+    for name, text in texts.items():
+        (probe.folder / name).write_text(text, encoding="utf-8")
+    opened = "plain.frag" if "plain.frag" in texts else "plain.comp"
+    seen = worker.look(Task(str(probe.folder / opened), "", driver, case.frame, case.time))
+    after = fault.found([seen])
+    return texts if after is not None and after.word == finding.word else {}

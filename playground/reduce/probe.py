@@ -1,0 +1,97 @@
+"""From a case to what came of it: written into a folder, drawn in each way that its fault asks for."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from playground.errors import ParameterError
+from playground.reduce.case import SHOT, Case, copied
+from playground.reduce.child import Seen, Task
+from playground.reduce.faults import Commanded, Fault, Finding
+from playground.reduce.worker import Worker
+
+CANNOT_SAY = 125
+"""Exit status of a command that cannot judge a candidate, as ``git bisect run`` has it."""
+
+
+class Probe:
+    """Tries cases against one fault."""
+
+    def __init__(self, fault: Fault, workers: Sequence[Worker], folder: Path, limit: float) -> None:
+        self.fault = fault
+        self.folder = folder
+        self.limit = limit  # [s] of a command
+        self._workers = workers
+        self._written: dict[str, str] = {}
+
+    def find(self, case: Case) -> Finding | None:
+        """Return how a case fails; None where it does not, or not in this way."""
+        self.write(case)
+        if isinstance(self.fault, Commanded):
+            return self._commanded(self.fault.command)
+        seen: list[Seen] = []
+        for side in self.fault.sides:
+            task = task_of(case, str(self.folder / case.file), side.driver, self.fault.as_picture)
+            seen.append(self._workers[side.worker].look(task))
+            if seen[-1].word == "refused":
+                return None
+        return self.fault.found(seen)
+
+    def renew(self) -> None:
+        """Let the next case meet fresh processes."""
+        for worker in self._workers:
+            worker.renew()
+
+    def write(self, case: Case) -> None:
+        """Let the folder hold this case, and only it."""
+        texts = case.texts()
+        for name in self._written.keys() - texts.keys():
+            (self.folder / name).unlink(missing_ok=True)
+        for name, text in texts.items():
+            if self._written.get(name) != text:
+                (self.folder / name).write_text(text, encoding="utf-8")
+        for name, source in copied(case.files, texts):
+            if not (self.folder / name).exists():
+                shutil.copyfile(source, self.folder / name)
+        self._written = texts
+
+    def _commanded(self, command: str) -> Finding | None:
+        """Run the user's command in the folder: status 0 is good, 125 no answer, up to 127 a failure."""
+        try:
+            done = subprocess.run(
+                command,
+                shell=True,
+                cwd=self.folder,
+                env={**os.environ, "PLAYGROUND_SHOT": SHOT},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                timeout=self.limit,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return None
+        status = done.returncode
+        if status < 0 or status > 127:
+            raise ParameterError(
+                f"--command ended with status {status}: expected 0 where all is well, 1 to 127 where it"
+                f" fails, {CANNOT_SAY} where it cannot say"
+            )
+        if sys.platform != "win32" and status in (126, 127):
+            raise ParameterError(f"--command could not be run: the shell ended with status {status}")
+        return (
+            None if status in (0, CANNOT_SAY) else Finding("fails", f"the command ended with status {status}")
+        )
+
+
+def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> Task:
+    """Return what a worker is asked of a case that lies in a file."""
+    names = {one.name for one in case.live}
+    steps = tuple((path, turns) for path, turns in case.steps if path in names)
+    ref = "" if as_picture else "view" if case.file != "sketch.toml" else case.target
+    return Task(sketch, ref, driver, case.frame, case.time, steps)

@@ -1,0 +1,310 @@
+"""What is tried, in which order, until nothing more goes.
+
+From large to small: passes, what is set, sizes, then the texts, by lines and blocks, by
+expressions, by headers. A text that got smaller may free a pass, so it all begins again
+until one whole round changes nothing. The order is always the same, and no candidate is
+tried twice.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+
+from playground.reduce import blocks, edits
+from playground.reduce.case import Case, Pass, glsl_of
+from playground.reduce.ddmin import ddmin
+from playground.reduce.faults import Finding
+from playground.reduce.probe import Probe
+from playground.reduce.tokens import tidy, tokens_of
+from playground.sketch.model import Camera
+
+_OUTPUTS = re.compile(r'\boutput\s*=\s*"([^"]*)"')
+_UNIFORM = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)", re.MULTILINE)
+_SMALLEST = 2  # texels or pixels a side
+
+
+@dataclass(frozen=True)
+class State:
+    """How far the search is."""
+
+    what: str
+    lines: int
+    tries: int
+    repeated: int  # candidates known from before
+    seconds: float
+
+
+class Enough(Exception):
+    """The limit of time or of tries is reached."""
+
+
+class Search:
+    """Shrinks one case; ``best`` is the smallest found so far, whatever ends the search."""
+
+    def __init__(
+        self,
+        case: Case,
+        finding: Finding,
+        probe: Probe,
+        *,
+        seconds: float = 0.0,
+        tries: int = 0,
+        tell: Callable[[State], None] = lambda state: None,
+    ) -> None:
+        self.best = case
+        self.finding = finding  # of the best
+        self.finished = False
+        self.tries = self.repeated = 0
+        self._probe = probe
+        self._limit, self._most = seconds, tries  # 0: none
+        self._tell = tell
+        self._known: dict[bytes, bool] = {}
+        self._start = time.monotonic()
+        self._what = ""
+        self._undefined = _undefined(case)
+
+    @property
+    def state(self) -> State:
+        """How far it is."""
+        return State(self._what, self.best.lines, self.tries, self.repeated, time.monotonic() - self._start)
+
+    def run(self) -> bool:
+        """Shrink until nothing more goes, or a limit is reached; say whether nothing more goes."""
+        try:
+            while True:
+                before = self.best
+                self._round()
+                if self.best == before:
+                    self.finished = True
+                    return True
+        except Enough:
+            return False
+
+    def holds(self, case: Case, *, resized: bool = False) -> bool:
+        """Say whether a case fails as the best one does, and let it be the best if so.
+
+        ``resized``: its texels are others, so what is wrong is known by its place anew.
+        """
+        key = hashlib.blake2b("\0".join(f"{k}\0{v}" for k, v in case.texts().items()).encode()).digest()
+        known = self._known.get(key)
+        if known is not None:
+            self.repeated += 1
+            # What held may have been taken back by no one: it is a former best, or the best itself.
+            if known:
+                self.best = case
+            return known
+        if self._limit and time.monotonic() - self._start > self._limit:
+            raise Enough
+        if self._most and self.tries >= self._most:
+            raise Enough
+        if not _undefined(case) <= self._undefined:
+            self._known[key] = False
+            return False
+        self.tries += 1
+        finding = self._probe.find(case)
+        holds = finding is not None and self._probe.fault.same(self.finding, finding)
+        self._known[key] = holds
+        if holds:
+            assert finding is not None
+            if resized:
+                self.finding = finding
+            self.best = case
+        self._tell(self.state)
+        return holds
+
+    def confirmed(self) -> Finding | None:
+        """Return how the best fails in fresh processes; None where it does not, or otherwise."""
+        self._probe.renew()
+        finding = self._probe.find(self.best)
+        return finding if finding is not None and self._probe.fault.same(self.finding, finding) else None
+
+    # ── one round ────────────────────────────────────────────────────────────
+
+    def _round(self) -> None:
+        # A small picture first: all that follows is then tried on it.
+        self._begin("sizes")
+        self._sizes()
+        self._begin("passes")
+        self._stand_ins()
+        self._begin("settings")
+        self._settings()
+        for name in [one.name for one in reversed(self.best.live)]:
+            for what, shrink in (("lines", self._lines), ("expressions", self._expressions)):
+                if any(one.name == name for one in self.best.live):
+                    self._begin(f"{what} of {name}")
+                    shrink(name)
+
+    def _begin(self, what: str) -> None:
+        self._what = what
+        self._tell(self.state)
+
+    def _stand_ins(self) -> None:
+        """Put something plain in the place of each pass that the target reads, the nearest first."""
+        for one in reversed(self.best.live[:-1]):
+            if any(live.name == one.name for live in self.best.live):
+                for text in _plain_texts(one, "0.0" in self._probe.fault.literals):
+                    plain = replace(one, text=text, companion="", inputs=(), values=(), repeat=0, feedback=())
+                    if len(tokens_of(text)) >= len(tokens_of(one.text)):
+                        break  # it is as plain already
+                    if self.holds(self.best.with_pass(plain)):
+                        break
+        for one in reversed(self.best.live):
+            for name, _ in one.live_inputs:
+                fewer = tuple(pair for pair in one.inputs if pair[0] != name)
+                if name.startswith("initial"):
+                    self.holds(self.best.with_pass(replace(one, inputs=fewer)))
+            if one.companion:
+                current = next(p for p in self.best.live if p.name == one.name)
+                self.holds(self.best.with_pass(replace(current, companion="")))
+
+    def _settings(self) -> None:
+        plain = [
+            {"time": 0.0},
+            {"samples": 1},
+            {"camera": Camera()},
+            {"steps": ()},
+            {"extent": None},
+            {"relief": None},
+            {"base_elevation": None},
+        ]
+        for change in plain:
+            changed = replace(self.best, **change)  # type: ignore[arg-type]
+            if changed.texts() != self.best.texts():
+                self.holds(changed)
+        given = [(one.name, name) for one in self.best.live for name, _ in one.live_values]
+        if given:
+            start = self.best
+
+            def without(some: list[tuple[str, str]]) -> bool:
+                return self.holds(_with_values(start, frozenset(some)))
+
+            ddmin(given, without)
+        for name in [one.name for one in self.best.live]:
+            self._first_of(name, self._folded)
+
+    def _folded(self, one: Pass) -> Iterator[str]:
+        kinds = {name: kind for kind, name in _UNIFORM.findall(one.text)}
+        values = {name: glsl_of(kinds[name], value) for name, value in one.live_values}
+        return edits.constants(one.text, values)
+
+    def _sizes(self) -> None:
+        """Halve the land, the passes of other sizes with it, then the picture, as often as it goes."""
+        for halved in (_smaller_land, _smaller_frame):
+            while (smaller := halved(self.best)) != self.best and self.holds(smaller, resized=True):
+                pass
+
+    def _lines(self, name: str) -> None:
+        for kind in ("text", "companion"):
+            if text := getattr(self._pass(name), kind):
+                blocks.fewer_lines(text, partial(self._try, name, kind))
+
+    def _expressions(self, name: str) -> None:
+        literals = self._probe.fault.literals
+
+        def smaller(text: str) -> Iterable[str]:
+            yield from edits.headers(text)
+            yield from edits.parameters_of_functions(text)
+            yield from edits.inlined(text)
+            yield from edits.expressions(text, literals)
+
+        self._first_of(name, lambda one: smaller(one.text))
+        if self._pass(name).companion:
+            self._first_of(name, lambda one: smaller(one.companion), "companion")
+
+    def _first_of(self, name: str, candidates: Callable[[Pass], Iterable[str]], kind: str = "text") -> None:
+        """Take each candidate that holds, and go on with those of the smaller text, until none does."""
+        begin, passed = 0, False
+        while not passed:
+            passed = begin == 0
+            before = getattr(self._pass(name), kind)
+            for place, text in enumerate(candidates(self._pass(name))):
+                if place >= begin and text != before and self._try(name, kind, text):
+                    # What stood before it in the order did not hold; most of that will not now.
+                    begin, passed = max(place, 1), False
+                    break
+            else:
+                begin = 0
+
+    def _pass(self, name: str) -> Pass:
+        return next(one for one in self.best.passes if one.name == name)
+
+    def _try(self, name: str, kind: str, text: str) -> bool:
+        one = self._pass(name)
+        changed = replace(one, **{kind: tidy(text)})  # type: ignore[arg-type]
+        return self.holds(self.best.with_pass(changed))
+
+
+def _undefined(case: Case) -> frozenset[str]:
+    """Return what GLSL leaves undefined in each text."""
+    texts = ((one.name, text) for one in case.live for text in (one.text, one.companion) if text)
+    return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _undefined_in(text))
+
+
+@lru_cache(maxsize=4096)
+def _undefined_in(text: str) -> frozenset[str]:
+    return edits.undefined(text)
+
+
+def _with_values(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
+    passes = tuple(
+        replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in kept))
+        for one in case.passes
+    )
+    return replace(case, passes=passes)
+
+
+def _plain_texts(one: Pass, zero: bool) -> Iterator[str]:
+    """Yield texts that give the same outputs from nothing: a constant, then a ramp."""
+    found = _OUTPUTS.search(one.text)
+    if not one.text.startswith("#pragma") and "#pragma" not in one.text:
+        return
+    outputs = [part.partition(":") for part in (found.group(1) if found else "frame:rgba16f").split(",")]
+    declared = ", ".join(f"{name.strip()}:{form.strip()}" for name, _, form in outputs)
+    kinds = ["vec4" if "rgba" in form else "vec2" if "rg" in form else "float" for _, _, form in outputs]
+    ramp = "float(texel.x + 2 * texel.y) / float(size.x)"
+    for value in (*(("0.0",) if zero else ()), "1.0", "0.5", ramp):
+        head = f'#pragma kernel(output = "{declared}")\n'
+        if len(outputs) == 1:
+            cast = value if kinds[0] == "float" else f"{kinds[0]}({value})"
+            yield tidy(f"{head}{kinds[0]} kernel(ivec2 texel) {{ return {cast}; }}")
+            continue
+        arguments = ", ".join(
+            f"out {kind} {name.strip()}" for kind, (name, _, _) in zip(kinds, outputs, strict=True)
+        )
+        body = " ".join(
+            f"{name.strip()} = {value if kind == 'float' else f'{kind}({value})'};"
+            for kind, (name, _, _) in zip(kinds, outputs, strict=True)
+        )
+        yield tidy(f"{head}void kernel(ivec2 texel, {arguments}) {{ {body} }}")
+
+
+def _half(number: int) -> int:
+    """Halve a side; odd ones stay odd, so that 2**n + 1 stays of its form."""
+    if number <= _SMALLEST:
+        return number
+    return (number - 1) // 2 + 1 if number % 2 else number // 2
+
+
+def _smaller_land(case: Case) -> Case:
+    size = (_half(case.size[0]), _half(case.size[1]))
+    passes = tuple(
+        one
+        if one.size is None or one.size == case.frame
+        else replace(one, size=(_half(one.size[0]), _half(one.size[1])))
+        for one in case.passes
+    )
+    return replace(case, size=size, passes=passes)
+
+
+def _smaller_frame(case: Case) -> Case:
+    frame = (_half(case.frame[0]), _half(case.frame[1]))
+    passes = tuple(
+        replace(one, size=frame) if one.size is not None and one.size == case.frame else one
+        for one in case.passes
+    )
+    return replace(case, frame=frame, passes=passes)
