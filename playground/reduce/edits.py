@@ -20,6 +20,7 @@ from playground.reduce.tokens import (
     is_word,
     partners,
     print_tokens,
+    tidy,
     tokens_of,
 )
 
@@ -45,9 +46,32 @@ _UNIFORM = re.compile(r"uniform\s+(\w+)\s+(\w+)\s*(?:=\s*([^;]*?)\s*)?;(.*)")
 def expressions(text: str, literals: Sequence[str] = LITERALS) -> Iterator[str]:
     """Yield the text with one expression made simpler, the largest first."""
     tokens = tokens_of(text)
-    edits = sorted(set(_edits(tokens, literals)), key=lambda e: (e[0] - e[1] + len(e[2]), -e[0], e[2]))
-    for low, high, instead in edits:
+    for low, high, instead in _in_order(tokens, literals):
         yield print_tokens([*tokens[:low], *instead, *tokens[high:]])
+
+
+def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterator[tuple[str, str]]:
+    """Yield two texts with the same expression made simpler in each, where both have it once.
+
+    A kernel and the compute shader that stands for it agree only as long as both change.
+    """
+    tokens, others = tokens_of(text), tokens_of(other)
+    for low, high, instead in _in_order(tokens, literals):
+        place = _only_place(others, tokens[low:high])
+        if place is not None and _only_place(tokens, tokens[low:high]) == low:
+            changed = [*others[:place], *instead, *others[place + high - low :]]
+            yield print_tokens([*tokens[:low], *instead, *tokens[high:]]), print_tokens(changed)
+
+
+def _only_place(tokens: list[str], part: list[str]) -> int | None:
+    """Return where some tokens stand in others, if they do so once."""
+    found = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
+    return found[0] if len(found) == 1 else None
+
+
+def _in_order(tokens: list[str], literals: Sequence[str]) -> list[Edit]:
+    """Return the edits of some tokens, those that take the most away first."""
+    return sorted(set(_edits(tokens, literals)), key=lambda e: (e[0] - e[1] + len(e[2]), -e[0], e[2]))
 
 
 def _edits(tokens: list[str], literals: Sequence[str]) -> Iterator[Edit]:
@@ -68,7 +92,7 @@ def _edits(tokens: list[str], literals: Sequence[str]) -> Iterator[Edit]:
 
 
 def inlined(text: str) -> Iterator[str]:
-    """Yield the text with one variable's value in its place, where it is used once, or is one token."""
+    """Yield the text with one variable less: its value in its place, if it is one token or used once."""
     tokens = tokens_of(text)
     pairs = partners(tokens)
     for index in range(1, len(tokens) - 1):
@@ -78,6 +102,8 @@ def inlined(text: str) -> Iterator[str]:
         end = _end_of_region(tokens, index + 2, pairs)
         if tokens[end : end + 1] != [";"]:
             continue
+        if tokens[end + 1 : end + 3] == [name, "="]:
+            yield print_tokens([*tokens[:index], *tokens[end + 1 :]])  # what is overwritten at once
         first = index - 2 if index > 1 and tokens[index - 2] == "const" else index - 1
         uses = [i for i in range(end, len(tokens)) if tokens[i] == name and tokens[i - 1] != "."]
         value = tokens[index + 2 : end]
@@ -274,7 +300,7 @@ def constants(text: str, values: dict[str, str]) -> Iterator[str]:
         kind, name, default = found.group(1), found.group(2), found.group(3)
         value = values.get(name, default)
         if value:
-            yield "\n".join([*lines[:number], f"const {kind} {name} = {value};", *lines[number + 1 :]])
+            yield tidy("\n".join([*lines[:number], f"const {kind} {name} = {value};", *lines[number + 1 :]]))
 
 
 def undefined(text: str) -> frozenset[str]:

@@ -25,6 +25,15 @@ from playground.sketch.model import Camera
 
 _OUTPUTS = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _UNIFORM = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)", re.MULTILINE)
+_PLAIN = {
+    "time": 0.0,
+    "samples": 1,
+    "camera": Camera(),
+    "steps": (),
+    "extent": None,
+    "relief": None,
+    "base_elevation": None,
+}
 _SMALLEST = 2  # texels or pixels a side
 
 
@@ -163,27 +172,13 @@ class Search:
                 self.holds(self.best.with_pass(replace(current, companion="")))
 
     def _settings(self) -> None:
-        plain = [
-            {"time": 0.0},
-            {"samples": 1},
-            {"camera": Camera()},
-            {"steps": ()},
-            {"extent": None},
-            {"relief": None},
-            {"base_elevation": None},
-        ]
-        for change in plain:
-            changed = replace(self.best, **change)  # type: ignore[arg-type]
-            if changed.texts() != self.best.texts():
-                self.holds(changed)
-        given = [(one.name, name) for one in self.best.live for name, _ in one.live_values]
-        if given:
-            start = self.best
-
-            def without(some: list[tuple[str, str]]) -> bool:
-                return self.holds(_with_values(start, frozenset(some)))
-
-            ddmin(given, without)
+        """Take back what is set: all of it at once if that goes, then one after the other."""
+        start = self.best
+        land = [name for name, plain in _PLAIN.items() if getattr(start, name) != plain]
+        given = [(one.name, name) for one in start.live for name, _ in one.live_values]
+        kept = [("", name) for name in land] + given
+        if kept:
+            ddmin(kept, lambda some: self.holds(_with_settings(start, frozenset(some))))
         for name in [one.name for one in self.best.live]:
             self._first_of(name, self._folded)
 
@@ -195,16 +190,27 @@ class Search:
     def _sizes(self) -> None:
         """Halve the land, the passes of other sizes with it, then the picture, as often as it goes."""
         for halved in (_smaller_land, _smaller_frame):
+            smallest = self.best
+            while (smaller := halved(smallest)) != smallest:
+                smallest = smaller
+            if smallest == self.best or self.holds(smallest, resized=True):
+                continue
             while (smaller := halved(self.best)) != self.best and self.holds(smaller, resized=True):
                 pass
 
     def _lines(self, name: str) -> None:
         for kind in ("text", "companion"):
             if text := getattr(self._pass(name), kind):
-                blocks.fewer_lines(text, partial(self._try, name, kind))
+                blocks.fewer_lines(text, partial(self._try_lines, name, kind))
 
     def _expressions(self, name: str) -> None:
         literals = self._probe.fault.literals
+        again = bool(self._pass(name).companion)
+        while again:
+            one = self._pass(name)
+            pairs = edits.in_both(one.text, one.companion, literals)
+            both = (replace(one, text=text, companion=other) for text, other in pairs)
+            again = any(self.holds(self.best.with_pass(pair)) for pair in both if pair != one)
 
         def smaller(text: str) -> Iterable[str]:
             yield from edits.headers(text)
@@ -233,9 +239,12 @@ class Search:
     def _pass(self, name: str) -> Pass:
         return next(one for one in self.best.passes if one.name == name)
 
+    def _try_lines(self, name: str, kind: str, text: str) -> bool:
+        return self._try(name, kind, tidy(text))
+
     def _try(self, name: str, kind: str, text: str) -> bool:
         one = self._pass(name)
-        changed = replace(one, **{kind: tidy(text)})  # type: ignore[arg-type]
+        changed = replace(one, **{kind: text})  # type: ignore[arg-type]
         return self.holds(self.best.with_pass(changed))
 
 
@@ -250,12 +259,14 @@ def _undefined_in(text: str) -> frozenset[str]:
     return edits.undefined(text)
 
 
-def _with_values(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
+def _with_settings(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
+    """Return the case with these settings alone: (pass, parameter), or the land's own as ("", name)."""
     passes = tuple(
         replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in kept))
         for one in case.passes
     )
-    return replace(case, passes=passes)
+    plain = {name: value for name, value in _PLAIN.items() if ("", name) not in kept}
+    return replace(case, passes=passes, **plain)  # type: ignore[arg-type]
 
 
 def _plain_texts(one: Pass, zero: bool) -> Iterator[str]:

@@ -43,6 +43,8 @@ class Worker:
         self._arguments = [str(LIMIT_BYTES), renderer, number, str(limit + 60.0)]
         self._environment = {"MESA_SHADER_CACHE_DISABLE": "true", **(environment or {})}
         self._process: subprocess.Popen[bytes] | None = None
+        self._spare: subprocess.Popen[bytes] | None = None  # starting, from the first death on
+        self._dies = False
         self._info: ContextInfo | None = None
 
     def __enter__(self) -> Worker:
@@ -71,7 +73,8 @@ class Worker:
             return answer
         process.kill()
         code = process.wait()
-        self.close()
+        self._end_process()
+        self._dies = True
         if late.is_set():
             return Seen("hang", told=f"it took more than {self.limit:g} s and was stopped")
         how = f"was killed by signal {-code}" if code < 0 else f"ended with status {code}"
@@ -79,10 +82,15 @@ class Worker:
 
     def renew(self) -> None:
         """End the process, so that the next candidate meets a fresh one."""
-        self.close()
+        self._end_process()
 
     def close(self) -> None:
         """End the process; the next task starts another."""
+        self._end_process()
+        self._process, self._spare = self._spare, None
+        self._end_process()
+
+    def _end_process(self) -> None:
         process, self._process = self._process, None
         if process is None:
             return
@@ -90,7 +98,7 @@ class Worker:
         with contextlib.suppress(OSError):
             process.stdin.close()  # it ends at the end of its input
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(2.0)
+            process.wait(0.5)
         process.kill()
         process.wait()
         process.stdout.close()
@@ -98,17 +106,10 @@ class Worker:
     def _start(self) -> subprocess.Popen[bytes]:
         if self._process is not None:
             return self._process
-        where = os.pathsep.join(p or str(Path.cwd()) for p in sys.path)
-        process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "playground.reduce.child", *self._arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,  # a driver's own words; what it says of a text comes back as an answer
-            env={**os.environ, "PYTHONPATH": where, **self._environment},
-            start_new_session=True,
-        )
+        process, self._spare = self._spare or self._open(), None
         self._process = process
-        self.started += 1
+        if self._dies:  # the next is made ready while this one draws
+            self._spare = self._open()
         assert process.stdout is not None
         with _killed_after(process, _OPENING, threading.Event()):
             info = receive(process.stdout)
@@ -122,6 +123,18 @@ class Worker:
         asked = " ".join(f"{name}={value}" for name, value in self._environment.items())
         message = f"no context could be opened: the process ended with status {code} ({asked})"
         raise ContextError(message) if code >= 0 else TrialCrash(message)
+
+    def _open(self) -> subprocess.Popen[bytes]:
+        self.started += 1
+        where = os.pathsep.join(p or str(Path.cwd()) for p in sys.path)
+        return subprocess.Popen(
+            [sys.executable, "-P", "-m", "playground.reduce.child", *self._arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,  # a driver's own words; what it says of a text comes back as an answer
+            env={**os.environ, "PYTHONPATH": where, **self._environment},
+            start_new_session=True,
+        )
 
 
 @contextlib.contextmanager
