@@ -48,7 +48,7 @@ HELP = help_text(
     "playground reduce my-land --nan --pass height     # NaN or infinity in one pass",
     "playground reduce my-land --shot morning          # off its reference",
     "playground reduce my-land --drivers               # fragment and compute differ",
-    "playground reduce my-land --against LP_NATIVE_VECTOR_WIDTH=128",
+    "playground reduce my-land --against GALLIUM_DRIVER=softpipe",
     "playground reduce my-land --error 'no matching function' --plain",
     "playground reduce my-land --crash --limit 600 -o for-the-report",
     "playground reduce my-land --command 'playground render . -o out.png && ./is-good out.png'",
@@ -96,6 +96,14 @@ def reduce(
         ),
     ] = "",
     nan: Annotated[bool, typer.Option("--nan", metavar="", help="A value is NaN or infinite.")] = False,
+    anywhere: Annotated[
+        bool,
+        typer.Option(
+            "--anywhere",
+            metavar="",
+            help="With --nan: let it turn up at other texels. Smaller, but it may be another NaN.",
+        ),
+    ] = False,
     error: Annotated[
         str,
         typer.Option(
@@ -209,10 +217,13 @@ def reduce(
         _environment(against),
         read_device(against_device),
         tolerance,
+        anywhere,
         renderer.software,
         renderer.device,
         timeout,
     )
+    if anywhere and kind != "nan":
+        raise ParameterError("--anywhere is for --nan")
     if plain and kind not in ("", "error", "crash", "hang"):
         raise ParameterError("--plain is for what the compiler refuses or dies of: --error, --crash, --hang")
     folder = Path(output).expanduser() if output else Path(f"{question.sketch.name}-reduced")

@@ -95,13 +95,15 @@ class NotFinite(Fault):
     """A value is NaN or infinite.
 
     No texel may turn bad that was good, and what was bad in places may not become bad
-    everywhere; nor are zeros put in, which make NaNs of their own.
+    everywhere; nor are zeros put in, which make NaNs of their own. ``anywhere`` lets go of
+    the first two: what is left is smaller, and may be a NaN of another making.
     """
 
     literals = LITERALS_WITHOUT_ZERO
 
-    def __init__(self, driver: str = "auto") -> None:
+    def __init__(self, driver: str = "auto", anywhere: bool = False) -> None:
         self.sides = (Side(driver=driver),)
+        self._anywhere = anywhere
 
     def found(self, seen: Sequence[Seen]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
@@ -115,6 +117,8 @@ class NotFinite(Fault):
         whole = bool(wrong.all())
         count = int(wrong.sum())
         told = f"{count} of {wrong.size} texels are {kind}; first at {_first(wrong)}"
+        if self._anywhere:
+            return Finding(kind, told)
         return Finding(f"{kind} {'everywhere' if whole else 'in places'}", told, wrong)
 
 

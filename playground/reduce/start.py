@@ -57,6 +57,7 @@ class Question:
     environment: Mapping[str, str] = field(default_factory=dict)  # of the other side
     other_device: int | None = None
     tolerance: float = 0.0
+    anywhere: bool = False  # NaN at other texels than before counts too
     software: bool = False
     device: int | None = None
     limit: float = LIMIT  # [s] a candidate
@@ -159,7 +160,7 @@ class Bench:
             return [Differs(sides, (FRAGMENT, COMPUTE), asked.tolerance)]
         drivers = [asked.driver] if asked.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
         if kind == "nan":
-            return [NotFinite(driver) for driver in drivers]
+            return [NotFinite(driver, asked.anywhere) for driver in drivers]
         if kind == "error":
             return [Refused(asked.pattern, driver) for driver in drivers]
         word = kind if asked.kind else ""  # a hang counts too where nothing was asked for

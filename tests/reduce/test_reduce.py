@@ -130,6 +130,20 @@ float kernel(ivec2 texel) {{
     assert "texel.x" not in text_of(search)
 
 
+def test_let_go_anywhere_the_land_goes_too(sketch, worker, tmp_path):
+    text = f"""{HEIGHT}
+float kernel(ivec2 texel) {{
+    float h = 0.25 * sin(float(texel.x));
+    if (texel.y > 4) h += sqrt(h - 2.0);
+    return h;
+}}
+"""
+    search = shrink(sketch(text), NotFinite(anywhere=True), worker, tmp_path / "scratch")
+    assert "sqrt" in text_of(search)
+    assert "texel.y" not in text_of(search)
+    assert "sin" not in text_of(search)
+
+
 def seen(values) -> list[Seen]:
     return [Seen("drawn", values=np.array(values, np.float32))]
 
@@ -340,6 +354,7 @@ def test_a_folder_of_the_user_s_is_refused_before_anything_is_drawn(sketch, tmp_
     ("options", "said"),
     [
         (["--nan", "--drivers"], "only one thing can be what fails"),
+        (["--anywhere"], "--anywhere is for --nan"),
         (["--error", "("], "no regular expression"),
         (["--against", "LP"], "expected ENV=VALUE"),
         (["--plain", "--nan"], "--plain is for what the compiler refuses"),
