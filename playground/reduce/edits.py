@@ -323,7 +323,7 @@ def undefined(text: str) -> frozenset[str]:
         close = pairs.get(index + 2, -1)
         if not depth and following == "(" and tokens[close + 1 : close + 2] == ["{"]:
             body = tokens[close + 1 : pairs.get(close + 1, len(tokens))]
-            if token != "void" and "return" not in body:
+            if token != "void" and not _returns(body):
                 found.add(f"{name}()")
             arguments = tokens[index + 3 : close]
             for place, word in enumerate(arguments[:-2]):
@@ -331,6 +331,16 @@ def undefined(text: str) -> frozenset[str]:
                 if word == "out" and not _is_set(tokens, called, close + 1, pairs):
                     found.add(called)
     return frozenset(found)
+
+
+def _returns(body: list[str]) -> bool:
+    """Say whether a function's own level has a return that hangs on nothing."""
+    depth = 0
+    for index, token in enumerate(body):
+        depth += (token == "{") - (token == "}")
+        if token == "return" and depth == 1 and body[index - 1] in ("{", "}", ";"):
+            return True
+    return False
 
 
 def _is_set(tokens: list[str], name: str, start: int, pairs: dict[int, int]) -> bool:

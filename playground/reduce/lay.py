@@ -87,19 +87,19 @@ class _Maker:
             feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
             firsts = {name: first for name, first, _ in node.feedback}
         assert isinstance(step, Step)
-        text = written(step.kernel)
+        companion = step.kernel.companion
+        text, beside = written(step.kernel), written(companion) if companion else ""
         inputs = []
         for name, source in step.inputs:
             first = firsts.get(name, source)
             if isinstance(first, Ref):
                 inputs.append((name, f"{self.name(first.path)}:{first.output}"))
             elif not name.startswith("initial"):
-                text = unwired(text, name)
-        companion = step.kernel.companion
+                text, beside = unwired(text, name), unwired(beside, name)
         return Pass(
             self.name(step.path),
             text,
-            written(companion) if companion else "",
+            beside,
             tuple(inputs),
             tuple((name, self._value(step.kernel, name, value)) for name, value in step.values.items()),
             None if step.size == self.plan.land.size else step.size,
@@ -176,5 +176,5 @@ def unwired(text: str, name: str) -> str:
 
     An input that nothing is wired to would else take the latest earlier output of its name.
     """
-    fresh = f"no_{name}"
+    fresh = name if name.startswith("no_") else f"no_{name}"
     return re.sub(rf"\b({WIRED}|{MATCHES}|){name}\b", lambda found: f"{found.group(1)}{fresh}", text)

@@ -27,6 +27,7 @@ class Probe:
         self.folder = folder
         self.limit = limit  # [s] of a command
         self._workers = workers
+        self.refused = ""  # what was said of a case that is no sketch, if there was one
         self._written: dict[str, str] = {}
 
     def find(self, case: Case) -> Finding | None:
@@ -39,6 +40,7 @@ class Probe:
             task = task_of(case, str(self.folder / case.file), side.driver, self.fault.as_picture)
             seen.append(self._workers[side.worker].look(task))
             if seen[-1].word == "refused":
+                self.refused = seen[-1].told
                 return None
         return self.fault.found(seen)
 

@@ -34,6 +34,7 @@ _PLAIN = {
     "relief": None,
     "base_elevation": None,
 }
+_BETWEEN = 8  # edits that held between two looks at the lines
 _SMALLEST = 2  # texels or pixels a side
 
 
@@ -200,7 +201,10 @@ class Search:
 
     def _lines(self, name: str) -> None:
         for kind in ("text", "companion"):
-            if text := getattr(self._pass(name), kind):
+            before = ""
+            # A body that shrank may free the functions that it called.
+            while (text := getattr(self._pass(name), kind)) != before:
+                before = text
                 blocks.fewer_lines(text, partial(self._try_lines, name, kind))
 
     def _expressions(self, name: str) -> None:
@@ -223,18 +227,22 @@ class Search:
             self._first_of(name, lambda one: smaller(one.companion), "companion")
 
     def _first_of(self, name: str, candidates: Callable[[Pass], Iterable[str]], kind: str = "text") -> None:
-        """Take each candidate that holds, and go on with those of the smaller text, until none does."""
-        begin, passed = 0, False
-        while not passed:
-            passed = begin == 0
-            before = getattr(self._pass(name), kind)
+        """Go through the candidates once, and take each that holds; the next are those of the smaller text.
+
+        What stood before it in the order is tried again in the next round, by when lines may have gone.
+        """
+        begin = held = 0
+        while begin >= 0:
+            before, start = getattr(self._pass(name), kind), begin
+            begin = -1
             for place, text in enumerate(candidates(self._pass(name))):
-                if place >= begin and text != before and self._try(name, kind, text):
-                    # What stood before it in the order did not hold; most of that will not now.
-                    begin, passed = max(place, 1), False
+                if place >= start and text != before and self._try(name, kind, text):
+                    begin = place
+                    held += 1
                     break
-            else:
-                begin = 0
+            if held % _BETWEEN == _BETWEEN - 1 and begin >= 0:
+                self._lines(name)  # what those edits freed goes at once, by whole lines
+                held += 1
 
     def _pass(self, name: str) -> Pass:
         return next(one for one in self.best.passes if one.name == name)

@@ -101,9 +101,11 @@ class Bench:
         asked = self.question
         sketch = asked.sketch.for_shot(asked.sketch.shot(asked.shot)) if asked.shot else asked.sketch
         case = lay_flat(sketch, frame=asked.frame, time=asked.time, steps=dict(asked.steps))
+        refused = ""
         for fault, candidate in self._possible(case):
             probe = Probe(fault, self.workers, self._folder, asked.limit)
             finding = probe.find(candidate)
+            refused = refused or probe.refused
             if finding is None:
                 continue
             probe.renew()
@@ -114,6 +116,8 @@ class Bench:
                 return Beginning(candidate, finding, probe, ())
             renderers = tuple(self.workers[number].info for number in range(len(self.workers)))
             return Beginning(candidate, finding, probe, renderers)
+        if refused:
+            raise DataError(f"{asked.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
         raise DataError(_nothing(asked))
 
     def _possible(self, case: Case) -> Iterator[tuple[Fault, Case]]:

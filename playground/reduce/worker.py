@@ -18,6 +18,9 @@ from playground.reduce.child import Seen, Task
 LIMIT = 10.0
 """[s] What one candidate may take before it counts as one that hangs."""
 
+_FIRST_EXTRA = (
+    60.0  # [s] more for a process's first answer: it compiles every pass and draws them at full size
+)
 _OPENING = 120.0  # [s] for Python and a context, on a busy machine
 
 
@@ -40,11 +43,12 @@ class Worker:
         self.started = 0  # how many processes there were
         renderer = "software" if software else "any"
         number = "" if device is None else str(device)
-        self._arguments = [str(LIMIT_BYTES), renderer, number, str(limit + 60.0)]
+        self._arguments = [str(LIMIT_BYTES), renderer, number, str(limit + 2 * _FIRST_EXTRA)]
         self._environment = {"MESA_SHADER_CACHE_DISABLE": "true", **(environment or {})}
         self._process: subprocess.Popen[bytes] | None = None
         self._spare: subprocess.Popen[bytes] | None = None  # starting, from the first death on
         self._dies = False
+        self._warm = False  # the process has answered before
         self._info: ContextInfo | None = None
 
     def __enter__(self) -> Worker:
@@ -66,10 +70,13 @@ class Worker:
         assert process.stdin is not None and process.stdout is not None
         late = threading.Event()
         answer: object = None
-        with _killed_after(process, self.limit, late), contextlib.suppress(OSError):
+        # Where candidates die, a process answers seldom more than once: then the limit is the limit.
+        extra = 0.0 if self._warm or self._dies else _FIRST_EXTRA
+        with _killed_after(process, self.limit + extra, late), contextlib.suppress(OSError):
             send(process.stdin, task)
             answer = receive(process.stdout)
         if isinstance(answer, Seen):
+            self._warm = True
             return answer
         process.kill()
         code = process.wait()
@@ -92,6 +99,7 @@ class Worker:
 
     def _end_process(self) -> None:
         process, self._process = self._process, None
+        self._warm = False
         if process is None:
             return
         assert process.stdin is not None and process.stdout is not None

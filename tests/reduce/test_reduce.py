@@ -23,6 +23,7 @@ from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.worker import Worker
 from playground.shots.references import reference_path
+from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -467,6 +468,37 @@ def test_ctrl_c_from_a_terminal_leaves_no_process(sketch, tmp_path):
     assert process.returncode == 130
     assert "height.glsl" in out
     assert "sqrt" in (tmp_path / "land-reduced" / "height.glsl").read_text()
+
+
+WITH_COMPANIONS = ("soft_cone", "fault_formation", "splat")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[] if n in WITH_COMPANIONS else [pytest.mark.slow]) for n in shipped_sketches()],
+)
+def test_a_shipped_sketch_laid_flat_is_a_sketch_with_the_same_passes(name, tmp_path):
+    case = lay_flat(load(name), frame=(64, 36))
+    Probe(NotFinite(), [], tmp_path, 1.0).write(case)
+    again = lay_flat(load(tmp_path / "sketch.toml"), frame=(64, 36))
+    assert [one.name for one in again.passes] == [one.name for one in case.live]
+    assert [one.text for one in again.passes] == [one.text for one in case.live]
+    assert [one.size for one in again.passes] == [one.size for one in case.live]
+    assert [dict(one.values) for one in again.passes] == [dict(one.values) for one in case.live]
+    assert [dict(one.inputs) for one in again.passes] == [dict(one.inputs) for one in case.live]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["soft_cone", "diamond_square", "splat"])
+def test_a_shipped_sketch_laid_flat_draws_the_same_picture(name, worker, tmp_path):
+    sketch = load(name).with_values({"size": 65})
+    frame = (64, 36)
+    case = lay_flat(sketch, frame=frame)
+    Probe(NotFinite(), [], tmp_path, 1.0).write(case)
+    whole = worker.look(Task(sketch, "", "fragment", frame))
+    flat = worker.look(Task(str(tmp_path / "sketch.toml"), "", "fragment", frame))
+    assert whole.word == flat.word == "drawn", flat.told
+    np.testing.assert_array_equal(flat.values, whole.values)
 
 
 def test_a_loop_of_several_passes_is_refused(sketch, worker, tmp_path):
