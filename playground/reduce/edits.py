@@ -234,6 +234,29 @@ def _arguments(tokens: list[str], bracket: int, pairs: dict[int, int]) -> list[t
     return found
 
 
+def stubs(text: str, number: str = "0.0") -> Iterator[str]:
+    """Yield the text with one function's body replaced by a constant, the last function first."""
+    tokens = tokens_of(text)
+    pairs = partners(tokens)
+    for index in reversed(range(1, len(tokens) - 1)):
+        close = pairs.get(index + 1, -1)
+        body = close + 1
+        if tokens[index + 1] != "(" or tokens[body : body + 1] != ["{"] or body not in pairs:
+            continue
+        kind, name = tokens[index - 1], tokens[index]
+        if not is_word(kind) or kind in CONTROL or name in CONTROL:
+            continue
+        if kind in ("float", "int", "uint", "bool"):
+            value = {"int": "0", "uint": "0u", "bool": "false"}.get(kind, number)
+        elif re.fullmatch(r"[iu]?vec[234]", kind):
+            value = f"{kind}({number})"
+        else:
+            continue
+        stub = tokens_of(f"return {value};")
+        if len(stub) < pairs[body] - body - 1:
+            yield print_tokens([*tokens[: body + 1], *stub, *tokens[pairs[body] :]])
+
+
 def parameters_of_functions(text: str) -> Iterator[str]:
     """Yield the text without one parameter of one function, nor the argument of any call of it."""
     tokens = tokens_of(text)
@@ -333,6 +356,11 @@ def undefined(text: str) -> frozenset[str]:
     return frozenset(found)
 
 
+def _is_outermost(tokens: list[str], index: int) -> bool:
+    """Say whether a closing brace ends what stands at the text's own level."""
+    return tokens[: index + 1].count("{") == tokens[: index + 1].count("}")
+
+
 def _returns(body: list[str]) -> bool:
     """Say whether a function's own level has a return that hangs on nothing."""
     depth = 0
@@ -344,10 +372,12 @@ def _returns(body: list[str]) -> bool:
 
 
 def _is_set(tokens: list[str], name: str, start: int, pairs: dict[int, int]) -> bool:
-    """Say whether a name is assigned to somewhere from a token on, or given to a function."""
+    """Say whether a name is assigned to from a token on, within its function, or given to another."""
     brackets: list[int] = []
     for index in range(start, len(tokens)):
         token = tokens[index]
+        if token == "}" and tokens[pairs.get(index, 0) - 1] == ")" and _is_outermost(tokens, index):
+            return False
         if token == "(":
             brackets.append(index)
         elif token == ")" and brackets:

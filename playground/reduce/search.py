@@ -201,6 +201,10 @@ class Search:
 
     def _lines(self, name: str) -> None:
         for kind in ("text", "companion"):
+            if not getattr(self._pass(name), kind):
+                continue
+            number = "0.0" if "0.0" in self._probe.fault.literals else "1.0"
+            self._first_of(name, partial(_stubs, kind=kind, number=number), kind)
             before = ""
             # A body that shrank may free the functions that it called.
             while (text := getattr(self._pass(name), kind)) != before:
@@ -222,11 +226,17 @@ class Search:
             yield from edits.inlined(text)
             yield from edits.expressions(text, literals)
 
-        self._first_of(name, lambda one: smaller(one.text))
+        self._first_of(name, lambda one: smaller(one.text), between=True)
         if self._pass(name).companion:
             self._first_of(name, lambda one: smaller(one.companion), "companion")
 
-    def _first_of(self, name: str, candidates: Callable[[Pass], Iterable[str]], kind: str = "text") -> None:
+    def _first_of(
+        self,
+        name: str,
+        candidates: Callable[[Pass], Iterable[str]],
+        kind: str = "text",
+        between: bool = False,
+    ) -> None:
         """Go through the candidates once, and take each that holds; the next are those of the smaller text.
 
         What stood before it in the order is tried again in the next round, by when lines may have gone.
@@ -240,7 +250,7 @@ class Search:
                     begin = place
                     held += 1
                     break
-            if held % _BETWEEN == _BETWEEN - 1 and begin >= 0:
+            if between and held % _BETWEEN == _BETWEEN - 1 and begin >= 0:
                 self._lines(name)  # what those edits freed goes at once, by whole lines
                 held += 1
 
@@ -275,6 +285,10 @@ def _with_settings(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
     )
     plain = {name: value for name, value in _PLAIN.items() if ("", name) not in kept}
     return replace(case, passes=passes, **plain)  # type: ignore[arg-type]
+
+
+def _stubs(one: Pass, kind: str, number: str) -> Iterator[str]:
+    return edits.stubs(getattr(one, kind), number)
 
 
 def _plain_texts(one: Pass, zero: bool) -> Iterator[str]:

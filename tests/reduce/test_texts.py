@@ -136,6 +136,7 @@ def test_zeros_are_not_put_in_where_they_would_be_the_fault():
         ("float f() { float x; if (x > 1.0) return 1.0; return 2.0; }", {"x"}),
         ("float f() { float x; return sqrt(1.0 + x); }", {"x"}),
         ("float f() { g(); }", {"f()"}),
+        ("void f(out float x) { } void g() { float x; f(x); }", {"x"}),
         ("float f() { if (true) return 1.0; }", {"f()"}),
         ("float f() { if (true) { return 1.0; } return 2.0; }", set()),
         ("void f(out float x) { }", {"x"}),
