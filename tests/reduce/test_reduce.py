@@ -449,7 +449,7 @@ def test_a_hang_is_kept(sketch, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is sent otherwise there")
-def test_ctrl_c_from_a_terminal_leaves_no_process(sketch, tmp_path):
+def test_ctrl_c_from_a_terminal_keeps_the_smallest(sketch, tmp_path):
     path = sketch(layered(16))
     with subprocess.Popen(
         [sys.executable, "-m", "playground", "--software", "reduce", str(path), "--nan", "--pass", "height"],
