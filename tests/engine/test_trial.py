@@ -12,10 +12,12 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.plan import smallest_land
 from playground.engine.trial import Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import ShaderError, TrialCrash, TrialTimeout
 
 ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy
 GOOD = """#pragma kernel(output = "a:r32f")
 float kernel(ivec2 texel) { return float(texel.x); }
 """
@@ -25,9 +27,10 @@ CRASH = f"""#pragma kernel(output = "a:r32f")
 {DOUBLING}
 float kernel(ivec2 texel) {{ float x = float(texel.x); return M18; }}
 """
-# llvmpipe stops every loop after 65,535 turns, nested ones together: slowness takes many in a row.
+# llvmpipe stops every loop after 65,535 turns, nested ones together: slowness takes many in a row,
+# and to be slower than any limit here, the whole again and again.
 LOOP = "for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"
-SLOW = f"""#pragma kernel(output = "a:r32f")
+SLOW = f"""#pragma kernel(output = "a:r32f", repeat = "1000")
 float kernel(ivec2 texel) {{
     float x = float(texel.x);
     {LOOP * 60}
@@ -43,17 +46,16 @@ def is_alive(pid: int) -> bool:
         return False
 
 
-def gone_within(pid: int, seconds: float) -> bool:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        if not is_alive(pid):
-            return True
+def is_gone(pid: int) -> bool:
+    """Wait until a process is gone; say whether it is."""
+    end = time.monotonic() + PATIENCE
+    while is_alive(pid) and time.monotonic() < end:
         time.sleep(0.02)
-    return False
+    return not is_alive(pid)
 
 
-def wait(trial: Trial, seconds: float = 30.0) -> TrialReport:
-    end = time.monotonic() + seconds
+def wait(trial: Trial) -> TrialReport:
+    end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         if (report := trial.poll()) is not None:
             return report
@@ -63,7 +65,7 @@ def wait(trial: Trial, seconds: float = 30.0) -> TrialReport:
 
 @pytest.fixture(scope="module")
 def trial():
-    with Trial(limit_seconds=3.0) as made:
+    with Trial(limit_seconds=PATIENCE) as made:
         yield made
 
 
@@ -73,11 +75,13 @@ def test_a_good_sketch_is_good_by_both_drivers(trial, folder):
     assert report.error is None
 
 
-def test_the_second_answer_is_fast(trial, folder):
+def test_the_child_is_warm(trial, folder):
+    """The same process answers, mistakes between or not: only its first answer waits for a context."""
     trial.run(TrySketch(folder.one(GOOD)))
-    start = time.perf_counter()
+    pid = trial._child.pid
+    assert not trial.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
     assert trial.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
-    assert time.perf_counter() - start < 1.0, "the child is warm"
+    assert trial._child.pid == pid
 
 
 def test_a_mistake_comes_back_with_its_place(trial, folder):
@@ -89,11 +93,13 @@ def test_a_mistake_comes_back_with_its_place(trial, folder):
 
 
 def test_it_tries_the_smallest_land_that_is_accepted(trial, folder):
-    """A kernel that takes powers of two only, in a sketch of 4096 texels a side, is tried small."""
-    kernel = GOOD.replace('r32f"', 'r32f", accepts = "2**n", repeat = "log2(size.x)"')
-    report = trial.run(TrySketch(folder.one(kernel, size="size = 4096")))
+    """A kernel that takes powers of two only is tried small: whole, its two textures take 8 GiB."""
+    kernel = GOOD.replace('r32f"', 'rgba32f", accepts = "2**n", repeat = "log2(size.x)"')
+    kernel = kernel.replace("float kernel", "vec4 kernel").replace("float(texel.x)", "vec4(1)")
+    sketch = folder.one(kernel, size="size = 16384")
+    assert smallest_land(sketch) == (64, 64)
+    report = trial.run(TrySketch(sketch))
     assert report.ok, report.error
-    assert report.seconds < 2.0
 
 
 def test_a_library_file_is_compiled_alone(trial, folder):
@@ -124,15 +130,15 @@ def test_a_crash_says_how(trial, folder):
 
 
 def test_what_takes_too_long_is_stopped(folder):
-    with Trial(limit_seconds=0.7) as trial:
+    with Trial(limit_seconds=PATIENCE) as trial:
         assert trial.run(TrySketch(folder.one(GOOD))).ok
         pid = trial._child.pid
-        start = time.monotonic()
+        trial.limit_seconds = 0.7
         report = trial.run(TrySketch(folder.one(SLOW)))
         assert isinstance(report.error, TrialTimeout)
         assert "longer than 0.7 s" in str(report.error)
-        assert time.monotonic() - start < 5.0
-        assert gone_within(pid, 1.0)
+        assert is_gone(pid)
+        trial.limit_seconds = PATIENCE
         assert trial.run(TrySketch(folder.one(GOOD))).ok
 
 
@@ -142,14 +148,14 @@ def test_submit_never_waits_and_the_newest_wins(folder):
     wrong = [
         TrySketch(folder.one(GOOD.replace("texel.x", f"wrong{number}") + padding)) for number in range(20)
     ]
-    with Trial(limit_seconds=4.0) as trial:
+    with Trial(limit_seconds=PATIENCE) as trial:
         assert trial.run(TrySketch(folder.one(GOOD))).ok
+        pid = trial._child.pid
         trial.submit(TrySketch(folder.one(SLOW)))
-        start = time.monotonic()
         for request in wrong:
             trial.submit(request)
-        assert time.monotonic() - start < 3.0, "it waited for the child"
-        assert trial.busy
+        assert trial.busy and trial._child.pid == pid and is_alive(pid), "nothing waited for the child"
+        trial.limit_seconds = 2.0
         report = wait(trial)
         assert "wrong19" in str(report.error)
         assert not trial.busy
@@ -170,7 +176,7 @@ def test_memory_has_a_limit(folder):
         .replace("float(texel.x)", "vec4(1)")
     )
     body = '[[pass]]\nname = "a"\nuse = "./one"\nsize = 8192\n'
-    with Trial(limit_seconds=20.0, memory_bytes=600 * 2**20) as trial:
+    with Trial(limit_seconds=PATIENCE, memory_bytes=600 * 2**20) as trial:
         folder.write("one.glsl", hungry)
         report = trial.run(TrySketch(folder.sketch(body)))
         assert not report.ok, "a texture of 1 GiB"
@@ -182,14 +188,12 @@ def test_close_leaves_no_process(folder):
     trial.start()
     pid = trial._child.pid
     trial.close()
-    assert gone_within(pid, 2.0)
-    with Trial(limit_seconds=60.0) as busy:
+    assert is_gone(pid)
+    with Trial(limit_seconds=PATIENCE) as busy:
         busy.run(TrySketch(folder.one(GOOD)))
         pid = busy._child.pid
         busy.submit(TrySketch(folder.one(SLOW)))
-        start = time.monotonic()
-    assert time.monotonic() - start < 2.0
-    assert gone_within(pid, 1.0)
+    assert is_gone(pid), "what it was at would have taken it an hour"
     assert not busy.busy
 
 
@@ -209,11 +213,10 @@ def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
 
 
 SCRIPT = """
-from playground.engine import trial as module
 from playground.engine.trial import Trial, TrySketch
 from playground.sketch.load import load
-module._FIRST_EXTRA = 1.0
-with Trial(limit_seconds=LIMIT) as trial:
+with Trial(limit_seconds=90.0) as trial:
+    trial._arguments[-1] = "OWN"  # [s] after which a child ends by itself
     print(trial.run(TrySketch(load("good_sketch.toml"))).ok, trial._child.pid, flush=True)
     trial.run(TrySketch(load("slow_sketch.toml")))
 """
@@ -230,18 +233,18 @@ def two(folder):
     return folder.path
 
 
-@pytest.mark.parametrize(("number", "limit"), [(signal.SIGINT, 60.0), (signal.SIGKILL, 1.5)])
-def test_a_parent_that_is_stopped_leaves_no_child(two, number, limit):
+@pytest.mark.parametrize(("number", "own"), [(signal.SIGINT, 3600), (signal.SIGKILL, 8)])
+def test_a_parent_that_is_stopped_leaves_no_child(two, number, own):
     """Ctrl-C ends the child at once; a killed parent's child, hung as it is, ends by its own clock."""
-    with run_script(two, SCRIPT.replace("LIMIT", str(limit))) as parent:
+    with run_script(two, SCRIPT.replace("OWN", str(own))) as parent:
         assert parent.stdout is not None
         ok, pid = parent.stdout.readline().split()
         time.sleep(0.3)
         os.kill(parent.pid, number)
-        parent.wait(5.0)
+        parent.wait(PATIENCE)
     try:
         assert ok == "True"
-        assert gone_within(int(pid), 2.0 if number == signal.SIGINT else 6.0)
+        assert is_gone(int(pid))
     finally:
         if is_alive(int(pid)):
             os.kill(int(pid), signal.SIGKILL)
@@ -253,7 +256,7 @@ def test_no_module_of_the_user_s_folder_is_run(two):
         (two / f"{name}.py").write_text('open("was_run", "w").close()\nraise SystemExit(3)\n')
     # As the command does: the folder where it is started is not where modules are looked for.
     text = f"import sys\nsys.path[:] = [{str(ROOT)!r}, *(p for p in sys.path if p)]\n" + SCRIPT
-    text = text.replace("LIMIT", "20.0").replace('    trial.run(TrySketch(load("slow_sketch.toml")))\n', "")
+    text = text.replace("OWN", "60").replace('    trial.run(TrySketch(load("slow_sketch.toml")))\n', "")
     with run_script(two, text) as parent:
         out, _ = parent.communicate(timeout=180)
     assert out.startswith("True")
