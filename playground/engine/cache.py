@@ -54,6 +54,11 @@ class Cache:
     def __contains__(self, key: str) -> bool:
         return key in self._kept
 
+    def holds(self, key: str, turn: int) -> bool:
+        """Say whether a loop is kept after that turn."""
+        kept = self._kept.get(key)
+        return kept is not None and kept.turn == turn
+
     def begin(self) -> None:
         """Begin a frame: nothing is in use yet."""
         for key in self._in_use:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from playground.engine.cache import Cache
 from playground.engine.drawn import Drawn
-from playground.engine.execution import Execution
+from playground.engine.execution import Execution, would_run
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker
@@ -296,6 +296,23 @@ class Engine:
     def forget_unused(self) -> None:
         """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
         self.cache.drop_unused()
+
+    def stale(
+        self,
+        sketch: Sketch | str | Path,
+        *,
+        size: tuple[int, int],
+        time: float = 0.0,
+        steps: Mapping[str, int] | None = None,
+    ) -> list[str]:
+        """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
+        plan = self.plan_for(sketch, size, time, steps)
+        before, self._plan = self._plan, plan
+        try:
+            keys = self._keys.keys_of(plan, self.form_of, self._given_for, _continued(plan))
+        finally:
+            self._plan = before
+        return would_run(keys, self.cache, needed(plan.nodes, next(iter(plan.flat.outputs["view"].values()))))
 
     # ── running ──────────────────────────────────────────────────────────────
 

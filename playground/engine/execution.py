@@ -151,3 +151,15 @@ class Execution:
             if texture is not None and ref.path in found:
                 self.runner.copy(found[ref.path].textures[ref.output], texture)
         return found
+
+
+def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode]) -> list[str]:
+    """Return the paths of the steps that an execution would run: those that the cache does not keep."""
+    found: list[str] = []
+    for node in nodes:
+        if isinstance(node, Turns):
+            if not cache.holds(keys.loops[node.path], node.repeat):
+                found += [step.path for step in walk((node,))]
+        elif keys.steps[node.path] not in cache:
+            found.append(node.path)
+    return found

@@ -5,7 +5,7 @@ Programs, meshes and file textures are kept here; results are the caller's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
@@ -43,6 +43,7 @@ class Runner:
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
         self.companions = Companions(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
+        self.tell: Callable[[Step], None] | None = None  # called before each step runs
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
 
@@ -120,6 +121,8 @@ class Runner:
         is used up; ``keeps_surface`` says that a later draw goes on from this one.
         """
         assert self._plan is not None, "begin() comes first"
+        if self.tell is not None:
+            self.tell(step)
         kernel = step.kernel
         samples = self.samples_for(self._plan, kernel)
         job = Job(step, self.given_for(kernel, step), inputs, turn, start, samples, keeps_surface)

@@ -4,32 +4,33 @@ A draw that hangs cannot be interrupted inside its own process, and some texts c
 compiler. The child keeps its own headless context warm, draws one small frame, and is
 killed when it takes too long or too much memory. Parent and child share the driver's
 shader cache, so what the child compiled compiles at once for the parent.
+
+A child that died is replaced at once, and one that takes suspiciously long has a spare
+beside it, warm by the time that it is needed. Whoever hands over something newer does
+not wait for a child that hangs: it is killed, and the spare takes its place.
+
+The limit on memory is the system's own (``RLIMIT_DATA``), which holds on Linux; where
+there is none, on macOS and Windows, only the limit on time stands.
 """
 
 from __future__ import annotations
 
-import contextlib
-import os
-import pickle
 import queue
-import signal
-import struct
-import subprocess
-import sys
-import tempfile
-import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import IO
 
+from playground.engine.trial_process import Process
 from playground.errors import PlaygroundError, TrialCrash, TrialTimeout
 from playground.sketch.model import Sketch
 
 LIMIT_SECONDS = 10.0
 LIMIT_BYTES = 4 * 2**30
-_FIRST_EXTRA = 20.0  # [s] more for the first answer of a child: it starts Python and opens a context
+_START = 60.0  # [s] that a child may take to start Python and open a context
+_SUSPICIOUS = 0.3  # [s] after which a spare is started beside a child that is still at it
+_IMPATIENT = 0.5  # [s] after which a child is killed for something newer
+_MODULE = "playground.engine.trial_child"
 
 
 @dataclass(frozen=True)
@@ -85,11 +86,13 @@ class Trial:
             str(memory_bytes),
             renderer,
             "" if device is None else str(device),
-            str(limit_seconds + 2 * _FIRST_EXTRA),
+            str(limit_seconds + _START),
         ]
-        self._child: _Child | None = None
+        self._child: Process[TrialReport] | None = None
+        self._spare: Process[TrialReport] | None = None
+        self._given: Request | None = None  # what the child works on, while that is the newest
         self._waiting: Request | None = None  # the newest, while the child still works on an older one
-        self._newest = False  # whether what the child works on is the newest
+        self._again = False  # what the child works on was handed to one before, which died of something else
 
     def __enter__(self) -> Trial:
         return self
@@ -102,18 +105,17 @@ class Trial:
     @property
     def busy(self) -> bool:
         """Whether a request waits for its answer."""
-        return self._newest or self._waiting is not None
+        return self._given is not None or self._waiting is not None
 
     def start(self) -> None:
         """Start the child, so that it is warm when it is needed; does nothing if it runs."""
         if self._child is None or not self._child.runs:
-            self._forget()
-            self._child = _Child(self._arguments)
+            self._replace()
 
     def run(self, request: Request) -> TrialReport:
         """Try something and wait for the answer, no longer than the limit."""
         self.submit(request)
-        while (report := self._answer(wait=0.2)) is None:
+        while (report := self._answer(wait=0.05)) is None:
             pass
         return report
 
@@ -122,8 +124,8 @@ class Trial:
 
         Never waits: a child that hangs reads nothing, so it is handed one request at a time.
         """
-        if self._child is not None and self._child.since is not None and self._child.runs:
-            self._waiting, self._newest = request, False
+        if self._child is not None and self._child.busy and self._child.runs:
+            self._waiting, self._given = request, None
             return
         self._hand_over(request)
 
@@ -133,162 +135,93 @@ class Trial:
 
     def close(self) -> None:
         """End the child."""
-        self._waiting, self._newest = None, False
+        self._waiting = self._given = None
         if self._child is not None:
             self._child.ask_to_end()
-        self._forget()
+        for process in (self._child, self._spare):
+            if process is not None:
+                process.kill()
+        self._child = self._spare = None
 
-    def _hand_over(self, request: Request) -> None:
+    def _hand_over(self, request: Request, *, again: bool = False) -> None:
         self.start()
         assert self._child is not None
-        self._waiting, self._newest = None, True
+        self._waiting, self._given, self._again = None, request, again
         self._child.hand_over(request)
 
     def _answer(self, wait: float) -> TrialReport | None:
         child = self._child
-        if child is None or child.since is None:
+        if child is None or not child.busy:
             return None
-        limit = self.limit_seconds + (0.0 if child.is_warm else _FIRST_EXTRA)
         try:
             report = child.answers.get(timeout=wait) if wait else child.answers.get_nowait()
         except queue.Empty:
-            if time.monotonic() - child.since < limit:
-                return None
-            self._forget()
-            message = f"the trial took longer than {limit:g} s and was stopped; is there an endless loop?"
-            return self._told(TrialReport(False, TrialTimeout(message), seconds=limit))
+            return self._mind(child)
         if report is None:
-            spent, cause = time.monotonic() - child.since, child.cause_of_death()
-            self._forget()
-            return self._told(TrialReport(False, TrialCrash(cause), seconds=spent))
-        child.since, child.is_warm = None, True
+            return self._bury(child)
+        child.busy = False
+        if isinstance(report.error, TrialCrash):  # it lost its context, and is of no more use
+            self._replace()
         return self._told(report)
+
+    def _mind(self, child: Process[TrialReport]) -> TrialReport | None:
+        """See to a child that is still at it."""
+        starting = 0.0 if child.is_ready else time.monotonic() - child.started
+        if starting > _START:
+            self._drop()
+            message = f"the trial's process was not ready after {_START:g} s, so nothing could be tried"
+            return self._told(TrialReport(False, TrialTimeout(message), seconds=starting))
+        spent = child.seconds
+        if spent > _SUSPICIOUS and self._spare is None:
+            self._spare = Process(_MODULE, self._arguments)
+        if self._waiting is not None and spent > _IMPATIENT:
+            self._replace()
+            self._hand_over(self._waiting)
+            return None
+        limit = self.limit_seconds
+        if spent < limit:
+            return None
+        what, file = (child.doing.subject, Path(child.doing.file)) if child.doing else ("the trial", "")
+        self._replace()
+        message = (
+            f"{what} took longer than {limit:g} s in the trial and was stopped; is there an endless loop?"
+        )
+        return self._told(TrialReport(False, TrialTimeout(message, file=file), seconds=limit))
+
+    def _bury(self, child: Process[TrialReport]) -> TrialReport | None:
+        """See to a child that died over a request."""
+        spent, doing, was_ready = child.seconds, child.doing, child.is_ready
+        cause = child.cause_of_death()
+        if not was_ready:
+            self._drop()
+            message = f"the trial's process could not be started: it {cause}"
+            return self._told(TrialReport(False, TrialCrash(message), seconds=spent))
+        self._replace()
+        if doing is None and self._given is not None and not self._again:
+            # It had not begun: something else killed it, perhaps while it was idle.
+            self._hand_over(self._given, again=True)
+            return None
+        what, file = (doing.subject, Path(doing.file)) if doing else ("this", "")
+        return self._told(TrialReport(False, TrialCrash(f"{what} {cause}", file=file), seconds=spent))
 
     def _told(self, report: TrialReport) -> TrialReport | None:
         """Return an answer if it is the newest request's; else hand over the one that waits."""
-        if self._newest:
-            self._newest = False
+        if self._given is not None:
+            self._given = None
             return report
         if self._waiting is not None:
             self._hand_over(self._waiting)
         return None
 
-    def _forget(self) -> None:
+    def _replace(self) -> None:
+        """Put the spare, or a new child, in the child's place."""
+        spare, self._spare = self._spare, None
+        self._drop()
+        self._child = spare if spare is not None and spare.runs else Process(_MODULE, self._arguments)
+        if spare is not None and self._child is not spare:
+            spare.kill()
+
+    def _drop(self) -> None:
         child, self._child = self._child, None
         if child is not None:
             child.kill()
-
-
-class _Child:
-    """The process, and the thread that talks to it."""
-
-    def __init__(self, arguments: list[str]) -> None:
-        self.since: float | None = None  # when it was handed what it works on
-        self.is_warm = False  # it has answered before
-        self.answers: queue.Queue[TrialReport | None] = queue.Queue()  # None: it is dead
-        self._requests: queue.Queue[Request | None] = queue.Queue()
-        self._errors = tempfile.TemporaryFile()  # closed in kill
-        # -P: what lies in the user's folder is no module of ours, whatever its name.
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "playground.engine.trial_child", *arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            env=_environment(),
-            start_new_session=True,
-        )
-        self._thread = threading.Thread(target=self._talk, daemon=True)
-        self._thread.start()
-
-    @property
-    def runs(self) -> bool:
-        """Whether the process lives."""
-        return self._process.poll() is None
-
-    @property
-    def pid(self) -> int:
-        """The process's number."""
-        return self._process.pid
-
-    def hand_over(self, request: Request) -> None:
-        """Give it a request; never waits."""
-        self.since = time.monotonic()
-        self._requests.put(request)
-
-    def cause_of_death(self) -> str:
-        """Say how the process ended, with the last line that it wrote."""
-        code = None
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            code = self._process.wait(2.0)
-        self._errors.seek(0)
-        said = self._errors.read().decode("utf-8", "replace").strip().split("\n")[-1].strip()
-        how = "died"
-        if code is not None and code < 0:
-            how = f"was killed by {_signal_name(-code)}"
-        elif code:
-            how = f"ended with status {code}"
-        told = f" ({said})" if said else ""
-        return f"the trial {how}: the driver or its compiler crashed, or memory ran out{told}"
-
-    def ask_to_end(self) -> None:
-        """Let it end by itself, if it does so soon."""
-        self._requests.put(None)
-        if self.since is None and self.is_warm:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(1.0)
-
-    def kill(self) -> None:
-        """End it whatever it does."""
-        self._process.kill()
-        self._requests.put(None)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(5.0)
-        self._thread.join(5.0)
-        self._errors.close()
-
-    def _talk(self) -> None:
-        process = self._process
-        assert process.stdin is not None and process.stdout is not None
-        # Its pipes are closed here, where they are used: closing waits for whoever reads.
-        with contextlib.suppress(OSError), process.stdout:
-            with contextlib.suppress(OSError, EOFError, ValueError, pickle.UnpicklingError):
-                while (request := self._requests.get()) is not None:
-                    send(process.stdin, request)
-                    answer = receive(process.stdout)
-                    if answer is None:
-                        break
-                    self.answers.put(answer)  # type: ignore[arg-type]
-            with contextlib.suppress(OSError):
-                process.stdin.close()
-        self.answers.put(None)
-
-
-def _environment() -> dict[str, str]:
-    """Return an environment in which the child finds this package, wherever it was started."""
-    package = str(Path(__file__).resolve().parents[2])
-    known = [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join([package, *known])}
-
-
-def _signal_name(number: int) -> str:
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
-
-
-def send(stream: IO[bytes], message: object) -> None:
-    """Write one message, its length before it."""
-    data = pickle.dumps(message)
-    stream.write(struct.pack("<Q", len(data)) + data)
-    stream.flush()
-
-
-def receive(stream: IO[bytes]) -> object | None:
-    """Read one message of ``send``; None at the end. Only ever from our own child or parent."""
-    head = stream.read(8)
-    if len(head) < 8:
-        return None
-    (length,) = struct.unpack("<Q", head)
-    data = stream.read(length)
-    return pickle.loads(data) if len(data) == length else None

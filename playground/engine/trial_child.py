@@ -11,15 +11,16 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import IO, TYPE_CHECKING, cast
 
 from playground.engine.engine import Engine
 from playground.engine.plan import smallest_land
-from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch, receive, send
-from playground.errors import ContextError, PlaygroundError
+from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch
+from playground.engine.trial_process import Doing, Ready, receive, send
+from playground.errors import ContextError, PlaygroundError, TrialCrash
 from playground.gpu.context import open_context
 from playground.gpu.program import compile_library
-from playground.gpu.textures import drain
+from playground.gpu.textures import drain, is_lost
 from playground.gpu.wrap import COMPUTE
 from playground.sketch.source import read_source
 
@@ -28,6 +29,20 @@ if TYPE_CHECKING:
 
 
 _FINEST = 33  # vertices a side of the trial's meshes
+
+
+class Teller:
+    """Tells the parent what is about to be done."""
+
+    def __init__(self, answers: IO[bytes]) -> None:
+        self._answers = answers
+        self.subject = "this"
+
+    def __call__(self, path: str, file: str) -> None:
+        """Say that a pass is about to run, or a file alone to be compiled."""
+        doing = Doing(path, file)
+        self.subject = doing.subject
+        send(self._answers, doing)
 
 
 def main() -> None:
@@ -44,14 +59,16 @@ def main() -> None:
     except ContextError as error:
         failure = error
     _limit(memory)
+    tell = Teller(answers)
     engines: dict[str, Engine] = {}
+    send(answers, Ready())
     while (request := receive(requests)) is not None:
         start = time.perf_counter()
         _end_yourself_after(longest)
         if ctx is None:
             report = TrialReport(False, failure)
         else:
-            report = _try(ctx, engines, cast("Request", request))
+            report = _try(ctx, engines, cast("Request", request), tell)
         _end_yourself_after(0.0)
         send(answers, replace(report, seconds=time.perf_counter() - start))
 
@@ -62,10 +79,11 @@ def _end_yourself_after(seconds: float) -> None:
         signal.setitimer(signal.ITIMER_REAL, seconds)  # SIGALRM kills, even in the middle of a draw
 
 
-def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request) -> TrialReport:
+def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request, tell: Teller) -> TrialReport:
     skipped: list[str] = []
     try:
         if isinstance(request, TryLibrary):
+            tell("", request.path)
             compile_library(ctx, read_source(Path(request.path), (Path(request.folder),)))
             return TrialReport(True)
         for driver in request.drivers:
@@ -76,8 +94,11 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request) ->
                 engines[driver] = Engine(ctx, driver=driver, cache_bytes=64 * 2**20)
                 # A mesh's fineness proves nothing more, and takes longer than all the rest.
                 engines[driver].runner.draws.finest = _FINEST
+                engines[driver].runner.tell = lambda step: tell(step.path, step.kernel.path)
             _draw(engines[driver], request)
     except PlaygroundError as error:
+        if is_lost(ctx):
+            return TrialReport(False, TrialCrash(f"{tell.subject} made the driver reset itself in the trial"))
         return TrialReport(False, error, tuple(skipped))
     except MemoryError:
         return TrialReport(False, PlaygroundError("the trial ran out of memory"), tuple(skipped))
@@ -103,6 +124,7 @@ def _limit(memory: int) -> None:
         return
     # Data, not address space: a GPU's driver reserves far more addresses than it uses.
     resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # it dies often, and nobody reads what it leaves
 
 
 if __name__ == "__main__":

@@ -91,6 +91,12 @@ def drain(ctx: moderngl.Context) -> None:
             return
 
 
+def is_lost(ctx: moderngl.Context) -> bool:
+    """Say whether a context answers everything with an error, as one does after its driver was reset."""
+    drain(ctx)
+    return bool(ctx.error != "GL_NO_ERROR")
+
+
 def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     """Write an array, (ny, nx) or (ny, nx, components), row 0 south.
 

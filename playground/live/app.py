@@ -21,6 +21,7 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
+from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
@@ -105,21 +106,20 @@ class Live:
     def __init__(self, window: Window, session: Session, watcher: Watcher) -> None:
         self.window = window
         self.session = session
-        self.watcher = watcher
+        self.follower = Follower(session, watcher)
         self.panel = Panel()
         self.actions = Actions(session, window.ask_to_close)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
         self._settling = _SETTLES
         self._last = time.perf_counter()
-        self._followed: object = None
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
-        self._follow()
+        self.follower.follow()
         while self.window.open:
             patience = self._patience()
             if end is not None:
@@ -128,10 +128,10 @@ class Live:
                     return
                 patience = min(patience, left)
             self._sleep(patience)
-            self._take_files()
+            self.follower.take(self.actions.painting.files)
             if self.window.pixels != (0, 0):
                 self._turn()
-            self._follow()
+            self.follower.follow()
 
     def _patience(self) -> float:
         """Say how long nothing needs to be done [s]."""
@@ -156,21 +156,6 @@ class Live:
         if self.session.animated:
             self.session.advance(min(now - self._last, _LONGEST_STEP), datetime.now())
         self._last = now
-
-    def _take_files(self) -> None:
-        changed = self.watcher.take() - self.actions.painting.files
-        if changed and (self.session.error or changed & self.session.files):
-            self.session.reload()
-
-    def _follow(self) -> None:
-        """Watch the files that the session stands on now."""
-        session = self.session
-        now = (session.shown, session.coming, session.error)
-        before = self._followed
-        if isinstance(before, tuple) and all(a is b for a, b in zip(now, before, strict=True)):
-            return
-        self._followed = now
-        self.watcher.follow(session.files, read_at=session.read_at)
 
     def _turn(self) -> None:
         window, session, actions = self.window, self.session, self.actions

@@ -31,9 +31,11 @@ from playground.live.files import files_named_by, files_of
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.sunlight import suns_of, turned
+from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
+from playground.sketch.places import Signature, noting_places
 
 if TYPE_CHECKING:
     import moderngl
@@ -100,6 +102,7 @@ class Session:
         self.draws = 0  # pictures drawn so far
         self.hasty = False  # the picture has one sample a pixel only, and will be drawn again in full
         self.read_at = 0.0  # [s since the epoch] when the files were last read
+        self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
         self._initial = Edits(tuple((values or {}).items()))
         self._trial = trial
         self._now = now
@@ -147,8 +150,14 @@ class Session:
 
     @property
     def files(self) -> frozenset[Path]:
-        """Every file worth watching: of the drafts, and those that an error points at."""
+        """Every file worth watching: of the drafts, those that an error points at, and where others may come.
+
+        A place where nothing is counts inside the sketch's folder and the library only:
+        nothing else is likely to come from elsewhere.
+        """
+        roots = (self.path.resolve().parent, GLSL)
         found = {self.path}
+        found |= {p for p, there in self.places.items() if there or any(p.is_relative_to(r) for r in roots)}
         for draft in (self.shown, self.coming):
             if draft is not None:
                 found |= files_of(draft.sketch) | files_of(draft.file)
@@ -179,7 +188,8 @@ class Session:
         self.read_at = time.time()
         self._started = self._now()
         try:
-            loaded = load(self.path)
+            with noting_places() as self.places:
+                loaded = load(self.path)
             draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
         except Exception as error:
             self._drop_coming()
@@ -211,11 +221,27 @@ class Session:
     def _propose(self, draft: Draft, notes: list[str]) -> None:
         self.coming, self._coming_notes = draft, notes
         self._file_error, self._trial_seconds = None, 0.0
-        if self._trial is None:
+        if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
             return
         self.stage = Stage.TRIAL
         self._trial.submit(TrySketch(draft.sketch, time=self.clock.time, drivers=(self.engine.driver,)))
+
+    def _draws_anew(self, sketch: Sketch) -> bool:
+        """Say whether the driver would be given anything that it has not drawn already.
+
+        Another comment, label, range, preset or shot gives it nothing, and needs no trial.
+        Other values do: they say how often a loop turns.
+        """
+        texture = self._picture.texture
+        if self.shown is None or texture is None:
+            return True
+        chosen = replace(sketch, samples=1) if self.hasty else sketch
+        try:
+            steps = self._steps_for(sketch)
+            return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
+        except PlaygroundError:
+            return True
 
     def _drop_coming(self) -> None:
         self.coming, self.stage, self._coming_notes = None, Stage.NONE, []

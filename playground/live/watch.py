@@ -12,17 +12,17 @@ import contextlib
 import hashlib
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from watchfiles import watch
+
+from playground.sketch.places import Signature, signature
 
 STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is told; longest batch
 LOOK_EVERY = 500  # [ms]
 _GRACE = 0.08  # [s] a deleted file may take to come back: editors delete and create
 _JUST = 0.05  # [s] how far a file's time of change may lag behind the clock
-
-Signature = tuple[int, int, int]  # inode, time of change [ns], size
 
 
 class Watcher:
@@ -65,11 +65,18 @@ class Watcher:
             self._thread.join(5.0)
             self._thread = None
 
-    def follow(self, files: Iterable[Path], *, read_at: float | None = None) -> None:
+    def follow(
+        self,
+        files: Iterable[Path],
+        *,
+        read_at: float | None = None,
+        read: Mapping[Path, Signature | None] | None = None,
+    ) -> None:
         """Follow these files, and no others.
 
-        ``read_at`` is when they were read [s since the epoch]: a file new to the set that
-        changed after that is told of at once, so that no save falls in between.
+        ``read_at`` is when they were read [s since the epoch], and ``read`` says what was there
+        then: a file new to the set that changed after that is told of at once, so that no save
+        falls in between, whatever time it bears.
         """
         wanted = {Path(f) for f in files}
         with self._lock:
@@ -79,9 +86,10 @@ class Watcher:
             for path in self._followed.keys() - wanted:
                 del self._followed[path]
             for path in wanted - self._followed.keys():
-                signature = _signature(path)
-                self._followed[path] = (signature, _hash(path))
-                if read_at is not None and signature and signature[1] / 1e9 > read_at - _JUST:
+                now = signature(path)
+                self._followed[path] = (now, _hash(path))
+                late = read_at is not None and now is not None and now[1] / 1e9 > read_at - _JUST
+                if late or (read is not None and path in read and read[path] != now):
                     self._changed[path] = None
             told = bool(self._changed)
             if _folders(self._followed) != folders:
@@ -143,18 +151,18 @@ class Watcher:
         with self._lock:
             followed = dict(self._followed)
         if paths is None:
-            paths = {path for path, (signature, _) in followed.items() if _signature(path) != signature}
+            paths = {path for path, (before, _) in followed.items() if signature(path) != before}
         else:
             paths |= {path for path in followed if path.resolve() in paths}
         if any(not path.exists() for path in paths if path in followed):
             self._stop.wait(_GRACE)
-        seen = {path: (_signature(path), _hash(path)) for path in paths if self._matters(path, followed)}
+        seen = {path: (signature(path), _hash(path)) for path in paths if self._matters(path, followed)}
         told = False
         with self._lock:
-            for path, (signature, digest) in seen.items():
+            for path, (now, digest) in seen.items():
                 before = self._seen(path)
                 if path in self._followed:
-                    self._followed[path] = (signature, digest)
+                    self._followed[path] = (now, digest)
                 else:
                     self._others[path] = digest
                 if digest != before:
@@ -182,14 +190,6 @@ def _identities(folders: Iterable[Path]) -> dict[Path, int]:
         with contextlib.suppress(OSError):
             found[folder] = folder.stat().st_ino
     return found
-
-
-def _signature(path: Path) -> Signature | None:
-    try:
-        stat = path.stat()
-    except OSError:
-        return None
-    return stat.st_ino, stat.st_mtime_ns, stat.st_size
 
 
 def _hash(path: Path) -> bytes:

@@ -7,7 +7,9 @@ that the user types are the user's own affair and are not judged here.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from playground.paths import GLSL
@@ -23,6 +25,42 @@ TEXTS = (*SHADERS, ".toml")
 
 _MOST_FOLDERS = 500
 
+Signature = tuple[int, int, int]
+"""Inode, time of change [ns] and size of a file: what differs when it was saved since."""
+
+_noted: ContextVar[dict[Path, Signature | None] | None] = ContextVar("noted", default=None)
+
+
+@contextmanager
+def noting_places() -> Iterator[dict[Path, Signature | None]]:
+    """Note every place where a file was looked for, and the signature of what was there, None for nothing.
+
+    The same places give the same sketch: whoever follows them misses no file that comes,
+    goes or changes, also one that would stand before another from then on.
+    """
+    found: dict[Path, Signature | None] = {}
+    token = _noted.set(found)
+    try:
+        yield found
+    finally:
+        _noted.reset(token)
+
+
+def note(path: Path) -> None:
+    """Note that a file is looked for at a place; before it is read, so that no save falls in between."""
+    noted = _noted.get()
+    if noted is not None and path not in noted:
+        noted[path] = signature(path)
+
+
+def signature(path: Path) -> Signature | None:
+    """Return a file's signature; None where there is none."""
+    try:
+        stat = path.stat()
+    except (OSError, ValueError):
+        return None
+    return stat.st_ino, stat.st_mtime_ns, stat.st_size
+
 
 def real(path: Path) -> Path | None:
     """Return a path with its links followed; None for what can name no file (a NUL, links in a circle)."""
@@ -34,6 +72,7 @@ def real(path: Path) -> Path | None:
 
 def is_file(path: Path) -> bool:
     """Say whether a file is there, also for names that no file can have."""
+    note(path)
     try:
         return path.is_file()
     except (OSError, ValueError):

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.places import is_file, is_inside, names_below, real
+from playground.sketch.places import is_file, is_inside, names_below, note, real
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
@@ -135,6 +135,7 @@ def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tupl
 
 def read_text(path: Path) -> str:
     """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read."""
+    note(path)
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
@@ -228,6 +229,7 @@ class _Reader:
 
 def _file_at(place: Path) -> Path | None:
     """Return the file that a path leads to, its links followed; None if there is none."""
+    note(place)
     found = real(place)
     return found if found is not None and is_file(found) else None
 

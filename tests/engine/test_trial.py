@@ -118,15 +118,85 @@ def test_what_crashes_the_compiler_kills_the_child_only(trial, folder):
     assert trial.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_a_crash_says_how(trial, folder):
+def at_work(trial: Trial) -> int:
+    """Wait until the child is in the middle of a pass; return its process."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        assert trial.poll() is None
+        if trial._child.busy and trial._child.doing is not None:
+            return trial._child.pid
+        time.sleep(0.005)
+    raise AssertionError("it did not begin")
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the trial (SIGSEGV)"),
+        ("SIGKILL", "pass 'a' was killed by the system in the trial (SIGKILL); did memory run out?"),
+    ],
+)
+def test_a_crash_says_how_and_where(trial, folder, number, said):
     assert trial.run(TrySketch(folder.one(GOOD))).ok
     trial.submit(TrySketch(folder.one(SLOW)))
-    time.sleep(0.2)
-    os.kill(trial._child.pid, signal.SIGSEGV)
+    os.kill(at_work(trial), signal.Signals[number])
     report = wait(trial)
     assert isinstance(report.error, TrialCrash)
-    assert "SIGSEGV" in str(report.error)
+    assert report.error.diagnostics[0].message == said
+    assert report.error.diagnostics[0].file == str(folder.path / "one.glsl")
     assert trial.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_a_child_that_died_is_replaced_before_it_is_needed(trial, folder):
+    report = trial.run(TrySketch(folder.one(CRASH)))
+    assert isinstance(report.error, TrialCrash)
+    assert trial._child.runs and not trial._child.busy
+    pid = trial._child.pid
+    assert trial.run(TrySketch(folder.one(GOOD))).ok
+    assert trial._child.pid == pid
+
+
+def test_a_child_that_dies_idle_costs_nobody_an_answer(trial, folder):
+    """It is dead when it is handed something, or dies just then: another is asked."""
+    assert trial.run(TrySketch(folder.one(GOOD))).ok
+    os.kill(trial._child.pid, signal.SIGKILL)
+    report = trial.run(TrySketch(folder.one(GOOD)))
+    assert report.ok, report.error
+
+
+MONSTERS = {
+    "thirty macros, each twice the one before": "\n".join(
+        ["#define M0 x"] + [f"#define M{i} M{i - 1} + M{i - 1}" for i in range(1, 31)]
+    )
+    + "\nfloat run(float x) { return M30; }",
+    "twenty thousand lines, one after the other": "float run(float x) {\n"
+    + "\n".join(f"x = fract(x * 1.{i} + {i}.5);" for i in range(20000))
+    + "\nreturn x; }",
+    "an array of a gigabyte": "float big[250000000];\n"
+    "float run(float x) { big[int(x) * 1000] = 1.0; return big[int(x) * 77]; }",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MONSTERS)
+def test_a_monstrous_text_is_stopped_or_crashes_and_the_next_is_tried(folder, name):
+    kernel = GOOD.replace("float kernel", f"{MONSTERS[name]}\nfloat kernel").replace(
+        "float(texel.x)", "run(float(texel.x))"
+    )
+    with Trial(limit_seconds=PATIENCE, memory_bytes=2**30) as trial:
+        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        trial.limit_seconds = 1.5
+        report = trial.run(TrySketch(folder.one(kernel)))
+        assert isinstance(report.error, TrialTimeout | TrialCrash), report
+        assert report.error.diagnostics[0].message.startswith("pass 'a' ")
+        trial.limit_seconds = PATIENCE
+        assert trial.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_a_long_text_is_no_mistake(trial, folder):
+    lines = "\n".join(f"float f{i}(float x) {{ return fract(x * 1.{i}); }}" for i in range(2000))
+    report = trial.run(TrySketch(folder.one(GOOD.replace("float kernel", f"{lines}\nfloat kernel"))))
+    assert report.ok, report.error
 
 
 def test_what_takes_too_long_is_stopped(folder):
@@ -136,7 +206,8 @@ def test_what_takes_too_long_is_stopped(folder):
         trial.limit_seconds = 0.7
         report = trial.run(TrySketch(folder.one(SLOW)))
         assert isinstance(report.error, TrialTimeout)
-        assert "longer than 0.7 s" in str(report.error)
+        assert "pass 'a' took longer than 0.7 s" in str(report.error)
+        assert report.error.diagnostics[0].file.endswith("one.glsl")
         assert is_gone(pid)
         trial.limit_seconds = PATIENCE
         assert trial.run(TrySketch(folder.one(GOOD))).ok
@@ -155,11 +226,27 @@ def test_submit_never_waits_and_the_newest_wins(folder):
         for request in wrong:
             trial.submit(request)
         assert trial.busy and trial._child.pid == pid and is_alive(pid), "nothing waited for the child"
-        trial.limit_seconds = 2.0
         report = wait(trial)
-        assert "wrong19" in str(report.error)
+        assert "wrong19" in str(report.error), "within the limit: the child that hung was killed for it"
+        assert trial._child.pid != pid and is_gone(pid)
         assert not trial.busy
         assert trial.poll() is None
+
+
+def test_a_child_that_takes_long_has_a_spare_that_takes_its_place(folder):
+    with Trial(limit_seconds=3600.0) as trial:
+        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        trial.submit(TrySketch(folder.one(SLOW)))
+        first = at_work(trial)
+        end = time.monotonic() + PATIENCE
+        while (trial._spare is None or not trial._spare.is_ready) and time.monotonic() < end:
+            assert trial.poll() is None
+            time.sleep(0.005)
+        spare = trial._spare.pid
+        trial.submit(TrySketch(folder.one(GOOD)))
+        assert wait(trial).ok
+        assert trial._child.pid == spare and is_gone(first)
+    assert is_gone(spare)
 
 
 def test_an_older_answer_is_not_given(folder, trial):
@@ -233,7 +320,9 @@ def two(folder):
     return folder.path
 
 
-@pytest.mark.parametrize(("number", "own"), [(signal.SIGINT, 3600), (signal.SIGKILL, 8)])
+@pytest.mark.parametrize(
+    ("number", "own"), [(signal.SIGINT, 3600), pytest.param(signal.SIGKILL, 8, marks=pytest.mark.slow)]
+)
 def test_a_parent_that_is_stopped_leaves_no_child(two, number, own):
     """Ctrl-C ends the child at once; a killed parent's child, hung as it is, ends by its own clock."""
     with run_script(two, SCRIPT.replace("OWN", str(own))) as parent:

@@ -365,6 +365,31 @@ def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -
     assert len(trial.requests) == 2
 
 
+@pytest.mark.parametrize(
+    ("name", "old", "new", "is_tried"),
+    [
+        ("land.glsl", "a slope", "another comment", False),
+        ("land.glsl", "slider(0, 1)", "slider(0, 2) step(0.5) How high", False),
+        ("sketch.toml", '"height.level" = 1.0', '"height.level" = 0.5', False),
+        ("land.glsl", "level = 0.25", "level = 0.5", True),
+        ("sketch.toml", 'channel = "red"', 'channel = "red", highest = 0.5', True),
+        ("inc/tilt.glsl", "texel.x", "texel.y", True),
+    ],
+    ids=["comment", "range", "preset", "default", "value", "include"],
+)
+def test_what_the_driver_has_drawn_already_needs_no_trial(
+    tried: tuple[Bench, FakeTrial], name: str, old: str, new: str, is_tried: bool
+) -> None:
+    bench, trial = tried
+    trial.answer = TrialReport(True)
+    before = bench.picture()
+    bench.change(name, old, new)
+    assert bench.session.testing == is_tried and len(trial.requests) == (2 if is_tried else 1)
+    trial.answer = TrialReport(True)
+    assert np.array_equal(bench.picture(), before) == (not is_tried)
+    assert bench.session.error is None and bench.session.coming is None, "the new text is the one shown"
+
+
 def test_a_fault_of_the_playground_itself_does_not_end_the_session(
     bench: Bench, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
