@@ -75,24 +75,29 @@ class Watcher:
         """Follow these files, and no others.
 
         ``read_at`` is when they were read [s since the epoch], and ``read`` says what was there
-        then: a file new to the set that changed after that is told of at once, so that no save
-        falls in between, whatever time it bears.
+        then. A file new to the set that changed after that is told of at once, and so is any
+        whose reader saw what was never told of: so no save falls in between.
         """
         wanted = {Path(f) for f in files}
+        read = read or {}
         with self._lock:
-            if wanted == self._followed.keys():
-                return
-            folders = _folders(self._followed)
+            folders = _folders(self._followed) if wanted != self._followed.keys() else None
             for path in self._followed.keys() - wanted:
                 del self._followed[path]
             for path in wanted - self._followed.keys():
                 now = signature(path)
                 self._followed[path] = (now, _hash(path))
-                late = read_at is not None and now is not None and now[1] / 1e9 > read_at - _JUST
-                if late or (read is not None and path in read and read[path] != now):
+                if read_at is not None and now is not None and now[1] / 1e9 > read_at - _JUST:
+                    self._changed[path] = None
+            for path in wanted & read.keys():
+                if read[path] == self._followed[path][0]:
+                    continue
+                now = signature(path)
+                self._followed[path] = (now, _hash(path))
+                if now != read[path] or (now is not None and now[1] / 1e9 > time.time() - _JUST):
                     self._changed[path] = None
             told = bool(self._changed)
-            if _folders(self._followed) != folders:
+            if folders is not None and _folders(self._followed) != folders:
                 self._again.set()
         if told:
             self._wake()

@@ -14,6 +14,7 @@ from playground.errors import ContextError, SketchError, TrialTimeout
 from playground.live.files import files_of
 from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
+from playground.sketch.model import Camera
 
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope
@@ -308,6 +309,24 @@ def test_any_texture_is_shown_as_a_map_fitted_to_its_values(bench: Bench) -> Non
     np.testing.assert_array_equal(bench.picture(), own)
 
 
+def test_what_one_looks_at_survives_saves_mistakes_and_their_mending(bench: Bench) -> None:
+    session = bench.session
+    bench.picture()
+    session.show("height:height")
+    session.set_map("highest", 0.5)
+    session.look(Camera(azimuth=77.0))
+    session.clock.time = 3.0
+    session.clock.toggle()
+    session.set("height.level", 0.75)
+    looked_at = session.map, session.clock.time, session.clock.playing, session.shown.edits
+    for old, new in [("level * tilt", "1.0 - level * tilt"), ("1.0 -", "1.0 - x"), ("1.0 - x", "")]:
+        bench.change("land.glsl", old, new)
+        bench.picture()
+        assert (session.map, session.clock.time, session.clock.playing, session.shown.edits) == looked_at
+    expected = session.engine.render(session.map.of(session.sketch), size=SIZE, time=3.0)
+    np.testing.assert_array_equal(bench.picture()[..., :3], expected.array[..., :3])
+
+
 def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
     bench.picture()
     bench.session.show("height:height")
@@ -422,6 +441,19 @@ def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
     assert "grass.png" in names, "it is missing, and its coming would mend that"
     assert bench.session.sketch is not None
     assert {p.name for p in files_of(bench.session.sketch)} <= names
+
+
+def test_places_where_a_file_may_come_are_watched_too(bench: Bench) -> None:
+    """An include that is missing, in a folder that is missing; and one before which another may stand."""
+    bench.picture()
+    bench.change("land.glsl", "inc/tilt", "new/place/tilt")
+    bench.picture()
+    assert "new/place/tilt" in str(bench.session.error)
+    assert bench.folder / "new" / "place" / "tilt.glsl" in bench.session.files
+    bench.change("land.glsl", "new/place/tilt", "noise/hash")
+    bench.picture()
+    assert bench.folder / "noise" / "hash.glsl" in bench.session.files, "it would stand before the library's"
+    assert not any(path.parent == Path("/") for path in bench.session.files)
 
 
 def stepped(bench: Bench) -> Session:

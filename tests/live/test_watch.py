@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from playground.live.watch import Watcher
+from playground.sketch.places import signature
 
 LIMIT = 30.0  # [s]
 
@@ -150,6 +151,28 @@ def test_a_change_between_reading_and_following_is_not_lost(watched: Watched) ->
     time.sleep(0.06)
     save_in_place(other, "saved while it was being read")
     watched.watcher.follow([watched.file, other], read_at=read_at)
+    assert watched.sees(other)
+
+
+def test_what_a_reader_saw_and_nobody_was_told_of_is_told(watched: Watched) -> None:
+    """It was away for a moment, just when another save had it read: deleted and created is no change."""
+    watched.watcher.follow([watched.file, watched.include], read={watched.file: None})
+    assert watched.sees(watched.file)
+    now = signature(watched.file)
+    time.sleep(0.06)  # so that its time is not that of this very moment
+    watched.watcher.follow([watched.file, watched.include], read={watched.file: now})
+    assert watched.sees_nothing()
+
+
+def test_a_save_that_bears_an_old_time_is_not_lost_while_it_is_read(watched: Watched) -> None:
+    other = watched.folder / "late.toml"
+    save_in_place(other, "one")
+    read_at, read = time.time() + 1.0, {other: signature(other)}
+    beside = watched.folder / "unpacked.tmp"
+    save_in_place(beside, "from an archive")
+    os.utime(beside, (1e9, 1e9))
+    beside.replace(other)
+    watched.watcher.follow([watched.file, other], read_at=read_at, read=read)
     assert watched.sees(other)
 
 
