@@ -11,6 +11,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -163,6 +164,17 @@ def adopt_context(address_of: Callable[[str], int | None] | None = None) -> mode
     ctx = moderngl.create_context(require=330, **options)
     ctx.gc_mode = "auto"
     return ctx
+
+
+def abandon(ctx: moderngl.Context) -> None:
+    """Give a lost context back.
+
+    What was made in it and is found unused later is not deleted: by number, that would
+    take what was made since in another context.
+    """
+    ctx.gc_mode = None  # type: ignore[assignment]
+    with suppress(Exception):  # it may be past answering
+        ctx.release()
 
 
 class _Functions:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from datetime import datetime
 from pathlib import Path
 from typing import cast
@@ -67,12 +67,11 @@ def run(
         trial = stack.enter_context(Trial(software=software))
         trial.start()
         window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", size))
-        engine = stack.enter_context(Engine(window.ctx, driver=driver))
-        session = Session(engine, path, values=checked, trial=trial)
-        stack.callback(session.release)
+        engine = Engine(window.ctx, driver=driver)
+        session = Session(engine, path, values=checked, trial=trial, is_lost=lambda: window.lost)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher)
-        stack.callback(live.painter.release)
+        stack.callback(live.release)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
@@ -131,7 +130,25 @@ class Live:
             self.follower.take(self.actions.painting.files)
             if self.window.pixels != (0, 0):
                 self._turn()
+            if self.window.lost:
+                self.recover()
             self.follower.follow()
+
+    def release(self) -> None:
+        """Give back all that was made in the window's context."""
+        self.painter.release()
+        self.session.release()
+        self.session.engine.release()
+
+    def recover(self) -> None:
+        """Build everything anew in a new context, after the driver took the old one."""
+        driver = self.session.engine.driver
+        with suppress(Exception):  # a lost context may refuse even this
+            self.release()
+        self.window.reopen()
+        self.session.rebuild(Engine(self.window.ctx, driver=driver))
+        self.painter = Painter(self.window.ctx)
+        self._settling = _SETTLES
 
     def _patience(self) -> float:
         """Say how long nothing needs to be done [s]."""

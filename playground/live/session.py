@@ -86,6 +86,7 @@ class Session:
         values: Mapping[str, Value] | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
+        is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         self.engine = engine
         self.path = find(path) if path else find("")
@@ -106,6 +107,8 @@ class Session:
         self._initial = Edits(tuple((values or {}).items()))
         self._trial = trial
         self._now = now
+        self._is_lost = is_lost  # says whether the engine's context is lost
+        self._lost_over: object = None  # what was shown when a context was lost last
         self._started = 0.0  # when what is coming began to be read
         self._trial_seconds = 0.0
         self._coming_notes: list[str] = []
@@ -115,6 +118,7 @@ class Session:
         self._picture = Picture(self._painter)
         self._repeats: tuple[Sketch | None, dict[str, int]] = (None, {})
         self._revision = 0
+        self._picture_size: tuple[int, int] | None = None  # asked for last
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
         self.reload()
@@ -367,6 +371,7 @@ class Session:
         ``size`` in pixels. The texture stays good until the next call. Nothing is raised
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
         """
+        self._picture_size = size
         self._hear_trial()
         if self.stage is Stage.DRAW:
             self._draw_coming(size)
@@ -380,6 +385,24 @@ class Session:
         """Give back the picture; the engine is its owner's."""
         self._picture.release()
         self._painter.release()
+
+    def rebuild(self, engine: Engine) -> None:
+        """Go on with another engine: the context of the one before is lost, and all that was in it.
+
+        What is shown is drawn anew, unless it was just that which cost two contexts already:
+        then it waits until something is changed.
+        """
+        engine.runner.mouse = self.engine.runner.mouse
+        self.engine, self.plan, self.hasty = engine, None, False
+        self._painter = Painter(engine.ctx)
+        self._picture = Picture(self._painter)
+        self._drawn, drawn = None, (self.shown, self._revision)
+        if self._lost_over == drawn and self._picture_size is not None:
+            self._drawn = self._wanted(self._picture_size)
+            message = "this made the graphics driver reset itself twice; it waits until something is changed"
+            self._draw_error = ContextError(message)
+        self._lost_over = drawn
+        self.notes.append("the graphics driver was reset; everything was built anew")
 
     def read(self) -> Frame | None:
         """Read the picture back, in full; None before the first."""
@@ -408,6 +431,9 @@ class Session:
         assert self.coming is not None
         try:
             self._draw(self.coming.sketch, size)
+            self.engine.ctx.finish()
+            if self._is_lost():
+                raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             self.stage = Stage.FAILED
             self._file_error = _explained(error)

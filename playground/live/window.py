@@ -8,6 +8,8 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
@@ -19,7 +21,7 @@ from imgui_bundle import imgui
 import glfw
 
 from playground.errors import ContextError
-from playground.gpu.context import adopt_context
+from playground.gpu.context import abandon, adopt_context
 from playground.gpu.mend import mend
 from playground.live.theme import Theme
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
 _SMALLEST = (480, 320)
+_ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
 
 
 class Window:
@@ -37,18 +40,15 @@ class Window:
         glfw.ERROR_REPORTING = "ignore"  # what failed is asked for below, and said in a sentence
         if not glfw.init():
             raise _refused("glfw.init failed")
-        self._handle = _create(title, size)
+        self._title = title
+        self._screen_size = (0, 0)
+        self._screen: moderngl.Framebuffer | None = None
         try:
-            glfw.make_context_current(self._handle)
-            glfw.swap_interval(1)
-            glfw.set_window_size_limits(self._handle, *_SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
-            self.ctx: moderngl.Context = _adopt()
+            self._open(size)
             self.theme = self._start_imgui()
         except BaseException:
             glfw.terminate()
             raise
-        self._screen_size = (0, 0)
-        self._screen: moderngl.Framebuffer | None = None
 
     def __enter__(self) -> Window:
         return self
@@ -62,6 +62,11 @@ class Window:
     def open(self) -> bool:
         """Whether nobody has asked it to close."""
         return not glfw.window_should_close(self._handle)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the driver was reset, and took the context with it; False where nobody can tell."""
+        return self._reset_status is not None and self._reset_status() != 0
 
     @property
     def pixels(self) -> tuple[int, int]:
@@ -123,15 +128,49 @@ class Window:
         glfw.destroy_window(self._handle)
         glfw.terminate()
 
+    def reopen(self) -> None:
+        """Put a window with a new context in its place, after the old one was lost.
+
+        All that was made in the old context is gone; what the interface shows stays as it is.
+        Raises ``ContextError`` where the driver gives no context any more.
+        """
+        place, size = glfw.get_window_pos(self._handle), glfw.get_window_size(self._handle)
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        abandon(self.ctx)
+        glfw.destroy_window(self._handle)
+        for attempt in range(_ATTEMPTS):
+            try:
+                self._open(size)
+                break
+            except ContextError:
+                if attempt == _ATTEMPTS - 1:
+                    raise
+                time.sleep(_BETWEEN)
+        glfw.set_window_pos(self._handle, *place)
+        self._start_backends()
+
+    def _open(self, size: tuple[int, int]) -> None:
+        self._handle = _create(self._title, size)
+        glfw.make_context_current(self._handle)
+        glfw.swap_interval(1)
+        glfw.set_window_size_limits(self._handle, *_SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
+        self.ctx: moderngl.Context = _adopt()
+        self._reset_status = _reset_status(self._handle)
+        self._screen_size, self._screen = (0, 0), None
+
+    def _start_backends(self) -> None:
+        address = ctypes.cast(self._handle, ctypes.c_void_p).value
+        assert address is not None
+        imgui.backends.glfw_init_for_opengl(address, True)
+        imgui.backends.opengl3_init("#version 330 core")
+
     def _start_imgui(self) -> Theme:
         imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")  # nothing is left in the current folder
         io.config_windows_move_from_title_bar_only = True
-        address = ctypes.cast(self._handle, ctypes.c_void_p).value
-        assert address is not None
-        imgui.backends.glfw_init_for_opengl(address, True)
-        imgui.backends.opengl3_init("#version 330 core")
+        self._start_backends()
         return Theme(Path(imgui_bundle.__file__).parent / "assets" / "fonts")
 
 
@@ -153,12 +192,23 @@ def _create(title: str, size: tuple[int, int]) -> Any:
         glfw.window_hint(glfw.STENCIL_BITS, 0)
         glfw.window_hint_string(glfw.WAYLAND_APP_ID, "terrain-shader-playground")
         glfw.window_hint_string(glfw.X11_CLASS_NAME, "terrain-shader-playground")
+        glfw.window_hint(glfw.CONTEXT_ROBUSTNESS, glfw.LOSE_CONTEXT_ON_RESET)
         handle = glfw.create_window(*size, title, None, None)
         if handle:
             return handle
         complaints.append(_complaint() or f"no window with OpenGL {major}.{minor}")
-    glfw.terminate()
     raise ContextError(mend(complaints[0], sys.platform, os.environ))
+
+
+def _reset_status(handle: Any) -> Callable[[], int] | None:
+    """Return OpenGL's function that tells of a reset, where the context was made to be told of one."""
+    if glfw.get_window_attrib(handle, glfw.CONTEXT_ROBUSTNESS) != glfw.LOSE_CONTEXT_ON_RESET:
+        return None
+    for name in ("glGetGraphicsResetStatus", "glGetGraphicsResetStatusKHR", "glGetGraphicsResetStatusARB"):
+        address = _address_of(name)
+        if address:
+            return ctypes.CFUNCTYPE(ctypes.c_uint)(address)
+    return None
 
 
 def _adopt() -> moderngl.Context:

@@ -214,6 +214,45 @@ def test_a_line_in_the_picture_is_dragged_and_nothing_else_is(app: App) -> None:
     assert soon(lambda: abs(lit_from() - (wide // 2 + 100)) <= 3)
 
 
+# A driver that is reset whenever a file called "reset" is there.
+RESET = """
+import sys
+from pathlib import Path
+import playground.live.window as window
+def lost(self):
+    mark = Path("reset")
+    found = mark.exists()
+    mark.unlink(missing_ok=True)
+    return found
+window.Window.lost = property(lost)
+from playground.live.app import run
+sys.exit(run(sys.argv[1], size=(800, 500), time_limit=90))
+"""
+
+
+def test_a_context_that_is_lost_costs_nothing_but_a_moment(
+    screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(globals(), "RUN", RESET)
+    app = App(screen, tmp_path)
+    try:
+        screen.do("mousemove", PANEL + 200, 200, "click", 4)
+        first = app.now()["picture"]
+        nearer = app.wait(lambda now: now["picture"] != first)["picture"]
+        panel, picture = screen.pixels()[:, :PANEL], app.picture()
+        (app.pictures / "reset").touch()
+        app.wait(lambda now: any("was reset" in text for text in now["notices"]))
+        app.wait(lambda now: now["picture"] == nearer and not now["error"])
+        assert soon(lambda: np.array_equal(app.picture(), picture))
+        assert soon(lambda: np.array_equal(screen.pixels()[:70, :PANEL], panel[:70])), "and its texts"
+        save_in_place(app.sketch / "land.glsl", LAND.replace("level * wave", "0.3 * level * wave"))
+        app.wait(lambda now: now["picture"] not in ("", nearer) and not now["error"])
+        screen.do("mousemove", PANEL + 200, 200, "key", "Escape")
+        assert app.ended() == 0, app.complaint()
+    finally:
+        app.close()
+
+
 def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     def draws_nothing(seconds: float) -> bool:
         before = app.now()["draws"]
