@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from playground.engine.files import find_file
@@ -9,6 +10,7 @@ from playground.errors import DataError, PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch, kernels_of
+from playground.sketch.places import Signature
 
 
 def files_of(sketch: Sketch) -> frozenset[Path]:
@@ -27,6 +29,28 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
                 found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
             except DataError:
                 found.add(Path(sketch.folder, str(text)))
+    return frozenset(found)
+
+
+def watched(
+    path: Path,
+    sketches: Iterable[Sketch],
+    errors: Iterable[PlaygroundError],
+    places: Mapping[Path, Signature | None],
+) -> frozenset[Path]:
+    """Return every file worth watching for the sketch in a file.
+
+    ``places`` are where its files were looked for, and what was there. One where nothing
+    is counts inside the sketch's folder and the library only: nothing else is likely to come
+    from elsewhere.
+    """
+    roots = (path.resolve().parent, GLSL)
+    found = {path}
+    found |= {p for p, there in places.items() if there or any(p.is_relative_to(r) for r in roots)}
+    for sketch in sketches:
+        found |= files_of(sketch)
+    for error in errors:
+        found |= files_named_by(error)
     return frozenset(found)
 
 

@@ -10,28 +10,26 @@ No window and no keys: ``frame(size)`` gives a texture to whoever has a screen.
 
 from __future__ import annotations
 
-import logging
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plan import Plan, repeats_of
-from playground.engine.trial import TrialReport, TrySketch
+from playground.engine.trial import TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.clock import Clock, is_animated, reads_mouse
 from playground.live.edits import Draft, Edits, reload_draft
-from playground.live.files import files_named_by, files_of
+from playground.live.files import watched
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
+from playground.live.stages import Reload, Stage, Tester, explained, has_draws
 from playground.live.sunlight import suns_of, turned
-from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
@@ -42,37 +40,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-log = logging.getLogger("playground.live")
-
 REST = 0.2  # [s] without a change after which a hasty picture is drawn again in full
 _SEEN_FROM = ("clip_from_world", "world_from_clip", "eye")
-
-
-class Tester(Protocol):
-    """What tries a sketch where it can do no harm: ``engine.trial.Trial``, or a test's stand-in."""
-
-    def submit(self, request: TrySketch) -> None:
-        """Hand over a sketch."""
-
-    def poll(self) -> TrialReport | None:
-        """Return the answer to the newest request, once."""
-
-
-class Stage(Enum):
-    """How far the coming draft has got."""
-
-    NONE = "nothing is coming"
-    TRIAL = "tried in the child"
-    DRAW = "to be drawn"
-    FAILED = "failed"
-
-
-@dataclass(frozen=True, slots=True)
-class Reload:
-    """How a save came to be a picture."""
-
-    seconds: float  # from reading the files to the picture
-    trial: float  # [s] of it in the trial child
 
 
 class Session:
@@ -156,20 +125,12 @@ class Session:
     def files(self) -> frozenset[Path]:
         """Every file worth watching: of the drafts, those that an error points at, and where others may come.
 
-        A place where nothing is counts inside the sketch's folder and the library only:
-        nothing else is likely to come from elsewhere.
+        See ``files.watched``.
         """
-        roots = (self.path.resolve().parent, GLSL)
-        found = {self.path}
-        found |= {p for p, there in self.places.items() if there or any(p.is_relative_to(r) for r in roots)}
-        for draft in (self.shown, self.coming):
-            if draft is not None:
-                found |= files_of(draft.sketch) | files_of(draft.file)
-        if self._file_error is not None:
-            found |= files_named_by(self._file_error)
-        if self._draw_error is not None:
-            found |= files_named_by(self._draw_error)
-        return frozenset(found)
+        drafts = [draft for draft in (self.shown, self.coming) if draft is not None]
+        errors = [error for error in (self._file_error, self._draw_error) if error is not None]
+        sketches = [sketch for draft in drafts for sketch in (draft.sketch, draft.file)]
+        return watched(self.path, sketches, errors, self.places)
 
     @property
     def refs(self) -> list[str]:
@@ -197,7 +158,7 @@ class Session:
             draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
         except Exception as error:
             self._drop_coming()
-            self._file_error = _explained(error)
+            self._file_error = explained(error)
             return
         if self.shown is not None and loaded == self.shown.file:
             self._drop_coming()
@@ -436,7 +397,7 @@ class Session:
                 raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             self.stage = Stage.FAILED
-            self._file_error = _explained(error)
+            self._file_error = explained(error)
             return
         self.shown = self.coming
         self.notes.extend(self._coming_notes)
@@ -458,11 +419,11 @@ class Session:
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)
             self._draw_error = None
         except Exception as error:
-            self._draw_error = _explained(error)
+            self._draw_error = explained(error)
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
         """Draw; where the processor draws, hastily first: four samples take it three times as long as one."""
-        hasty = self.engine.info.software and not in_full and sketch.samples > 1 and _has_draws(sketch)
+        hasty = self.engine.info.software and not in_full and sketch.samples > 1 and has_draws(sketch)
         self.engine.runner.frame = self.draws
         chosen = replace(sketch, samples=1) if hasty else sketch
         texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
@@ -485,15 +446,3 @@ class Session:
             return {}
         repeats = self._repeats_of(sketch)
         return {path: turn for path, turn in self.steps.items() if turn < repeats.get(path, 0)}
-
-
-def _has_draws(sketch: Sketch) -> bool:
-    return any(kernel.kind == "draw" for _, kernel in kernels_of(sketch.graph))
-
-
-def _explained(error: Exception) -> PlaygroundError:
-    """Return an error that a person can be shown; the session outlives its own faults as well."""
-    if isinstance(error, PlaygroundError):
-        return error
-    log.exception("the playground itself failed")
-    return PlaygroundError(f"a fault of the playground itself, {type(error).__name__}: {error}")
