@@ -32,7 +32,7 @@ LAYERS = (
     ("terrain",),
     ("images",),
     ("sketch",),
-    ("errors", "paths", "_version"),
+    ("errors", "folders", "paths", "_version"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
+from typing import Annotated
 
 import typer
 
@@ -22,13 +23,18 @@ from playground.commands.arguments import (
     with_whole_paths,
 )
 from playground.errors import ContextError, PlaygroundError
-from playground.sketch.model import DEFAULT_PICTURE
+
+FreshOption = Annotated[
+    bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
+]
 
 HELP = help_text(
-    "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters.",
+    "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
+    " What was set by hand, the camera and the time are there again the next time.",
     "playground live",
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
+    "playground live my-land --fresh",
     "playground live shader.frag",
 )
 
@@ -40,12 +46,13 @@ def live(
     settings: SetOption = None,
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
+    fresh: FreshOption = False,
 ) -> None:
     """Open a sketch in a window."""
     from playground.gpu.doctor import where_to_show
 
     renderer: Renderer = ctx.obj.or_else(software)
-    pixels = read_pixels(size) or DEFAULT_PICTURE
+    pixels = read_pixels(size)
     values = read_values(settings)
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
@@ -53,11 +60,17 @@ def live(
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    open_window(sketch, pixels, renderer, read_driver(driver), values)
+    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh)
 
 
 def open_window(
-    sketch: str, size: tuple[int, int], renderer: Renderer, driver: str, values: dict[str, object]
+    sketch: str,
+    size: tuple[int, int] | None,
+    renderer: Renderer,
+    driver: str,
+    values: dict[str, object],
+    *,
+    fresh: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
     from playground.live.app import run
@@ -67,6 +80,6 @@ def open_window(
 
         with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
             values = with_whole_paths(load(sketch), values)
-    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values)
+    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values, fresh=fresh)
     if status:
         raise typer.Exit(status)

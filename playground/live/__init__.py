@@ -6,9 +6,12 @@
     edits.py      what a person changed by hand, and how it survives a change of the files
     picture.py    the last good picture, and a texture put on a screen
     maps.py       any texture of a sketch, shown from above
+    begin.py      what was set by hand in an earlier session, over the files of now
     stages.py     the stages a saved sketch goes through, and who tries it
     session.py    what is shown, what was changed, what is wrong; knows of no window
     follow.py     a session and its files kept together
+    memory.py     the file that remembers one sketch
+    remember.py   what a session shows, remembered as one goes
     pictures.py   a picture saved under a new name
     brush.py      a stroke on a mask
     canvas.py     a mask that is painted on, and its file

@@ -24,9 +24,11 @@ from playground.live.actions import Actions
 from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keys import act_on_keys
+from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
+from playground.live.remember import QUIET, Rememberer, memory_of
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
@@ -46,16 +48,18 @@ _LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
 def run(
     sketch: str | Path = "",
     *,
-    size: tuple[int, int] = DEFAULT_PICTURE,
+    size: tuple[int, int] | None = None,
     software: bool = False,
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
+    fresh: bool = False,
     time_limit: float | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
-    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. With a
-    ``time_limit`` [s] the window closes itself. Raises ``ContextError`` where no window
+    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
+    by hand the last time is set again, unless ``fresh``. With a ``time_limit`` [s] the
+    window closes itself. Raises ``ContextError`` where no window
     can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
     value that does not fit; any other mistake in the sketch is shown in the window.
     """
@@ -66,12 +70,26 @@ def run(
     with ExitStack() as stack:
         trial = stack.enter_context(Trial(software=software))
         trial.start()
-        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", size))
+        memory = memory_of(path)
+        found, complaint = (Remembered(), "") if fresh else memory.read()
+        opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
+        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", opens))
         engine = Engine(window.ctx, driver=driver)
-        session = Session(engine, path, values=checked, trial=trial, is_lost=lambda: window.lost)
+        session = Session(
+            engine,
+            path,
+            values=checked,
+            edits=found.edits,
+            in_file=dict(found.in_file),
+            trial=trial,
+            is_lost=lambda: window.lost,
+        )
+        session.notes.extend(filter(None, [complaint]))
+        rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher)
+        live = Live(window, session, watcher, rememberer)
         stack.callback(live.release)
+        stack.callback(rememberer.close)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
@@ -102,8 +120,9 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
 class Live:
     """The window, the session and the watcher, turn by turn."""
 
-    def __init__(self, window: Window, session: Session, watcher: Watcher) -> None:
+    def __init__(self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer) -> None:
         self.window = window
+        self.rememberer = rememberer
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
@@ -160,6 +179,8 @@ class Live:
             return _TRIAL
         if self.session.hasty:
             return REST / 2
+        if self.rememberer.waits:
+            return QUIET / 2
         if self.actions.notices or imgui.get_io().want_text_input:
             return 0.1
         return IDLE
@@ -202,6 +223,7 @@ class Live:
             self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
         window.end()
         self.status.write(actions)
+        self.rememberer.look(window.size)
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""

@@ -23,6 +23,7 @@ from playground.engine.frame import Frame
 from playground.engine.plan import Plan, repeats_of
 from playground.engine.trial import TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.live.begin import first_draft
 from playground.live.clock import Clock, is_animated, reads_mouse
 from playground.live.edits import Draft, Edits, reload_draft
 from playground.live.files import watched
@@ -53,6 +54,8 @@ class Session:
         path: str | Path = "",
         *,
         values: Mapping[str, Value] | None = None,
+        edits: Edits | None = None,
+        in_file: Mapping[str, Value] | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
@@ -73,7 +76,11 @@ class Session:
         self.hasty = False  # the picture has one sample a pixel only, and will be drawn again in full
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
-        self._initial = Edits(tuple((values or {}).items()))
+        edits = edits or Edits()
+        for name, value in (values or {}).items():
+            edits = edits.with_value(name, value)
+        self._initial = edits  # set by hand in an earlier session; the values, on the command line
+        self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
         self._trial = trial
         self._now = now
         self._is_lost = is_lost  # says whether the engine's context is lost
@@ -155,7 +162,10 @@ class Session:
         try:
             with noting_places() as self.places:
                 loaded = load(self.path)
-            draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
+            old = self.shown or self.coming
+            draft, notes = (
+                reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
+            )
         except Exception as error:
             self._drop_coming()
             self._file_error = explained(error)

@@ -42,6 +42,7 @@ class Reload:
 
 
 def has_draws(sketch: Sketch) -> bool:
+    """Say whether any pass draws a mesh, so that its pixels may have several samples."""
     return any(kernel.kind == "draw" for _, kernel in kernels_of(sketch.graph))
 
 

@@ -69,6 +69,12 @@ class Window:
         return self._reset_status is not None and self._reset_status() != 0
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in the screen's units."""
+        width, height = glfw.get_window_size(self._handle)
+        return width, height
+
+    @property
     def pixels(self) -> tuple[int, int]:
         """Width and height of what is drawn [pixels]; (0, 0) while it is minimised."""
         width, height = glfw.get_framebuffer_size(self._handle)

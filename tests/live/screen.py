@@ -78,6 +78,8 @@ class Program:
         self.status = folder / "status.jsonl"
         gone = ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")
         environment = {k: v for k, v in os.environ.items() if k not in gone}
+        # What it remembers is a test's own, and gone with it.
+        environment |= {"XDG_STATE_HOME": str(folder / "state"), "XDG_CACHE_HOME": str(folder / "cache")}
         environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
         places = filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")])
         environment["PYTHONPATH"] = os.pathsep.join(places)

@@ -58,8 +58,8 @@ class App(Program):
     def __init__(self, screen: Screen, folder: Path) -> None:
         self.sketch = folder / "sketch"
         self.pictures = folder / "pictures"
-        (self.sketch / "inc").mkdir(parents=True)
-        self.pictures.mkdir()
+        (self.sketch / "inc").mkdir(parents=True, exist_ok=True)
+        self.pictures.mkdir(exist_ok=True)
         for name, text in {"land.glsl": LAND, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
             (self.sketch / name).write_text(text, encoding="utf-8")
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.sketch)], self.pictures)
@@ -251,6 +251,28 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         assert app.ended() == 0, app.complaint()
     finally:
         app.close()
+
+
+def test_after_a_crash_it_opens_as_it_was(screen: Screen, tmp_path: Path) -> None:
+    app = App(screen, tmp_path)
+    try:
+        first = app.now()["picture"]
+        screen.do("mousemove", PANEL + 200, 200, "click", 4)
+        nearer = app.wait(lambda now: now["picture"] != first)["picture"]
+        kept = tmp_path / "state" / "terrain-shader-playground" / "sessions"
+        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in kept.glob("*.json")))
+        app.process.kill()
+        app.process.wait(60)
+    finally:
+        app.close()
+    app.status.unlink()
+    again = App(screen, tmp_path)
+    try:
+        again.wait(lambda now: now["picture"] == nearer)
+        screen.do("mousemove", PANEL + 200, 200, "key", "r")
+        again.wait(lambda now: now["picture"] == first)
+    finally:
+        again.close()
 
 
 def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:

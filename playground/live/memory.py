@@ -1,0 +1,209 @@
+"""Remember of each sketch what was set by hand, in a file of its own in the user's state folder.
+
+One file a sketch, JSON with a format number, written whole or not at all. Whoever holds
+the lock beside it may write: so two windows on one sketch do not take turns in undoing
+each other. The system gives the lock back when a process ends, however it ends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import math
+import sys
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import IO, Any
+
+from playground.errors import DataError
+from playground.images.files import replacing
+from playground.live.edits import Edits
+from playground.sketch.model import Camera, Value
+
+FORMAT = 1
+_LARGEST = 4 * 2**20  # [bytes] no session sets so much by hand
+
+
+@dataclass(frozen=True)
+class Remembered:
+    """What is remembered of one sketch."""
+
+    edits: Edits = field(default_factory=Edits)
+    in_file: tuple[tuple[str, Value], ...] = ()  # what the files said of each value set by hand
+    time: float = 0.0  # [s]
+    playing: bool = True
+    speed: float = 1.0
+    map: str = ""  # the texture shown from above; empty: the sketch's own view
+    map_values: tuple[tuple[str, Value], ...] = ()
+    steps: tuple[tuple[str, int], ...] = ()
+    window: tuple[int, int] = (0, 0)  # in the screen's units; (0, 0): as it opens
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether it says no more than the sketch does."""
+        return replace(self, window=(0, 0)) == Remembered()
+
+
+class Memory:
+    """The file that remembers one sketch."""
+
+    def __init__(self, sketch: Path, folder: Path) -> None:
+        whole = str(sketch.resolve())
+        digest = hashlib.blake2b(whole.encode("utf-8", "surrogatepass"), digest_size=6).hexdigest()
+        self.sketch = whole
+        self.path = folder / f"{sketch.stem[:40]}-{digest}.json"
+        self._lock: IO[bytes] | None = None
+
+    def read(self) -> tuple[Remembered, str]:
+        """Return what is remembered, and a sentence if the file cannot be used: it is then set aside."""
+        try:
+            if not self.path.exists():
+                return Remembered(), ""
+            if self.path.stat().st_size > _LARGEST:
+                raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
+            return _read(json.loads(self.path.read_text(encoding="utf-8"))), ""
+        except (
+            OSError,
+            ValueError,
+            TypeError,
+            KeyError,
+            AttributeError,
+            ArithmeticError,
+            RecursionError,
+        ) as error:
+            aside = self.path.with_suffix(".unread.json")
+            with contextlib.suppress(OSError):
+                self.path.replace(aside)
+            why = f" ({error})" if str(error) else ""
+            complaint = f"what was remembered of this sketch cannot be read; it is kept in {aside}{why}"
+            return Remembered(), complaint
+
+    def write(self, remembered: Remembered) -> None:
+        """Write it, or remove the file where there is nothing to remember; raise ``DataError``."""
+        if remembered.is_nothing and remembered.window == (0, 0):
+            with contextlib.suppress(OSError):
+                self.path.unlink(missing_ok=True)
+            return
+        text = json.dumps(_written(remembered, self.sketch), indent=1, ensure_ascii=False)
+        with replacing(self.path) as file:
+            file.write(text.encode("utf-8", "surrogatepass"))
+
+    def claim(self) -> bool:
+        """Say whether this process may write; another that may, keeps its right until it ends."""
+        if self._lock is not None:
+            return True
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            lock = self.path.with_suffix(".lock").open("a+b")
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise DataError(f"cannot be written to: {reason}", file=self.path.parent) from None
+        if not _locked(lock):
+            lock.close()
+            return False
+        self._lock = lock
+        return True
+
+    def close(self) -> None:
+        """Let others write."""
+        if self._lock is not None:
+            self._lock.close()
+            self._lock = None
+
+
+def _locked(file: IO[bytes]) -> bool:
+    """Lock a file without waiting; closing it unlocks it."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
+    edits, known = remembered.edits, dict(remembered.in_file)
+    values = {path: {"value": value, "file": known.get(path)} for path, value in edits.values}
+    return {
+        "format": FORMAT,
+        "sketch": sketch,
+        "values": values,
+        "techniques": dict(edits.techniques),
+        "camera": asdict(edits.camera) if edits.camera else None,
+        **{name: list(getattr(edits, name)) for name in _lists()},
+        "time": remembered.time,
+        "playing": remembered.playing,
+        "speed": remembered.speed,
+        "map": remembered.map,
+        "map_values": dict(remembered.map_values),
+        "steps": dict(remembered.steps),
+        "window": list(remembered.window),
+    }
+
+
+def _lists() -> list[str]:
+    """Return the fields of ``Edits`` that are lists of paths."""
+    return [f.name for f in fields(Edits) if f.name not in ("values", "techniques", "camera")]
+
+
+def _read(table: Any) -> Remembered:
+    """Return what a file says; raise ``ValueError``, ``TypeError`` or ``KeyError`` for another's."""
+    if table["format"] != FORMAT:
+        raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
+    values = tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items())
+    in_file = tuple(
+        (str(path), _value(entry["file"]))
+        for path, entry in table["values"].items()
+        if entry["file"] is not None
+    )
+    camera = table["camera"]
+    edits = Edits(
+        values,
+        tuple((str(name), str(use)) for name, use in table["techniques"].items()),
+        _camera(camera) if camera is not None else None,
+        **{name: tuple(str(path) for path in table.get(name, ())) for name in _lists()},
+    )
+    width, height = (int(side) for side in table["window"])
+    return Remembered(
+        edits,
+        in_file,
+        max(_number(table["time"]), 0.0),
+        bool(table["playing"]),
+        _number(table["speed"]),
+        str(table["map"]),
+        tuple((str(name), _value(value)) for name, value in table["map_values"].items()),
+        tuple((str(path), int(turn)) for path, turn in table["steps"].items()),
+        (width, height) if 0 < min(width, height) and max(width, height) <= 16384 else (0, 0),
+    )
+
+
+def _camera(table: Any) -> Camera:
+    target = table["target"]
+    place = None
+    if target is not None:
+        east, north, up = (_number(number) for number in target)
+        place = (east, north, up)
+    numbers = {name: _number(table[name]) for name in ("azimuth", "elevation", "distance", "field_of_view")}
+    return Camera(**numbers, target=place)
+
+
+def _value(given: Any) -> Value:
+    if isinstance(given, list):
+        return tuple(given) if all(isinstance(n, int) for n in given) else tuple(_number(n) for n in given)
+    if isinstance(given, str | bool | int):
+        return given
+    return _number(given)
+
+
+def _number(given: Any) -> float:
+    number = float(given)
+    if not math.isfinite(number):
+        raise ValueError(f"{given} is no number to set")
+    return number

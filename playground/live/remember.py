@@ -1,0 +1,121 @@
+"""Have a session go on where it was left: what it shows is remembered as one goes.
+
+A change is written once half a second has passed without another, so that a slider
+costs one write and not a hundred; time that runs by itself is written every few
+seconds. Nothing here is needed to go on: where it cannot be written, one is told once.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from playground.errors import PlaygroundError, TrialError
+from playground.folders import state_folder
+from playground.live.begin import said_by_files
+from playground.live.edits import Draft
+from playground.live.maps import Map
+from playground.live.memory import Memory, Remembered
+from playground.live.session import Session
+from playground.sketch.model import Value
+
+QUIET = 0.5  # [s] without another change after which a change is written
+TIME = 5.0  # [s] after which a change of time alone is written
+
+
+def memory_of(sketch: Path, folder: Path | None = None) -> Memory:
+    """Return the memory of a sketch, in the user's state folder unless another is named."""
+    return Memory(sketch, folder or state_folder() / "sessions")
+
+
+class Rememberer:
+    """Remembers what one session shows."""
+
+    def __init__(
+        self,
+        session: Session,
+        memory: Memory,
+        found: Remembered | None = None,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.session = session
+        self._memory = memory
+        self._now = now
+        self._written: Remembered | None = None
+        self._seen: Remembered | None = None
+        self._seen_at = 0.0
+        self._written_at = now()
+        self._is_told = False
+        self._in_file: tuple[Draft | None, tuple[tuple[str, Value], ...]] = (None, ())
+        found = found or Remembered()
+        self._recalled = not found.is_nothing
+        clock = session.clock
+        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
+        session.steps.update(found.steps)
+        session.map = Map(found.map, found.map_values) if found.map else None
+
+    @property
+    def waits(self) -> bool:
+        """Whether something is still to be written."""
+        return self._seen != self._written
+
+    def look(self, window: tuple[int, int]) -> None:
+        """Take in what the session shows now, and write it if it is time to."""
+        session, now = self.session, self._now()
+        if session.shown is None:
+            if self._recalled and isinstance(session.error, TrialError):
+                session.notes.append("playground live --fresh opens it without what was set by hand")
+                self._recalled = False
+            return
+        self._recalled = False
+        found = self._snapshot(session.shown, window)
+        if self._seen is None or replace(found, time=self._seen.time) != self._seen:
+            self._seen_at = now
+        self._seen = found
+        is_moment = self._written is not None and replace(found, time=self._written.time) == self._written
+        rested = now - self._seen_at >= QUIET
+        if self.waits and rested and (not is_moment or now - self._written_at >= TIME):
+            self.write()
+
+    def write(self) -> None:
+        """Write what was seen last, unless another window remembers this sketch."""
+        if self._seen is None or not self.waits:
+            return
+        self._written_at = self._now()
+        try:
+            if not self._memory.claim():
+                self._tell("another window has this sketch open, and remembers it; this one does not")
+                return
+            self._memory.write(self._seen)
+        except PlaygroundError as error:
+            self._tell(f"what is set by hand cannot be remembered: {error}")
+            return
+        self._written = self._seen
+
+    def close(self) -> None:
+        """Write what is still to be written, and let other windows remember."""
+        self.write()
+        self._memory.close()
+
+    def _snapshot(self, draft: Draft, window: tuple[int, int]) -> Remembered:
+        session = self.session
+        if self._in_file[0] is not draft:
+            self._in_file = draft, tuple(said_by_files(draft.base, draft.edits).items())
+        return Remembered(
+            draft.edits,
+            self._in_file[1],
+            session.clock.time if session.animated else 0.0,
+            session.clock.playing,
+            session.clock.speed,
+            session.map.ref if session.map else "",
+            session.map.values if session.map else (),
+            tuple(sorted(session.steps.items())),
+            window,
+        )
+
+    def _tell(self, sentence: str) -> None:
+        if not self._is_told:
+            self._is_told = True
+            self.session.notes.append(sentence)
