@@ -1,4 +1,4 @@
-"""Keep what passes made, under a bound in bytes; what was used least recently goes first."""
+"""Keep what passes made, under a bound in bytes and in number; what was used least recently goes first."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ from collections import OrderedDict
 from dataclasses import dataclass
 
 from playground.engine.results import Pool, Result
+
+# Results kept, whatever their size: a driver spends memory on each texture beside its texels, so
+# that thousands of small ones, one for each save of a small sketch, would grow past any bound in bytes.
+MOST = 512
 
 
 @dataclass(eq=False)
@@ -108,10 +112,10 @@ class Cache:
             self.drop(key)
 
     def trim(self) -> None:
-        """Drop what was used least recently until the bound holds or all that is left is in use."""
+        """Drop what was used least recently until the bounds hold or all that is left is in use."""
         total = self.bytes
         for key in list(self._kept):
-            if total <= self.limit:
+            if total <= self.limit and len(self._kept) <= MOST:
                 return
             if key not in self._in_use:
                 self.drop(key)

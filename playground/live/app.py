@@ -205,10 +205,10 @@ class Live:
         self.hand.act(area, window.density)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
-        draws = session.draws
+        draws, error = session.draws, session.error
         picture = session.frame((wide - skipped, high))
-        if session.draws != draws:
-            self._settling = _SETTLES  # the panel tells what the picture took
+        if session.draws != draws or session.error is not error:
+            self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
         self._say_reload()
         actions.take_notes()
         if session.error is not None:

@@ -38,6 +38,7 @@ class Watcher:
         self._also = tuple(also)
         self._lock = threading.Lock()
         self._followed: dict[Path, tuple[Signature | None, bytes]] = {}  # signature and hash when last seen
+        self._real: dict[Path, Path] = {}  # where what is followed lies, links followed: asking costs much
         self._others: dict[Path, bytes] = {}  # hashes of what is not followed, once told of
         self._changed: dict[Path, bytes | None] = {}  # with the hash last taken, where that is known
         self._stop = threading.Event()
@@ -81,11 +82,12 @@ class Watcher:
         wanted = {Path(f) for f in files}
         read = read or {}
         with self._lock:
-            folders = _folders(self._followed) if wanted != self._followed.keys() else None
+            folders = _folders(self._real) if wanted != self._followed.keys() else None
             for path in self._followed.keys() - wanted:
-                del self._followed[path]
+                del self._followed[path], self._real[path]
             for path in wanted - self._followed.keys():
                 now = signature(path)
+                self._real[path] = path.resolve()
                 self._followed[path] = (now, _hash(path))
                 if read_at is not None and now is not None and now[1] / 1e9 > read_at - _JUST:
                     self._changed[path] = None
@@ -97,7 +99,7 @@ class Watcher:
                 if now != read[path] or (now is not None and now[1] / 1e9 > time.time() - _JUST):
                     self._changed[path] = None
             told = bool(self._changed)
-            if folders is not None and _folders(self._followed) != folders:
+            if folders is not None and _folders(self._real) != folders:
                 self._again.set()
         if told:
             self._wake()
@@ -120,7 +122,7 @@ class Watcher:
         while not self._stop.is_set():
             self._again.clear()
             with self._lock:
-                folders = _folders(self._followed)
+                folders = _folders(self._real)
             identities = _identities(folders)
             self._look()
             if not identities:
@@ -154,11 +156,11 @@ class Watcher:
     def _look(self, paths: set[Path] | None = None) -> None:
         """Compare files with what was last seen of them: ``paths``, or all whose signature differs."""
         with self._lock:
-            followed = dict(self._followed)
+            followed, real = dict(self._followed), dict(self._real)
         if paths is None:
             paths = {path for path, (before, _) in followed.items() if signature(path) != before}
         else:
-            paths |= {path for path in followed if path.resolve() in paths}
+            paths |= {path for path, where in real.items() if where in paths}
         if any(not path.exists() for path in paths if path in followed):
             self._stop.wait(_GRACE)
         seen = {path: (signature(path), _hash(path)) for path in paths if self._matters(path, followed)}
@@ -180,12 +182,9 @@ class Watcher:
         return path in followed or path.suffix in self._also
 
 
-def _folders(files: Iterable[Path]) -> frozenset[Path]:
+def _folders(files: Mapping[Path, Path]) -> frozenset[Path]:
     """Return the folders to watch: those of the files, and of what links point at."""
-    found: set[Path] = set()
-    for path in files:
-        found |= {path.parent, path.resolve().parent}
-    return frozenset(found)
+    return frozenset(path.parent for pair in files.items() for path in pair)
 
 
 def _identities(folders: Iterable[Path]) -> dict[Path, int]:

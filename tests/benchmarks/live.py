@@ -1,9 +1,9 @@
 """Measure what a save costs in a live session, and that none is missed: ``python tests/benchmarks/live.py``.
 
-Save to new picture, by a watcher, a trial child and an engine as in the window, at
-1025²: for a texturing kernel, an included library file and a value in the sketch. Each
-text is new to the driver. Beside the seconds on the wall stands the processor's time of
-both processes, which a busy machine does not stretch as much.
+Save to new picture, by a watcher, a trial child and an engine as in the window, at 1025²:
+for a texturing kernel, an included library file and a value in the sketch. Each text is
+new to the driver. Beside the seconds on the wall stands the processor's time of both
+processes, which a busy machine stretches less.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from __future__ import annotations
 import argparse
 import gc
 import os
-import resource
 import statistics
+import sys
 import tempfile
 import threading
 import time
-from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from rich.console import Console
-from rich.table import Table
+import moderngl
 
 from playground.engine.engine import Engine
 from playground.engine.trial import Trial
@@ -31,38 +31,168 @@ from playground.live.watch import Watcher
 from playground.paths import GLSL
 
 SIZE = (1280, 720)
-LIMITS = "200 / 400 ms"
 KERNEL = "texturing/height_blend/mix"
-PAUSE = 0.15  # [s] between saves: longer than a file system's clock and the watcher's batch
+PATIENCE = 60.0  # [s] after which a save counts as missed
+PAUSE = 0.1  # [s] between saves that are timed
 
 
 class Bench:
-    """A sketch in a folder, and a session that follows it."""
+    """A sketch in a folder, and a session that follows it as the window's does."""
 
-    def __init__(self, folder: Path, engine: Engine, trial: Trial | None, size: int = 1025) -> None:
-        self.folder, self.engine, self.trial = folder, engine, trial
-        self.kernel, self.include, self.sketch = folder / "mine.glsl", folder / "own.glsl", folder / "sketch.toml"
+    def __init__(self, folder: Path, engine: Engine, trial: Trial, side: int) -> None:
+        self.engine, self.trial = engine, trial
         text = (GLSL / f"{KERNEL}.glsl").read_text(encoding="utf-8")
-        marked = text.replace("return vec4(", "return own() * EDIT * vec4(", 1)
-        if marked == text or "vec4 kernel(" not in text:
+        edited = text.replace(
+            "vec4 kernel(", '#include "own.glsl"\nconst float EDIT = @;\nvec4 kernel(', 1
+        ).replace("return vec4(", "return own() * EDIT * vec4(", 1)
+        if edited.count("EDIT") != 2:
             raise SystemExit(f"{KERNEL}.glsl has changed: this benchmark cannot edit it any more")
-        head = '#include "own.glsl"\nconst float EDIT = {edit};\nvec4 kernel('
-        self.kernel_text = marked.replace("vec4 kernel(", head, 1)
-        self.include_text = "float own() {{ return {edit}; }}\n"
         uses = [("height", "generation/diamond_square", "")]
         for ground in ("grass", "rock", "snow"):
             uses += [(f"{ground}_tile", f"texturing/{ground}", "size = 512"), (ground, "texturing/tiled", "")]
-        uses += [("colour", "./mine", ""), ("light", "lighting/ray_cast", "")]
-        passes = [f'[[pass]]\nname = "{name}"\nuse = "{use}"\n{more}\n' for name, use, more in uses]
-        view = '[view]\nuse = "view/terrain"\nset = {{ sky = {edit} }}\n'
-        if "uniform float sky" not in "".join(p.read_text("utf-8") for p in (GLSL / "view").rglob("*.glsl")):
-            view = '[view]\nuse = "view/terrain"\n[[preset]]\nname = "none"\nset = {{ }}\n'
-        self.sketch_text = f"format = 1\nsize = {size}\nrelief = {{edit}}\n" + "".join(passes) + view
+        uses += [("colour", "./mine", "set = { grass_below = @ }"), ("light", "lighting/ray_cast", "")]
+        passes = "".join(f'[[pass]]\nname = "{name}"\nuse = "{use}"\n{more}\n' for name, use, more in uses)
+        self.texts = {
+            folder / "mine.glsl": edited,
+            folder / "own.glsl": "float own() { return @; }\n",
+            folder / "sketch.toml": f'format = 1\nsize = {side}\n{passes}[view]\nuse = "view/terrain"\n',
+        }
         self.number = 0
-        for file, text in ((self.kernel, self.kernel_text), (self.include, self.include_text)):
-            file.write_text(text.format_map({"edit": "1.0"}), encoding="utf-8")
-        self.sketch.write_text(self.sketch_text.format_map({"edit": "1800.0"}), encoding="utf-8")
+        for file in self.texts:
+            self.save(file)
         self.woken = threading.Event()
-        self.session = Session(engine, self.sketch, trial=trial)
+        self.session = Session(engine, folder, trial=trial)
         self.watcher = Watcher(self.woken.set, (".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
+        self.until(lambda: self.session.draws > 0 and not self.session.hasty)
+
+    def save(self, file: Path) -> str:
+        """Save a text that was never there; return the number in it."""
+        self.number += 1
+        number = f"{1.0 + self.number * 1e-5 + time.time() % 1 * 1e-6:.9f}"
+        file.write_text(self.texts[file].replace("@", number), encoding="utf-8")
+        return number
+
+    def until(self, shown: Callable[[], bool]) -> bool:
+        """Go on as the window does until something is shown; say whether it was."""
+        end = time.perf_counter() + PATIENCE
+        while time.perf_counter() < end:
+            self.follower.take()
+            self.session.frame(SIZE)
+            self.follower.follow()
+            if self.session.error is not None:
+                raise SystemExit(str(self.session.error))
+            if shown():
+                self.engine.ctx.finish()
+                return True
+            self.woken.wait(0.004 if self.session.testing else 0.05)
+            self.woken.clear()
+        return False
+
+    def save_and_show(self, file: Path) -> bool:
+        """Save a file and wait for its picture; say whether it came."""
+        number = self.save(file)
+
+        def is_shown() -> bool:
+            draft = self.session.shown
+            if draft is None or self.session.coming is not None:
+                return False
+            if file.suffix == ".toml":
+                return float(number) in dict(draft.file.graph.find("colour").values).values()
+            return number in draft.file.graph.find("colour").technique.source.code
+
+        return self.until(is_shown)
+
+    def processor(self) -> float:
+        """Return the seconds that processors have spent on this process and on the trial's."""
+        child = self.trial._child
+        return sum(spent(pid) for pid in (os.getpid(), child.pid if child else 0) if pid)
+
+
+def spent(pid: int) -> float:
+    if not sys.platform.startswith("linux"):
+        return time.process_time() if pid == os.getpid() else 0.0
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def resident() -> float:
+    """Return this process's memory in MiB."""
+    if not sys.platform.startswith("linux"):
+        return 0.0
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def objects() -> int:
+    """Return how many OpenGL objects are alive."""
+    gc.collect()
+    kinds = (moderngl.Texture, moderngl.Framebuffer, moderngl.Renderbuffer, moderngl.Buffer)
+    kinds += (moderngl.VertexArray, moderngl.Program, moderngl.ComputeShader, moderngl.Sampler)
+    alive = (o for o in gc.get_objects() if isinstance(o, kinds))
+    return sum(not isinstance(getattr(o, "mglo", None), moderngl.InvalidObject) for o in alive)
+
+
+@contextmanager
+def opened(side: int) -> Iterator[Bench]:
+    with tempfile.TemporaryDirectory() as folder, Trial() as trial:
+        trial.start()
+        with Engine(open_context(), owns_context=True) as engine:
+            bench = Bench(Path(folder), engine, trial, side)
+            with bench.watcher:
+                bench.follower.follow()
+                time.sleep(0.3)
+                yield bench
+            bench.session.release()
+
+
+def main() -> None:
+    """Run every measurement and print it."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--saves", type=int, default=25, help="saves of each kind to time (default 25)")
+    parser.add_argument("--many", type=int, default=1000, help="saves of which none is missed (default 1000)")
+    parser.add_argument("--reloads", type=int, default=500, help="reloads over which memory is flat")
+    options = parser.parse_args()
+    with opened(1025) as bench:
+        print(f"A live session on {bench.engine.info.renderer}, {os.cpu_count()} processors, trial on")
+        names = ("a texturing kernel", "an included library file", "a value in the sketch")
+        for name, file in zip(names, bench.texts, strict=True):
+            times, used = time_saves(bench, file, options.saves)
+            late = sorted(times)[int(0.95 * (len(times) - 1))]
+            print(
+                f"save to picture at 1025², {name}: median {statistics.median(times):.0f} ms (wanted 200), "
+                f"95th percentile {late:.0f} ms (wanted 400); {used:.0f} ms of processors",
+                flush=True,
+            )
+    with opened(65) as bench:
+        files = list(bench.texts)
+        missed = sum(not bench.save_and_show(files[n % 3]) for n in range(options.many))
+        print(f"saves missed of {options.many}: {missed} (wanted 0)", flush=True)
+        seen = []
+        for reload in range(options.reloads):
+            bench.save_and_show(files[reload % 3])
+            if reload in (options.reloads // 2, options.reloads - 1):
+                seen.append((resident(), objects()))
+        (before, fewer), (after, more) = seen
+        grown = f"{after - before:+.1f} MiB, {more - fewer:+d} OpenGL objects"
+        print(f"over the second half of {options.reloads} reloads: {grown} (wanted: flat)")
+
+
+def time_saves(bench: Bench, file: Path, saves: int) -> tuple[list[float], float]:
+    """Return the milliseconds from each save to its picture, and those of processors for each."""
+    times, used = [], 0.0
+    for number in range(saves + 2):
+        bench.until(lambda: not bench.session.hasty)
+        time.sleep(PAUSE)
+        before, start = bench.processor(), time.perf_counter()
+        if not bench.save_and_show(file):
+            raise SystemExit(f"a save of {file.name} was missed")
+        if number >= 2:  # the first ones warm up what is used again
+            times.append((time.perf_counter() - start) * 1e3)
+            used += (bench.processor() - before) * 1e3
+    return times, used / saves
+
+
+if __name__ == "__main__":
+    main()

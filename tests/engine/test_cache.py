@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from playground.engine import cache
 from playground.engine.engine import Engine
 from playground.sketch.load import load
 
@@ -23,3 +24,14 @@ def test_bytes_are_those_of_what_is_kept(ctx):
         assert 0 < engine.cache.bytes <= engine.cache.limit
         engine.cache.clear()
         assert engine.cache.bytes == held(engine) == 0
+
+
+def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
+    monkeypatch.setattr(cache, "MOST", 24)
+    sketch = load("diamond_square").with_values({"size": 17})
+    with Engine(ctx) as engine:
+        for seed in range(12):
+            engine.render(sketch.with_values({"height.seed": seed}), size=(16, 9))
+            assert len(engine.cache) <= 24
+        engine.render(sketch.with_values({"height.seed": 11}), size=(16, 9))
+        assert engine.ran == [], "the newest are kept"
