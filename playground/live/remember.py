@@ -42,6 +42,7 @@ class Rememberer:
     ) -> None:
         self.session = session
         self._memory = memory
+        self._path = session.path
         self._now = now
         self._written: Remembered | None = None
         self._seen: Remembered | None = None
@@ -64,6 +65,11 @@ class Rememberer:
     def look(self, window: tuple[int, int]) -> None:
         """Take in what the session shows now, and write it if it is time to."""
         session, now = self.session, self._now()
+        if session.path != self._path:  # another sketch was opened in this window
+            self.close()
+            self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
+            self._seen = self._written = None
+            self._is_told = False
         if session.shown is None:
             if self._recalled and isinstance(session.error, TrialError):
                 session.notes.append("playground live --fresh opens it without what was set by hand")

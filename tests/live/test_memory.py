@@ -257,6 +257,22 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     assert dict(found.edits.values) == {"height.level": 0.875}, "alone, it remembers"
 
 
+def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
+    session, rememberer = place.start()
+    session.set("height.level", 0.5)
+    rememberer.look((900, 600))
+    other = place.sketch / "other.toml"
+    other.write_text(SKETCH, encoding="utf-8")
+    session.path = other
+    session.reload()
+    session.set("height.level", 0.75)
+    session.frame(SIZE)
+    rememberer.look((900, 600))
+    rememberer.close()
+    kept = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
+    assert [dict(found.edits.values) for found in kept] == [{"height.level": 0.5}, {"height.level": 0.75}]
+
+
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
 def test_where_nothing_can_be_written_one_is_told_once(place: Place) -> None:
     place.state.mkdir(mode=0o500)
