@@ -26,7 +26,7 @@ from playground.engine.plan import Plan, repeats_of
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.clock import Clock, is_animated, reads_mouse
-from playground.live.edits import Draft, Edits, reload_draft
+from playground.live.edits import Draft, Edits, reload_draft, taken
 from playground.live.files import files_named_by, files_of
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
@@ -234,9 +234,39 @@ class Session:
         kept = dict(changed.overrides).get(path, value)
         self._edit(lambda edits: edits.with_value(path, kept))  # type: ignore[arg-type]
 
-    def unset(self, path: str) -> None:
-        """Give a parameter back the file's value."""
-        self._edit(lambda edits: edits.without(path))
+    def set_all(self, values: Mapping[str, Value]) -> None:
+        """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
+        if self.shown is not None:
+            free = [(p, v) for p, v in values.items() if p not in self.shown.edits.locked]
+            fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
+            others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
+            self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+
+    def unset(self, *paths: str) -> None:
+        """Give parameters back the file's values."""
+        draft = self.shown
+        if draft is not None:
+            for path in paths:
+                draft = draft.without(path)
+            left = draft.edits.values
+            self._edit(lambda edits: replace(edits, values=left))
+
+    def lock(self, path: str, locked: bool) -> None:
+        """Lock a parameter against presets, chance and reloads, or let it go."""
+        self._edit(lambda edits: edits.with_lock(path, locked))
+
+    def restore(self, edits: Edits) -> None:
+        """Take other edits for those of now: values and camera at once, techniques once they proved good."""
+        if self.shown is None:
+            return
+        if edits.techniques == self.shown.edits.techniques:
+            self._edit(lambda old: replace(edits, techniques=old.techniques))
+            return
+        self._started = self._now()
+        try:
+            self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
+        except PlaygroundError as error:
+            self._file_error = error
 
     def look(self, camera: Camera) -> None:
         """See the land from another camera."""
@@ -244,12 +274,9 @@ class Session:
 
     def apply_preset(self, name: str) -> None:
         """Set the values of one of the sketch's presets."""
-        if self.sketch is None:
-            return
-        for preset in self.sketch.presets:
+        for preset in self.sketch.presets if self.sketch else ():
             if preset.name == name:
-                for path, value in preset.values:
-                    self.set(path, value)
+                self.set_all(dict(preset.values))
 
     def point(self, mouse: tuple[float, float, float, float]) -> None:
         """Tell plain shaders where the mouse is: pixels from the lower left, then where it was pressed."""
@@ -272,13 +299,12 @@ class Session:
         self._edit(lambda edits: replace(edits, camera=None))
 
     def reset_values(self) -> None:
-        """Give every parameter and every pass back what the file says, and stop no repeat early."""
+        """Give all that is not locked, and every pass, back what the file says; stop no repeat early."""
         self.steps.clear()
-        chosen = self.shown is not None and bool(self.shown.edits.techniques)
-        self._edit(lambda edits: replace(edits, values=()))
-        if chosen and self.shown is not None:
-            self._started = self._now()
-            self._propose(replace(self.shown.reset(), edits=Edits(camera=self.shown.edits.camera)), [])
+        if self.shown is not None:
+            locked = set(self.shown.edits.locked)
+            left = tuple(v for v in self.shown.edits.values if v[0] in locked)
+            self.restore(replace(self.shown.edits, values=left, techniques=()))
 
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
         self._revision += 1
