@@ -180,6 +180,7 @@ class Live:
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         self.hand.act(area, window.density)
+        actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws = session.draws

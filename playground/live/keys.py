@@ -19,6 +19,8 @@ class Key:
     meaning: str
     brief: str  # in the panel's last line; empty: not there
     act: Callable[[Actions], None]
+    ctrl: bool = False
+    shift: bool = False
 
 
 KEYS: tuple[Key, ...] = (
@@ -29,6 +31,10 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
+    Key(imgui.Key.slash, "/", "search the parameters", "", lambda a: a.search()),
+    Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
+    Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
+    Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.quit()),
 )
 
@@ -36,10 +42,12 @@ KEYS: tuple[Key, ...] = (
 def act_on_keys(actions: Actions) -> None:
     """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu."""
     io = imgui.get_io()
-    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super:
+    if io.want_text_input or io.key_alt:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
+    ctrl = io.key_ctrl or io.key_super
     for key in KEYS:
-        if imgui.is_key_pressed(key.key, repeat=False):
+        fits = key.ctrl == ctrl and (key.shift == io.key_shift or not ctrl)
+        if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
             key.act(actions)
