@@ -42,6 +42,7 @@ class Actions:
     saved: Path | None = None  # the last picture
     history: History = field(default_factory=History)
     searching: bool = False  # the panel is asked for its search
+    offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
     held: bool = False  # a mouse button is down: what changes is one step
 
     def __post_init__(self) -> None:
@@ -97,6 +98,15 @@ class Actions:
     def rewind(self) -> None:
         """Go back to time 0."""
         self.seek(0.0)
+
+    def open(self, path: Path) -> None:
+        """Open another sketch in this window; nothing of this one can be undone there."""
+        try:
+            self.session.open(path)
+        except PlaygroundError as error:
+            self.say(str(error))
+            return
+        self.history = History()
 
     # ── undo ─────────────────────────────────────────────────────────────────
 

@@ -11,6 +11,7 @@ from playground.live.history import in_words
 from playground.live.listing import Filter, Item, set_words
 from playground.live.memory import Memory
 from playground.live.rows import fitting, row
+from playground.live.saving import copy_toml, save_a_copy, save_as_preset, save_values
 from playground.live.theme import Theme
 from playground.paths import shown
 from playground.sketch.model import Parameter, Preset, Sketch
@@ -37,9 +38,11 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     imgui.same_line()
     _copies(memory, actions)
     imgui.same_line()
-    if imgui.button("Save PNG"):
+    _saves(memory, actions)
+    imgui.same_line()
+    if imgui.button("PNG"):
         actions.save_picture()
-    imgui.set_item_tooltip(f"A new file in {actions.folder} (S)")
+    imgui.set_item_tooltip(f"Save the picture as a new file in {actions.folder} (S)")
     if session.animated:
         _time(actions, look)
     if sketch.presets:
@@ -197,7 +200,48 @@ def _copies(memory: Memory, actions: Actions) -> None:
         text = set_words(draft, memory.listing.values(draft))
         imgui.set_clipboard_text(text)
         actions.say(f"copied {fitting(text, 320.0)}")
+    if imgui.menu_item_simple("As TOML"):
+        copy_toml(actions)
     imgui.end_popup()
+
+
+def _saves(memory: Memory, actions: Actions) -> None:
+    if imgui.button("Save"):
+        imgui.open_popup("saves")
+    imgui.set_item_tooltip("What differs from the file, into the file")
+    if imgui.begin_popup("saves"):
+        if imgui.menu_item_simple("Into the sketch", "Ctrl+S"):
+            save_values(actions)
+        if imgui.menu_item_simple("As a copy in the current folder"):
+            save_a_copy(actions)
+        imgui.separator()
+        imgui.set_next_item_width(imgui.get_font_size() * 9)
+        flags = imgui.InputTextFlags_.enter_returns_true
+        hint = "name of a preset"
+        entered, memory.preset_name = imgui.input_text_with_hint("##name", hint, memory.preset_name, flags)
+        imgui.same_line()
+        imgui.begin_disabled(not memory.preset_name.strip())
+        if imgui.button("Save preset") or (entered and memory.preset_name.strip()):
+            save_as_preset(actions, memory.preset_name)
+            memory.preset = memory.preset_name.strip()
+            imgui.close_current_popup()
+        imgui.end_disabled()
+        imgui.end_popup()
+    if actions.offer and not imgui.is_popup_open("offer"):
+        imgui.open_popup("offer")
+    if imgui.begin_popup("offer"):
+        imgui.text_unformatted(actions.offer)
+        done = imgui.button("Save a copy")
+        imgui.set_item_tooltip(f"A new folder in {actions.folder}")
+        if done:
+            save_a_copy(actions)
+        imgui.same_line()
+        if imgui.button("Cancel") or done:
+            actions.offer = ""
+            imgui.close_current_popup()
+        imgui.end_popup()
+    elif actions.offer:
+        actions.offer = ""  # a click beside it
 
 
 # ── rows ─────────────────────────────────────────────────────────────────────

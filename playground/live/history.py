@@ -147,7 +147,7 @@ class History:
 
     def _asked(self, wanted: State) -> State:
         self._open = False
-        self._due = dict(wanted)
+        self._due |= wanted
         return wanted
 
     def settle(self, edits: Edits, steps: Mapping[str, int]) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from playground.live.actions import Actions
+from playground.live.saving import save_values
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
+    Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
     Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.quit()),
 )
 

@@ -100,6 +100,7 @@ class Session:
         self.draws = 0  # pictures drawn so far
         self.hasty = False  # the picture has one sample a pixel only, and will be drawn again in full
         self.read_at = 0.0  # [s since the epoch] when the files were last read
+        self._another = False  # what is coming is another sketch than the one that is shown
         self._initial = Edits(tuple((values or {}).items()))
         self._trial = trial
         self._now = now
@@ -180,7 +181,8 @@ class Session:
         self._started = self._now()
         try:
             loaded = load(self.path)
-            draft, notes = reload_draft(self.shown or self.coming, loaded, self._initial)
+            old = None if self._another else self.shown or self.coming
+            draft, notes = reload_draft(old, loaded, self._initial)
         except Exception as error:
             self._drop_coming()
             self._file_error = _explained(error)
@@ -191,6 +193,19 @@ class Session:
             self._revision += 1  # the texts are the same, but an image may be another
             return
         self._propose(draft, notes)
+
+    def open(self, path: Path, *, keep: bool = False) -> None:
+        """Open another sketch; the picture stays until that one has proved good.
+
+        ``keep``: it is a copy of this one, and what is set by hand goes on.
+        """
+        self.path = find(path)
+        if not keep:
+            self._initial, self._another = Edits(), True
+            self.map = None
+            self.steps.clear()
+            self.clock.rewind()
+        self.reload()
 
     def choose(self, pass_name: str, use: str) -> None:
         """Fill a pass with another technique, once that has proved good."""
@@ -412,7 +427,7 @@ class Session:
             self.stage = Stage.FAILED
             self._file_error = _explained(error)
             return
-        self.shown = self.coming
+        self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
         self._file_error = self._draw_error = None
