@@ -85,6 +85,8 @@ class Listing:
     _graph: Graph | None = None
     _sections: tuple[Section, ...] = ()
     _draft: Draft | None = None
+    _base: Sketch | None = None
+    _in_file: dict[str, Value] = field(default_factory=dict)
     _values: Values = field(default_factory=lambda: Values({}, {}, frozenset(), frozenset()))
     _found: tuple[object, dict[str, Section]] = (None, {})
 
@@ -97,10 +99,12 @@ class Listing:
     def values(self, draft: Draft) -> Values:
         """Return what its parameters are set to."""
         if self._draft is not draft:
-            now, file = values_of(draft.sketch), values_of(draft.base)
             items = [item for section in self.sections(draft) for item in section.items]
+            if self._base is not draft.base:
+                file = values_of(draft.base)
+                self._base, self._in_file = draft.base, {item.path: file[item.leaf] for item in items}
+            now, in_file = values_of(draft.sketch), self._in_file
             of = {item.path: now[item.leaf] for item in items}
-            in_file = {item.path: file[item.leaf] for item in items}
             changed = frozenset(path for path, value in of.items() if value != in_file[path])
             self._values = Values(of, in_file, changed, frozenset(draft.edits.locked))
             self._draft = draft

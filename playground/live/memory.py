@@ -21,6 +21,7 @@ class Memory:
     held: tuple[str, bool, Value] = ("", False, 0)  # the widget last clicked on: path, by hand, value before
     menu: str = ""  # the parameter whose menu is open
     menu_opens: bool = False
+    heights: dict[tuple[str, float], float] = field(default_factory=dict)  # of each row, by path and scale
     seed: int = 1  # of the next values by chance
     strength: float = 0.1  # of a mutation
     preset: str = ""  # the one last chosen

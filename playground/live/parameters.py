@@ -15,7 +15,6 @@ from playground.live.rows import cross, row, slot
 from playground.live.theme import Theme
 from playground.live.typed import read_typed
 from playground.live.widgets import Place, draw_value, explanation
-from playground.sketch.model import Sketch
 from playground.sketch.values import write
 
 TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
@@ -25,9 +24,9 @@ _MENU = "parameter"
 
 
 def draw_parameter(
-    item: Item, values: Values, sketch: Sketch, memory: Memory, actions: Actions, look: Theme
+    item: Item, values: Values, folder: Path, memory: Memory, actions: Actions, look: Theme
 ) -> None:
-    """Draw a parameter, and hand on what a hand made of it."""
+    """Draw a parameter, and hand on what a hand made of it; ``folder`` is the sketch's own."""
     session, path, parameter = actions.session, item.path, item.parameter
     value, changed = values.of[path], path in values.changed
     end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
@@ -36,7 +35,7 @@ def draw_parameter(
         if memory.entry == path:
             _entry(item, memory, actions)
         else:
-            new = draw_value(parameter, value, Place(item.label, look.scale, Path(sketch.folder)))
+            new = draw_value(parameter, value, Place(item.label, look.scale, folder))
             if parameter.widget.kind in TYPED and imgui.is_item_hovered() and imgui.is_mouse_clicked(0):
                 if _typing(item, values, memory, actions):
                     new = None

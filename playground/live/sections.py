@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
@@ -34,7 +35,7 @@ class Sections:
         values, found = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
         if memory.filter and not found:
             imgui.text_disabled("no parameter is like that")
-        drawing = _Drawing(sketch, values, memory, actions, look)
+        drawing = _Drawing(Path(sketch.folder), values, memory, actions, look)
         for spec in sketch.graph.passes:
             section = found.get(spec.name)
             if memory.filter and section is None:
@@ -81,7 +82,7 @@ class Sections:
 class _Drawing:
     """What every row of one turn needs."""
 
-    sketch: Sketch
+    folder: Path
     values: Values
     memory: Memory
     actions: Actions
@@ -146,8 +147,19 @@ class _Drawing:
                 self._rows(group)
 
     def _rows(self, group: Group) -> None:
+        """Draw parameters. One that is out of sight leaves only its room, unless a hand holds something."""
+        heights, held = self.memory.heights, imgui.is_any_item_active()
+        top = imgui.get_window_pos().y
+        bottom = top + imgui.get_window_height()
         for item in group.items:
-            draw_parameter(item, self.values, self.sketch, self.memory, self.actions, self.look)
+            y = imgui.get_cursor_screen_pos().y
+            high = heights.get((item.path, self.look.scale))
+            if high is not None and not held and (y > bottom or y + high < top):
+                imgui.dummy(ImVec2(1, high))
+                continue
+            draw_parameter(item, self.values, self.folder, self.memory, self.actions, self.look)
+            gap = imgui.get_style().item_spacing.y
+            heights[item.path, self.look.scale] = imgui.get_cursor_screen_pos().y - y - gap
 
     def _reset(self, name: str, items: tuple[Item, ...]) -> None:
         """Draw a reset at the end of the line, where one of the parameters is changed."""

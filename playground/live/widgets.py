@@ -21,8 +21,9 @@ from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, is_whole, length_of, write
 from playground.sketch.widgets import WIDGETS
 
-_CLAMP = imgui.SliderFlags_.always_clamp
-_PLAIN = imgui.SliderFlags_.no_input  # the panel has a field of its own, which reads expressions
+_CLAMP = imgui.SliderFlags_.always_clamp.value
+_LOGARITHMIC = imgui.SliderFlags_.logarithmic.value
+_PLAIN = imgui.SliderFlags_.no_input.value  # the panel has a field of its own, which reads expressions
 _PAD = 84.0
 _IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
 _WHOLE = 2**31 - 1
@@ -85,7 +86,7 @@ def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
         return _number(parameter, value, place)
     flags = _CLAMP | _PLAIN
     if widget.kind == "log_slider":
-        flags |= imgui.SliderFlags_.logarithmic
+        flags |= _LOGARITHMIC
     form = format_of(parameter)
     if is_whole(parameter.type):
         whole = [int(n) for n in _as_list(value)]
