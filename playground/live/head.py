@@ -115,13 +115,12 @@ def draw_history(memory: Memory, actions: Actions, look: Theme) -> None:
 
     for number, step in enumerate(history.steps, 1):
         text = fitting(in_words(step, name_of, said), wide - 20 * look.scale)
-        if number > history.done:
-            imgui.push_style_color(imgui.Col_.text, theme.colour(theme.DIM))
-        if imgui.selectable(f"{text}##{number}", number == history.done)[0]:
+        done, latest = number <= history.done, number == history.done
+        imgui.push_style_color(imgui.Col_.text, theme.colour(theme.INK if done else theme.DIM))
+        if imgui.selectable(f"{text}##{number}", latest)[0]:
             actions.go_to(number)
-        if number > history.done:
-            imgui.pop_style_color()
-        if number == history.done and imgui.is_window_appearing():
+        imgui.pop_style_color()
+        if latest and imgui.is_window_appearing():
             imgui.set_scroll_here_y()
     imgui.end_child()
 

@@ -21,6 +21,7 @@ TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
 """Widgets that turn into a field at a double click, or a click with Ctrl."""
 
 _MENU = "parameter"
+_PRESSED = imgui.HoveredFlags_.allow_when_blocked_by_active_item.value  # as while the lock is pressed
 
 
 def draw_parameter(
@@ -43,7 +44,7 @@ def draw_parameter(
                 session.set(path, new)
     locked = path in values.locked
     mouse = imgui.get_mouse_pos()
-    here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered()
+    here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered(_PRESSED)
     if locked or here:
         imgui.same_line(end - 2 * slot() - 2)
         if _lock(path, locked, look):

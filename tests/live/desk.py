@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import imgui_bundle
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
+from playground.live import widgets
 from playground.live.actions import Actions
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
 from playground.live.session import Session
 from playground.live.theme import Theme
-
-KEYS = {"/": imgui.Key.slash, "Enter": imgui.Key.enter, "Esc": imgui.Key.escape}
 
 
 class Bare:
@@ -36,9 +36,47 @@ class Bare:
         self.session = Session(engine, path)
         self.actions = Actions(self.session, lambda: None, path, now=lambda: self.time)
         self.panel = Panel()
+        self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
+        self._watched: list[tuple[object, str, object]] = []
+        for owner, name in (
+            (imgui, "button"),
+            (imgui, "menu_item_simple"),
+            (imgui, "selectable"),
+            (imgui, "checkbox"),
+            (imgui, "begin_combo"),
+            (imgui, "input_text_with_hint"),
+            (imgui, "input_text"),
+            (imgui, "input_int"),
+            (imgui, "invisible_button"),
+            (imgui, "slider_float"),
+            (imgui, "slider_int"),
+            (imgui, "combo"),
+            (imgui, "tree_node_ex"),
+            (imgui, "collapsing_header"),
+        ):
+            self._watch(owner, name)
+        tables = widgets._SLIDE, widgets._SLIDE_WHOLE, widgets._DRAG, widgets._DRAG_WHOLE
+        self._tables = [(table, dict(table)) for table in tables]
+        for table in tables:
+            table.update({count: self._watched_form(draw) for count, draw in table.items()})
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.turn(3)
+
+    def _watch(self, owner: object, name: str) -> None:
+        """Remember where everything is drawn, by its label."""
+        draw = getattr(owner, name)
+        self._watched.append((owner, name, draw))
+        setattr(owner, name, self._watched_form(draw))
+
+    def _watched_form(self, draw: Callable[..., Any]) -> Callable[..., Any]:
+        def watched(label: str, *rest: object) -> object:
+            answer = draw(label, *rest)
+            low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
+            self.places[label] = low.x, low.y, size.x, size.y
+            return answer
+
+        return watched
 
     def _copied(self, _: object, text: str) -> None:
         self.clipboard = text
@@ -61,11 +99,61 @@ class Bare:
             for texture in imgui.get_platform_io().textures:
                 texture.set_status(imgui.ImTextureStatus.ok)
 
+    def point(self, label: str, across: float = 0.5) -> None:
+        """Move the mouse over what has a label, to a share of its width."""
+        self.turn()
+        x, y, wide, high = self.places[label]
+        imgui.get_io().add_mouse_pos_event(x + across * wide, y + high / 2)
+        self.turn()
+
+    def press(self, down: bool, button: int = 0) -> None:
+        """Press a button of the mouse, or let it go."""
+        imgui.get_io().add_mouse_button_event(button, down)
+        self.turn()
+
+    def click(self, label: str, across: float = 0.5, *, times: int = 1, button: int = 0) -> None:
+        """Click on what has a label."""
+        self.point(label, across)
+        for _ in range(times):
+            self.press(True, button)
+            self.press(False, button)
+        self.places.clear()
+        self.turn(2 if times > 1 else 25)  # the next click is no double one
+
+    def drag(self, label: str, start: float, end: float) -> None:
+        """Drag from one share of a widget's width to another."""
+        self.point(label, start)
+        self.press(True)
+        for n in range(1, 6):
+            x, y, wide, high = self.places[label]
+            share = start + (end - start) * n / 5
+            imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
+            self.turn()
+        self.press(False)
+        self.turn(60)
+
+    def key(self, *keys: imgui.Key) -> None:
+        """Press keys together, and let them go."""
+        for down in (True, False):
+            for key in keys if down else reversed(keys):
+                imgui.get_io().add_key_event(key, down)
+            self.turn(2)
+
+    def type(self, text: str) -> None:
+        """Type a text over what is selected."""
+        for letter in text:
+            imgui.get_io().add_input_character(ord(letter))
+            self.turn()
+
     def draw(self) -> None:
         """Draw the panel."""
         self.panel.draw(self.actions, self.theme)
 
     def close(self) -> None:
         """End it; the engine is its owner's."""
+        for owner, name, draw in self._watched:
+            setattr(owner, name, draw)
+        for table, before in self._tables:
+            table.update(before)
         self.session.release()
         imgui.destroy_context(self.context)
