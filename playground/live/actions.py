@@ -41,8 +41,12 @@ class Actions:
     last_map: str = ""  # what M shows
     saved: Path | None = None  # the last picture
     history: History = field(default_factory=History)
+    keymap_shown: bool = False
+    full_screen: Callable[[], None] = lambda: None  # fills the screen, or no longer
+    dropped: list[Path] = field(default_factory=list)  # images that wait to be put somewhere
     searching: bool = False  # the panel is asked for its search
     offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
+    opening: str = ""  # the question to be asked next: "offer" or "dropped"
     held: bool = False  # a mouse button is down: what changes is one step
 
     def __post_init__(self) -> None:
@@ -94,6 +98,17 @@ class Actions:
     def search(self) -> None:
         """Bring the panel, and give its search the keys."""
         self.panel_shown = self.searching = True
+
+    def toggle_keymap(self) -> None:
+        """Show what every key does, or no longer."""
+        self.keymap_shown = not self.keymap_shown
+
+    def escape(self) -> None:
+        """Put the key map away, or quit."""
+        if self.keymap_shown:
+            self.keymap_shown = False
+        else:
+            self.quit()
 
     def rewind(self) -> None:
         """Go back to time 0."""

@@ -21,11 +21,14 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
+from playground.live.drops import draw_drops, take_dropped
 from playground.live.hand import Hand
+from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
+from playground.live.place import Place, own_file, remember, remembered
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
@@ -45,7 +48,7 @@ _LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
 def run(
     sketch: str | Path = "",
     *,
-    size: tuple[int, int] = DEFAULT_PICTURE,
+    size: tuple[int, int] | None = None,
     software: bool = False,
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
@@ -53,7 +56,8 @@ def run(
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
-    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. With a
+    ``size`` in the screen's units; without one the window opens where the last one stood, and
+    leaves its place to the next. ``values`` by path as ``--set`` takes them. With a
     ``time_limit`` [s] the window closes itself. Raises ``ContextError`` where no window
     can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
     value that does not fit; any other mistake in the sketch is shown in the window.
@@ -65,12 +69,19 @@ def run(
     with ExitStack() as stack:
         trial = stack.enter_context(Trial(software=software))
         trial.start()
-        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", size))
+        window = stack.enter_context(
+            Window(f"{path.stem} – terrain shader playground", size or DEFAULT_PICTURE)
+        )
         engine = stack.enter_context(Engine(window.ctx, driver=driver))
         session = Session(engine, path, values=checked, trial=trial)
         stack.callback(session.release)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher)
+        if size is None:
+            stood = remembered(own_file())
+            if stood is not None:
+                live.place.apply(stood)
+            stack.callback(lambda: remember(own_file(), live.place.geometry()))
         stack.callback(live.painter.release)
         try:
             live.run(time_limit)
@@ -107,7 +118,8 @@ class Live:
         self.session = session
         self.watcher = watcher
         self.panel = Panel()
-        self.actions = Actions(session, window.ask_to_close)
+        self.place = Place(lambda: window.handle)
+        self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
         self._settling = _SETTLES
@@ -174,6 +186,7 @@ class Live:
 
     def _turn(self) -> None:
         window, session, actions = self.window, self.session, self.actions
+        take_dropped(actions, self.place.dropped())
         window.begin()
         left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
         act_on_keys(actions)
@@ -194,6 +207,8 @@ class Live:
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
         draw_notices(actions, window.theme, area)
+        draw_drops(actions, window.theme)
+        draw_keymap(actions, window.theme)
         window.screen.use()
         window.screen.viewport = (0, 0, wide, high)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)

@@ -226,7 +226,8 @@ def _saves(memory: Memory, actions: Actions) -> None:
             imgui.close_current_popup()
         imgui.end_disabled()
         imgui.end_popup()
-    if actions.offer and not imgui.is_popup_open("offer"):
+    if actions.opening == "offer":
+        actions.opening = ""
         imgui.open_popup("offer")
     if imgui.begin_popup("offer"):
         imgui.text_unformatted(actions.offer)
@@ -239,8 +240,6 @@ def _saves(memory: Memory, actions: Actions) -> None:
             actions.offer = ""
             imgui.close_current_popup()
         imgui.end_popup()
-    elif actions.offer:
-        actions.offer = ""  # a click beside it
 
 
 # ── rows ─────────────────────────────────────────────────────────────────────

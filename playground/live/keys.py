@@ -22,6 +22,7 @@ class Key:
     act: Callable[[Actions], None]
     ctrl: bool = False
     shift: bool = False
+    letter: str = ""  # what it types, for one that is elsewhere on every keyboard
 
 
 KEYS: tuple[Key, ...] = (
@@ -32,12 +33,15 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
-    Key(imgui.Key.slash, "/", "search the parameters", "", lambda a: a.search()),
+    Key(imgui.Key.none, "/", "search the parameters", "", lambda a: a.search(), letter="/"),
+    Key(imgui.Key.f11, "F11", "fill the screen, or no longer", "", lambda a: a.full_screen()),
+    Key(imgui.Key.none, "?", "show or hide these keys", "keys", lambda a: a.toggle_keymap(), letter="?"),
+    Key(imgui.Key.f1, "F1", "show or hide these keys", "", lambda a: a.toggle_keymap()),
     Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
-    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.quit()),
+    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.escape()),
 )
 
 
@@ -49,7 +53,12 @@ def act_on_keys(actions: Actions) -> None:
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
     ctrl = io.key_ctrl or io.key_super
+    typed = {chr(letter) for letter in io.input_queue_characters}
     for key in KEYS:
+        if key.letter:
+            if key.letter in typed and not ctrl:
+                key.act(actions)
+            continue
         fits = key.ctrl == ctrl and (key.shift == io.key_shift or not ctrl)
         if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
             key.act(actions)

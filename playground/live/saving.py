@@ -27,7 +27,7 @@ def save_values(actions: Actions) -> None:
     try:
         save(draft.file, draft.sketch)
     except ReadOnlySketch as error:
-        actions.offer = f"{str(error).rpartition(': ')[2].capitalize()}."
+        actions.offer, actions.opening = f"{str(error).rpartition(': ')[2].capitalize()}.", "offer"
         return
     except PlaygroundError as error:
         actions.say(str(error))
@@ -64,7 +64,7 @@ def save_as_preset(actions: Actions, name: str) -> None:
     try:
         save_preset(draft.file, name.strip(), values)
     except ReadOnlySketch as error:
-        actions.offer = f"{str(error).rpartition(': ')[2].capitalize()}."
+        actions.offer, actions.opening = f"{str(error).rpartition(': ')[2].capitalize()}.", "offer"
         return
     except PlaygroundError as error:
         actions.say(str(error))

@@ -25,7 +25,7 @@ _CLAMP = imgui.SliderFlags_.always_clamp.value
 _LOGARITHMIC = imgui.SliderFlags_.logarithmic.value
 _PLAIN = imgui.SliderFlags_.no_input.value  # the panel has a field of its own, which reads expressions
 _PAD = 84.0
-_IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
+IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
 _WHOLE = 2**31 - 1
 
 
@@ -255,7 +255,7 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 def _files_in(folder: Path) -> list[str]:
     inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
-    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in _IMAGES)[:200]
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in IMAGES)[:200]
 
 
 # ── between imgui's lists and parameters' values ─────────────────────────────

@@ -59,6 +59,11 @@ class Window:
         self.close()
 
     @property
+    def handle(self) -> Any:
+        """GLFW's own window."""
+        return self._handle
+
+    @property
     def open(self) -> bool:
         """Whether nobody has asked it to close."""
         return not glfw.window_should_close(self._handle)

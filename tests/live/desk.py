@@ -12,6 +12,8 @@ from imgui_bundle import ImVec2, imgui
 from playground.engine.engine import Engine
 from playground.live import widgets
 from playground.live.actions import Actions
+from playground.live.drops import draw_drops
+from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
 from playground.live.session import Session
@@ -34,7 +36,7 @@ class Bare:
         self.theme.rescale(scale)
         self.time = 0.0
         self.session = Session(engine, path)
-        self.actions = Actions(self.session, lambda: None, path, now=lambda: self.time)
+        self.actions = Actions(self.session, self._quit, path, now=lambda: self.time)
         self.panel = Panel()
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
         self._watched: list[tuple[object, str, object]] = []
@@ -61,7 +63,11 @@ class Bare:
             table.update({count: self._watched_form(draw) for count, draw in table.items()})
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
+        self.quits = False
         self.turn(3)
+
+    def _quit(self) -> None:
+        self.quits = True
 
     def _watch(self, owner: object, name: str) -> None:
         """Remember where everything is drawn, by its label."""
@@ -146,8 +152,10 @@ class Bare:
             self.turn()
 
     def draw(self) -> None:
-        """Draw the panel."""
+        """Draw the panel, and what stands over the window."""
         self.panel.draw(self.actions, self.theme)
+        draw_drops(self.actions, self.theme)
+        draw_keymap(self.actions, self.theme)
 
     def close(self) -> None:
         """End it; the engine is its owner's."""

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.images.files import write_png
+from playground.live.drops import take_dropped
 from playground.live.theme import PANEL_WIDTH
+from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 
 from .desk import Bare
@@ -148,7 +152,7 @@ def test_a_padlock_locks_and_chance_leaves_it(bare: Bare) -> None:
 
 
 def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
-    bare.key(imgui.Key.slash)
+    bare.type("/")
     bare.turn(2)
     bare.type("waves metre")
     bare.places.clear()
@@ -225,4 +229,106 @@ def test_nothing_reaches_beyond_the_panel(
         assert 0 <= x and x + wide <= right, label
     slider, cross = bare.places[LEVEL], bare.places[f"{LEVEL}-reset"]
     assert slider[0] + slider[2] <= cross[0]
+    bare.close()
+
+
+def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) -> None:
+    for size, scale in (((1280, 720), 1.0), ((800, 600), 1.0), ((1600, 1200), 2.0)):
+        bare = Bare(any_engine, folder, size, scale)
+        bare.type("?")
+        bare.turn(3)
+        window = imgui.internal.find_window_by_name("keys")
+        assert window.content_size.y + 2 * window.window_padding.y <= window.size.y + 1, "nothing is cut off"
+        assert 0 <= window.pos.x and window.pos.x + window.size.x <= size[0]
+        assert 0 <= window.pos.y and window.pos.y + window.size.y <= size[1]
+        bare.key(imgui.Key.escape)
+        assert not bare.actions.keymap_shown and not bare.quits
+        bare.key(imgui.Key.f1)
+        assert bare.actions.keymap_shown
+        imgui.get_io().add_mouse_pos_event(5, 5)
+        bare.press(True)
+        bare.press(False)
+        assert not bare.actions.keymap_shown
+        bare.key(imgui.Key.escape)
+        assert bare.quits
+        bare.close()
+
+
+IMAGE = """// land.glsl -- a height from an image
+#pragma kernel(output = "height:r32f")
+uniform sampler2D image;  //! file() label("Elevation")
+float kernel(ivec2 texel) { return texelFetch(image, texel % textureSize(image, 0), 0).r; }
+"""
+
+
+def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_engine: Engine) -> None:
+    write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
+    image = folder / "other" / "white.png"
+    image.parent.mkdir()
+    write_png(image, np.full((4, 4, 4), 255, np.uint8))
+    (folder / "land.glsl").write_text(IMAGE, encoding="utf-8")
+    text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
+    (folder / "sketch.toml").write_text(text, encoding="utf-8")
+    bare = Bare(any_engine, folder)
+    take_dropped(bare.actions, [image, folder / "other" / "notes.txt"])
+    assert "notes.txt is neither a sketch, a shader nor an image" in said(bare)
+    bare.turn(3)
+    bare.click("Elevation   height.image##height.image")
+    assert value(bare, "image") == str(image.resolve()) and bare.actions.dropped == []
+    assert bare.session.read_values("height:height").max() == 1.0  # type: ignore[union-attr]
+    bare.actions.undo()
+    assert value(bare, "image") == "none.png"
+    take_dropped(bare.actions, [image, image])
+    bare.turn(3)
+    bare.click("Elevation   height.image##height.image")
+    assert len(bare.actions.dropped) == 1, "and the next is asked about"
+    bare.actions.undo()
+    bare.turn(3)
+    imgui.get_io().add_mouse_pos_event(1000, 700)
+    bare.press(True)
+    bare.press(False)
+    bare.turn(2)
+    assert bare.actions.dropped == [] and value(bare, "image") == "none.png", "a click beside it is a no"
+    bare.close()
+
+
+def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
+    other = folder / "two"
+    other.mkdir()
+    for name in ("land.glsl", "sketch.toml"):
+        (other / name).write_bytes((folder / name).read_bytes())
+    bare.session.set("height.level", 0.25)
+    take_dropped(bare.actions, [other])
+    bare.turn(3)
+    assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
+    take_dropped(bare.actions, [folder / "two" / "land.glsl"])
+    bare.turn(3)
+    assert bare.session.path.name == "land.glsl" and bare.session.error is None
+    take_dropped(bare.actions, [folder / "gone.toml"])
+    assert "gone.toml" in said(bare)
+    take_dropped(bare.actions, [folder / "picture.png"])
+    assert "picture.png is neither" in said(bare)
+
+
+def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
+    write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
+    take_dropped(bare.actions, [folder / "white.png"])
+    assert "no parameter of this sketch takes a file" in said(bare) and bare.actions.dropped == []
+
+
+def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
+    bare = Bare(any_engine, SKETCHES / "white_noise.toml")
+    bare.actions.folder = tmp_path
+    bare.session.set("height.seed", 4)
+    bare.turn(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.turn(3)
+    bare.click("Cancel")
+    bare.turn(5)
+    assert list(tmp_path.iterdir()) == []
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.turn(3)
+    bare.click("Save a copy")
+    bare.turn(5)
+    assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
     bare.close()
