@@ -26,7 +26,7 @@ class Key:
 
 
 KEYS: tuple[Key, ...] = (
-    Key(imgui.Key.space, "Space", "play or pause", "pause", lambda a: a.session.clock.toggle()),
+    Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
     Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
@@ -52,13 +52,15 @@ def act_on_keys(actions: Actions) -> None:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
-    ctrl = io.key_ctrl or io.key_super
+    # In a slow turn Ctrl may come up again together with the key that it was held for.
+    ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
+    shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
     typed = {chr(letter) for letter in io.input_queue_characters}
     for key in KEYS:
         if key.letter:
             if key.letter in typed and not ctrl:
                 key.act(actions)
             continue
-        fits = key.ctrl == ctrl and (key.shift == io.key_shift or not ctrl)
+        fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
         if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
             key.act(actions)

@@ -332,3 +332,17 @@ def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_
     bare.turn(5)
     assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
     bare.close()
+
+
+def test_keys_that_come_up_within_the_turn_are_heard(bare: Bare) -> None:
+    bare.session.set("height.level", 0.25)
+    bare.turn(2)
+    events = imgui.get_io()
+    events.add_key_event(imgui.Key.mod_ctrl, True)
+    bare.turn()
+    events.add_key_event(imgui.Key.z, True)
+    events.add_key_event(imgui.Key.mod_ctrl, False)
+    bare.turn()
+    events.add_key_event(imgui.Key.z, False)
+    bare.turn(2)
+    assert value(bare, "level") == 0.6
