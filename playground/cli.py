@@ -30,6 +30,7 @@ from playground.commands.arguments import (
     read_device,
 )
 from playground.errors import PlaygroundError, nearest
+from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import complain, note
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -117,7 +118,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, None, renderer, "auto", {})
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {})
         return
     note("no display here, so a picture is made instead; playground --help says what else there is")
     render.make_picture(render.Picture(), renderer)

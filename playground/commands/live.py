@@ -22,6 +22,7 @@ from playground.commands.arguments import (
     with_whole_paths,
 )
 from playground.errors import ContextError, PlaygroundError
+from playground.sketch.model import DEFAULT_PICTURE
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters.",
@@ -44,7 +45,7 @@ def live(
     from playground.gpu.doctor import where_to_show
 
     renderer: Renderer = ctx.obj.or_else(software)
-    pixels = read_pixels(size)
+    pixels = read_pixels(size) or DEFAULT_PICTURE
     values = read_values(settings)
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
@@ -56,7 +57,7 @@ def live(
 
 
 def open_window(
-    sketch: str, size: tuple[int, int] | None, renderer: Renderer, driver: str, values: dict[str, object]
+    sketch: str, size: tuple[int, int], renderer: Renderer, driver: str, values: dict[str, object]
 ) -> None:
     """Open a window and stay until it is closed."""
     from playground.live.app import run

@@ -28,7 +28,7 @@ from playground.live.keys import act_on_keys
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
-from playground.live.place import Place, own_file, remember, remembered
+from playground.live.place import Place
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
@@ -48,7 +48,7 @@ _LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
 def run(
     sketch: str | Path = "",
     *,
-    size: tuple[int, int] | None = None,
+    size: tuple[int, int] = DEFAULT_PICTURE,
     software: bool = False,
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
@@ -56,8 +56,7 @@ def run(
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
-    ``size`` in the screen's units; without one the window opens where the last one stood, and
-    leaves its place to the next. ``values`` by path as ``--set`` takes them. With a
+    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. With a
     ``time_limit`` [s] the window closes itself. Raises ``ContextError`` where no window
     can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
     value that does not fit; any other mistake in the sketch is shown in the window.
@@ -69,19 +68,12 @@ def run(
     with ExitStack() as stack:
         trial = stack.enter_context(Trial(software=software))
         trial.start()
-        window = stack.enter_context(
-            Window(f"{path.stem} – terrain shader playground", size or DEFAULT_PICTURE)
-        )
+        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", size))
         engine = stack.enter_context(Engine(window.ctx, driver=driver))
         session = Session(engine, path, values=checked, trial=trial)
         stack.callback(session.release)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher)
-        if size is None:
-            stood = remembered(own_file())
-            if stood is not None:
-                live.place.apply(stood)
-            stack.callback(lambda: remember(own_file(), live.place.geometry()))
         stack.callback(live.painter.release)
         try:
             live.run(time_limit)

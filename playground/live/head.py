@@ -9,7 +9,7 @@ from playground.live.actions import Actions
 from playground.live.chance import at_random, mutated
 from playground.live.history import in_words
 from playground.live.listing import Filter, Item, set_words
-from playground.live.memory import Memory
+from playground.live.panel_memory import Memory
 from playground.live.rows import fitting, row
 from playground.live.saving import copy_toml, save_a_copy, save_as_preset, save_values
 from playground.live.theme import Theme

@@ -17,8 +17,8 @@ from playground.live.actions import Actions
 from playground.live.costs import draw_costs
 from playground.live.head import draw_head, draw_search
 from playground.live.keys import KEYS
-from playground.live.memory import Memory
 from playground.live.paintbox import draw_paintbox
+from playground.live.panel_memory import Memory
 from playground.live.rows import row
 from playground.live.sections import Sections
 from playground.live.theme import Theme

@@ -10,7 +10,7 @@ from playground.errors import ParameterError
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.listing import Item, Values
-from playground.live.memory import Memory
+from playground.live.panel_memory import Memory
 from playground.live.rows import cross, row, slot
 from playground.live.theme import Theme
 from playground.live.typed import read_typed

@@ -1,13 +1,9 @@
-"""Where the window stands: full screen and back, its place kept for the next time, files dropped on it."""
+"""What a window does besides drawing: it fills the screen and comes back, and takes files dropped on it."""
 
 from __future__ import annotations
 
-import json
-import os
-import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +12,8 @@ import imgui_bundle  # noqa: F401  # before glfw, so that both use one GLFW libr
 # isort: split
 import glfw
 
-from playground.images.files import replacing
-
 Rectangle = tuple[int, int, int, int]
 """x, y, width, height, in the screen's units."""
-
-_LEAST = 80
-"""Of a window, on each axis, must be on a screen for a hand to get hold of it."""
 
 
 @dataclass(frozen=True)
@@ -57,14 +48,6 @@ class Place:
         handle = self._handle()
         (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
         return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
-
-    def apply(self, wanted: Geometry) -> None:
-        """Put it where it stood, moved as far as must be for it to be on a screen that there is."""
-        handle, found = self._handle(), within(wanted, screens())
-        glfw.set_window_size(handle, found.width, found.height)
-        glfw.set_window_pos(handle, found.x, found.y)
-        if found.maximised:
-            glfw.maximize_window(handle)
 
     def toggle_full(self) -> None:
         """Fill the screen that most of it is on, or go back to where it stood."""
@@ -112,67 +95,9 @@ def screens() -> list[Rectangle]:
     return found
 
 
-def within(wanted: Geometry, there: Iterable[Rectangle]) -> Geometry:
-    """Return a place that can be seen: as it is where enough of it is on a screen, else on the first.
-
-    One that is larger than every screen is made as large as the one it is put on.
-    """
-    areas = list(there)
-    if not areas:
-        return wanted
-    for x, y, width, height in areas:
-        across = min(wanted.x + wanted.width, x + width) - max(wanted.x, x)
-        down = min(wanted.y + wanted.height, y + height) - max(wanted.y, y)
-        if across >= _LEAST and down >= _LEAST and y <= wanted.y:  # its title can be taken hold of
-            return wanted
-    x, y, width, height = areas[0]
-    wide, high = min(wanted.width, width), min(wanted.height, height)
-    return Geometry(x + (width - wide) // 2, y + (height - high) // 2, wide, high, wanted.maximised)
-
-
 def _shared(place: Geometry, area: Rectangle) -> int:
     """Return how much of a window is on a screen."""
     x, y, width, height = area
     across = min(place.x + place.width, x + width) - max(place.x, x)
     down = min(place.y + place.height, y + height) - max(place.y, y)
     return max(across, 0) * max(down, 0)
-
-
-# ── kept for the next time ───────────────────────────────────────────────────
-
-
-def state_file(environ: Mapping[str, str], platform: str, home: Path) -> Path:
-    """Return the file that keeps the window's place, where the system keeps such things."""
-    if platform == "win32":
-        folder = Path(environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    elif platform == "darwin":
-        folder = home / "Library" / "Application Support"
-    else:
-        folder = Path(environ.get("XDG_STATE_HOME") or home / ".local" / "state")
-    return folder / "terrain-shader-playground" / "window.json"
-
-
-def remembered(file: Path) -> Geometry | None:
-    """Return the place that was kept; None where there is none, or none that makes sense."""
-    try:
-        given = json.loads(file.read_text(encoding="utf-8"))
-        x, y, width, height = (given[name] for name in ("x", "y", "width", "height"))
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    sensible = all(type(n) is int and abs(n) < 100_000 for n in (x, y, width, height))
-    if not sensible or min(width, height) < _LEAST:
-        return None
-    return Geometry(x, y, width, height, given.get("maximised") is True)
-
-
-def remember(file: Path, place: Geometry) -> None:
-    """Keep a place for the next time; where nothing can be written, nothing is kept."""
-    with suppress(OSError, ValueError, RuntimeError):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as out:
-            out.write(json.dumps(asdict(place)).encode())
-
-
-def own_file() -> Path:
-    """Return the file for this user on this system."""
-    return state_file(os.environ, sys.platform, Path.home())

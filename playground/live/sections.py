@@ -11,7 +11,7 @@ from playground.errors import counted
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.listing import Group, Item, Section, Values
-from playground.live.memory import Memory
+from playground.live.panel_memory import Memory
 from playground.live.parameters import draw_menu, draw_parameter
 from playground.live.rows import cross, row, slot
 from playground.live.theme import Theme

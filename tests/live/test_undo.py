@@ -234,3 +234,37 @@ def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
 def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
     found = rounded(Camera(12.3456, 30.0, 1234.5678, (1 / 3, 2.0, 3.0), 35.0))
     assert found == Camera(12.35, 30.0, 1234.57, (0.33, 2.0, 3.0), 35.0)
+
+
+class Brush:
+    """A brush in the hand, with so many strokes to take back."""
+
+    on = True
+
+    def __init__(self, strokes: int) -> None:
+        self.strokes = strokes
+        self.canvas = self
+
+    @property
+    def can_undo(self) -> bool:
+        return self.strokes > 0
+
+    def undo(self) -> None:
+        self.strokes -= 1
+
+
+def test_with_the_brush_in_the_hand_strokes_are_undone_and_no_values(desk: Desk) -> None:
+    desk.session.set("height.level", 0.5)
+    desk.turn()
+    brush = Brush(1)
+    desk.actions.painting = brush  # type: ignore[assignment]
+    desk.actions.undo()
+    assert brush.strokes == 0 and desk.value("level") == 0.5
+    assert "took the last stroke back; put the brush down (B) to undo values" in desk.said
+    desk.actions.undo()
+    assert "no stroke to take back" in desk.said and desk.value("level") == 0.5
+    desk.actions.redo()
+    assert "a stroke cannot be done again" in desk.said
+    brush.on = False
+    desk.actions.undo()
+    assert desk.value("level") == 0.25
