@@ -62,9 +62,9 @@ def slot() -> float:
     return imgui.get_font_size() + 2
 
 
-def cross(label: str, note: str) -> bool:
-    """Draw a row's reset where the cursor is; return whether it is clicked on."""
-    side, high = slot(), imgui.get_frame_height()
+def cross(label: str, note: str, high: float = 0.0) -> bool:
+    """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
+    side, high = slot(), high or imgui.get_frame_height()
     corner = imgui.get_cursor_screen_pos()
     clicked = imgui.invisible_button(label, ImVec2(side, high))
     hovered = imgui.is_item_hovered()

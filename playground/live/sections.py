@@ -166,9 +166,10 @@ class _Drawing:
         paths = [item.path for item in items if item.path in self.values.changed]
         if not paths:
             return
+        high = imgui.get_item_rect_size().y
         imgui.same_line(imgui.get_window_width() - imgui.get_style().scrollbar_size - slot())
         note = f"{counted(len(paths), 'parameter')} back to the file's values"
-        if cross(f"##reset {name}", note):
+        if cross(f"##reset {name}", note, high):
             self.actions.reset(name, paths)
 
 

@@ -156,7 +156,7 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     wide = imgui.calc_item_width()
     origin = imgui.get_cursor_screen_pos()
     side = min(_PAD * place.scale, wide)
-    radius = side / 2
+    radius, beside = side / 2, wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
@@ -177,10 +177,10 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
         result = (round(found[0], 1), round(found[1], 1))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     raised, elevation = imgui.drag_float(
         f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP
     )
@@ -192,7 +192,9 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
 def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     x, y = _as_list(value)
     origin = imgui.get_cursor_screen_pos()
-    side = min(_PAD * place.scale, imgui.calc_item_width())
+    wide = imgui.calc_item_width()
+    side = min(_PAD * place.scale, wide)
+    beside = wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
@@ -206,9 +208,9 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
         result = (round(dragged[0], 4), round(1 - dragged[1], 4))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f east", _CLAMP)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f north", _CLAMP)
     imgui.end_group()
     return (tidied(x), tidied(y)) if east or north else result

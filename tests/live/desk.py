@@ -50,6 +50,7 @@ class Bare:
             (imgui, "input_text"),
             (imgui, "input_int"),
             (imgui, "invisible_button"),
+            (imgui, "drag_float"),
             (imgui, "slider_float"),
             (imgui, "slider_int"),
             (imgui, "combo"),

@@ -24,6 +24,7 @@ uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform float turn = 0.0; //! angle The way that the hills run
 uniform float rough = 1.0; //! log_slider(0.01, 100) unit("1/m") group("Shape") Waves in a metre
 uniform int count = 3; //! slider(1, 9) group("Shape") How many waves
+uniform vec2 sun = vec2(135.0, 40.0); //! direction group("Shape") Where the sun is
 uniform int kind = 0; //! menu("round", "sharp") group("Shape") What they are like
 uniform float gone = 0.5; //! slider(0, 1) group("A group whose name is longer than there is room for") Gone
 float kernel(ivec2 texel) { return level; }
@@ -142,7 +143,7 @@ def test_a_padlock_locks_and_chance_leaves_it(bare: Bare) -> None:
     assert bare.session.shown is not None and bare.session.shown.edits.locked == ("height.level",)
     bare.click("Random")
     bare.click("Random values")
-    assert "Random, seed 1: 5 parameters" in said(bare)
+    assert "Random, seed 1: 6 parameters" in said(bare)
     assert value(bare, "level") == 0.6 and value(bare, "rough") != 1.0
     first = dict(values_of(bare.session.sketch))  # type: ignore[arg-type]
     bare.click("Mutate")
@@ -221,14 +222,15 @@ def test_nothing_reaches_beyond_the_panel(
     folder: Path, any_engine: Engine, size: tuple[int, int], scale: float
 ) -> None:
     bare = Bare(any_engine, folder, size, scale)
-    bare.session.set_all({"height.level": 0.75, "height.count": 5})
+    bare.session.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
     bare.places.clear()
     bare.turn(3)
     right = PANEL_WIDTH * scale
     for label, (x, _, wide, _) in bare.places.items():
         assert 0 <= x and x + wide <= right, label
-    slider, cross = bare.places[LEVEL], bare.places[f"{LEVEL}-reset"]
-    assert slider[0] + slider[2] <= cross[0]
+    for name, widget in (("level", ""), ("sun", "-elevation")):
+        field, cross = bare.places[f"##height.{name}{widget}"], bare.places[f"##height.{name}-reset"]
+        assert field[0] + field[2] <= cross[0], "the reset stands beside its field"
     bare.close()
 
 
@@ -301,9 +303,12 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     take_dropped(bare.actions, [other])
     bare.turn(3)
     assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
-    take_dropped(bare.actions, [folder / "two" / "land.glsl"])
+    shader = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+    (other / "plain.frag").write_text(shader, encoding="utf-8")
+    take_dropped(bare.actions, [other / "plain.frag"])
     bare.turn(3)
-    assert bare.session.path.name == "land.glsl" and bare.session.error is None
+    assert bare.session.path.name == "plain.frag" and bare.session.error is None
+    assert bare.session.sketch is not None and bare.session.sketch.name == "plain"
     take_dropped(bare.actions, [folder / "gone.toml"])
     assert "gone.toml" in said(bare)
     take_dropped(bare.actions, [folder / "picture.png"])
