@@ -209,9 +209,9 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     imgui.same_line()
     imgui.begin_group()
     imgui.set_next_item_width(beside)
-    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f east", _CLAMP)
+    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f E", _CLAMP)
     imgui.set_next_item_width(beside)
-    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f north", _CLAMP)
+    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f N", _CLAMP)
     imgui.end_group()
     return (tidied(x), tidied(y)) if east or north else result
 
