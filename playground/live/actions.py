@@ -7,11 +7,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, counted
+from playground.live.edits import Edits
+from playground.live.history import History, State, applied, edits_of, state_of, steps_of
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.session import Session
+from playground.live.stages import Stage
 from playground.paths import shown
+from playground.sketch.model import Value
 
 STAYS = 6.0
 """[s] that a notice stays on the screen."""
@@ -37,6 +41,14 @@ class Actions:
     notices: list[Notice] = field(default_factory=list)
     last_map: str = ""  # what M shows
     saved: Path | None = None  # the last picture
+    history: History = field(default_factory=History)
+    keymap_shown: bool = False
+    full_screen: Callable[[], None] = lambda: None  # fills the screen, or no longer
+    dropped: list[Path] = field(default_factory=list)  # images that wait to be put somewhere
+    searching: bool = False  # the panel is asked for its search
+    offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
+    opening: str = ""  # the question to be asked next: "offer" or "dropped"
+    held: bool = False  # a mouse button is down: what changes is one step
 
     def __post_init__(self) -> None:
         self.painting = Painting(self.session, self.folder)
@@ -84,6 +96,140 @@ class Actions:
         """Hide the panel, or bring it back."""
         self.panel_shown = not self.panel_shown
 
+    def search(self) -> None:
+        """Bring the panel, and give its search the keys."""
+        self.panel_shown = self.searching = True
+
+    def toggle_keymap(self) -> None:
+        """Show what every key does, or no longer."""
+        self.keymap_shown = not self.keymap_shown
+
+    def escape(self) -> None:
+        """Put the key map away, or quit."""
+        if self.keymap_shown:
+            self.keymap_shown = False
+        else:
+            self.quit()
+
     def rewind(self) -> None:
         """Go back to time 0."""
-        self.session.clock.rewind()
+        self.seek(0.0)
+
+    def open(self, path: Path) -> None:
+        """Open another sketch in this window; nothing of this one can be undone there."""
+        try:
+            self.session.open(path)
+        except PlaygroundError as error:
+            self.say(str(error))
+            return
+        self.history = History()
+
+    # ── undo ─────────────────────────────────────────────────────────────────
+
+    def look_back(self, held: bool) -> None:
+        """Take in what this turn has changed, for undo; ``held``: a mouse button is down."""
+        session, self.held = self.session, held
+        if session.shown is not None:
+            draft = session.shown
+            self.history.look(draft.edits, session.steps, draft.file, held=held, now=self.now())
+
+    def undo(self) -> None:
+        """Take the last step back; with the brush in the hand, the last stroke."""
+        if self.painting.on:
+            canvas = self.painting.canvas
+            if canvas is None or not canvas.can_undo:
+                self.say("no stroke to take back; put the brush down (B) to undo values")
+            else:
+                self.painting.undo()
+                self.say("took the last stroke back; put the brush down (B) to undo values")
+            return
+        self.look_back(False)
+        if self.history.can_undo:
+            self._take(self.history.undo())
+        else:
+            self.say("there is nothing to undo")
+
+    def redo(self) -> None:
+        """Do the step again that was taken back last."""
+        if self.painting.on:
+            self.say("a stroke cannot be done again; put the brush down (B) to redo values")
+            return
+        self.look_back(False)
+        if self.history.can_redo:
+            self._take(self.history.redo())
+        else:
+            self.say("there is nothing to do again")
+
+    def go_to(self, done: int) -> None:
+        """Undo or redo until so many steps are done."""
+        self.look_back(False)
+        done = min(max(done, 0), len(self.history.steps))
+        while self.history.done > done:
+            self._take(self.history.undo())
+        while self.history.done < done:
+            self._take(self.history.redo())
+
+    def _take(self, changes: State) -> None:
+        session = self.session
+        if session.shown is None:
+            return
+        wanted = applied(state_of(self._asked(), session.steps), changes)
+        time = wanted.pop(("time", ""), None)
+        if isinstance(time, float):
+            session.clock.time = time
+        stops = steps_of(wanted)
+        for path in {*session.steps, *stops}:
+            session.stop_at(path, stops.get(path, -1))
+        session.restore(edits_of(wanted))
+        self.history.settle(session.shown.edits, session.steps)
+
+    def _asked(self) -> Edits:
+        """Return the edits of now, or those that an undo has asked for and that are still tried."""
+        session = self.session
+        assert session.shown is not None
+        coming = session.coming if session.stage is not Stage.FAILED else None
+        return coming.edits if coming is not None else session.shown.edits
+
+    def seek(self, time: float) -> None:
+        """Go to a moment [s]."""
+        before, self.session.clock.time = self.session.clock.time, max(time, 0.0)
+        if before != self.session.clock.time:
+            self.history.jump(before, self.session.clock.time, held=self.held, now=self.now())
+
+    # ── many values at once ──────────────────────────────────────────────────
+
+    def set_all(self, name: str, values: dict[str, Value]) -> None:
+        """Set many parameters as one step, and say how many; locked ones stay."""
+        draft = self.session.shown
+        if draft is None:
+            return
+        locked = len(set(values) & set(draft.edits.locked))
+        self.look_back(False)
+        self.history.call(name)
+        self.session.set_all(values)
+        self.look_back(False)
+        kept = f"; {counted(locked, 'locked parameter')} left alone" if locked else ""
+        self.say(f"{name}: {counted(len(values) - locked, 'parameter')}{kept}")
+
+    def apply_preset(self, name: str) -> None:
+        """Set a preset's values, as one step."""
+        sketch = self.session.sketch
+        for preset in sketch.presets if sketch else ():
+            if preset.name == name:
+                self.set_all(f"Preset {name}", dict(preset.values))
+
+    def reset_values(self) -> None:
+        """Give all that is not locked back what the file says, as one step."""
+        self.look_back(False)
+        self.history.call("Reset values")
+        self.session.reset_values()
+        self.look_back(False)
+
+    def reset(self, name: str, paths: list[str]) -> None:
+        """Give some parameters back the file's values, as one step; locked ones stay."""
+        draft = self.session.shown
+        if draft is not None:
+            self.look_back(False)
+            self.history.call(f"Reset {name}")
+            self.session.unset(*(path for path in paths if path not in draft.edits.locked))
+            self.look_back(False)

@@ -21,13 +21,16 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.live.actions import Actions
+from playground.live.drops import draw_drops, take_dropped
 from playground.live.follow import Follower
 from playground.live.hand import Hand
+from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
+from playground.live.place import Place
 from playground.live.remember import QUIET, Rememberer, memory_of
 from playground.live.session import REST, Session
 from playground.live.status import Status
@@ -126,7 +129,8 @@ class Live:
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
-        self.actions = Actions(session, window.ask_to_close)
+        self.place = Place(lambda: window.handle)
+        self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
         self._settling = _SETTLES
@@ -197,12 +201,14 @@ class Live:
 
     def _turn(self) -> None:
         window, session, actions = self.window, self.session, self.actions
+        take_dropped(actions, self.place.dropped())
         window.begin()
         left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
         act_on_keys(actions)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         self.hand.act(area, window.density)
+        actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
@@ -216,6 +222,8 @@ class Live:
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
         draw_notices(actions, window.theme, area)
+        draw_drops(actions, window.theme)
+        draw_keymap(actions, window.theme)
         window.screen.use()
         window.screen.viewport = (0, 0, wide, high)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)
@@ -223,7 +231,8 @@ class Live:
             self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
         window.end()
         self.status.write(actions)
-        self.rememberer.look(window.size)
+        stands = self.place.geometry()
+        self.rememberer.look((stands.width, stands.height))
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""

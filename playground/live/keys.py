@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from playground.live.actions import Actions
+from playground.live.saving import save_values
 
 
 @dataclass(frozen=True)
@@ -19,27 +20,47 @@ class Key:
     meaning: str
     brief: str  # in the panel's last line; empty: not there
     act: Callable[[Actions], None]
+    ctrl: bool = False
+    shift: bool = False
+    letter: str = ""  # what it types, for one that is elsewhere on every keyboard
 
 
 KEYS: tuple[Key, ...] = (
-    Key(imgui.Key.space, "Space", "play or pause", "pause", lambda a: a.session.clock.toggle()),
+    Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
     Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
-    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.quit()),
+    Key(imgui.Key.none, "/", "search the parameters", "", lambda a: a.search(), letter="/"),
+    Key(imgui.Key.f11, "F11", "fill the screen, or no longer", "", lambda a: a.full_screen()),
+    Key(imgui.Key.none, "?", "show or hide these keys", "keys", lambda a: a.toggle_keymap(), letter="?"),
+    Key(imgui.Key.f1, "F1", "show or hide these keys", "", lambda a: a.toggle_keymap()),
+    Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
+    Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
+    Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
+    Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
+    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.escape()),
 )
 
 
 def act_on_keys(actions: Actions) -> None:
     """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu."""
     io = imgui.get_io()
-    if io.want_text_input or io.key_ctrl or io.key_alt or io.key_super:
+    if io.want_text_input or io.key_alt:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
+    # In a slow turn Ctrl may come up again together with the key that it was held for.
+    ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
+    shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
+    typed = {chr(letter) for letter in io.input_queue_characters}
     for key in KEYS:
-        if imgui.is_key_pressed(key.key, repeat=False):
+        if key.letter:
+            if key.letter in typed and not ctrl:
+                key.act(actions)
+            continue
+        fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
+        if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
             key.act(actions)

@@ -2,51 +2,91 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 
 _LABELS = 0.40  # share of the width that labels take
 _TOOLTIP = 24.0  # width of a tooltip, in heights of its text
+_fitted: dict[tuple[str, float, float], str] = {}  # text, width and size of the font → what fits
 
 
 @contextmanager
-def row(label: str, note: str = "", *, edited: bool = False, fixed: bool = False) -> Iterator[None]:
+def row(
+    label: str, note: str | Callable[[], str] = "", *, edited: bool = False, fixed: bool = False
+) -> Iterator[None]:
     """Write a label, and let the block draw what belongs to it over the width that is left.
 
+    ``note`` is what the label explains, or a function that says it when it is asked for.
     ``edited`` colours the label. ``fixed`` is for rows above what scrolls: the scroll
     bar's room is left free there, so that the columns meet.
     """
     room = imgui.get_content_region_avail().x
     room -= imgui.get_style().scrollbar_size if fixed else 0.0
-    reset = reset_width()
-    labels = (room - reset) * _LABELS
+    slots = slots_width()
+    labels = (room - slots) * _LABELS
     start = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     text = fitting(label, labels - imgui.get_style().item_spacing.x)
-    imgui.text_colored(theme.colour(theme.WARM if edited else theme.INK), text)
+    if edited:
+        imgui.text_colored(theme.colour(theme.WARM), text)
+    else:
+        imgui.text_unformatted(text)
     if imgui.is_item_hovered():
-        imgui.begin_tooltip()
-        imgui.push_text_wrap_pos(imgui.get_font_size() * _TOOLTIP)
-        imgui.text(f"{label}\n{note}" if note else label)
-        imgui.pop_text_wrap_pos()
-        imgui.end_tooltip()
+        explain(label, note() if callable(note) else note)
     imgui.same_line(start + labels)
-    imgui.push_item_width(room - labels - reset)
+    imgui.push_item_width(room - labels - slots)
     yield
     imgui.pop_item_width()
 
 
-def reset_width() -> float:
-    """Return the room that every row keeps for its reset button, lest a slider shrink while it is dragged."""
-    return float(imgui.calc_text_size("×").x + 2 * imgui.get_style().frame_padding.x + 2)
+def explain(label: str, note: str) -> None:
+    """Show a tooltip, its lines broken."""
+    imgui.begin_tooltip()
+    imgui.push_text_wrap_pos(imgui.get_font_size() * _TOOLTIP)
+    imgui.text_unformatted(f"{label}\n{note}" if note else label)
+    imgui.pop_text_wrap_pos()
+    imgui.end_tooltip()
+
+
+def slots_width() -> float:
+    """Return the room that every row keeps for its lock and its reset: a slider must not shrink in a drag."""
+    return 2 * slot() + 4
+
+
+def slot() -> float:
+    """Return the side of one small button at a row's end."""
+    return imgui.get_font_size() + 2
+
+
+def cross(label: str, note: str, high: float = 0.0) -> bool:
+    """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
+    side, high = slot(), high or imgui.get_frame_height()
+    corner = imgui.get_cursor_screen_pos()
+    clicked = imgui.invisible_button(label, ImVec2(side, high))
+    hovered = imgui.is_item_hovered()
+    if hovered:
+        imgui.set_tooltip(note)
+    size, ink = imgui.calc_text_size("×"), theme.INK if hovered else theme.WARM
+    place = ImVec2(corner.x + (side - size.x) / 2, corner.y + (high - size.y) / 2)
+    imgui.get_window_draw_list().add_text(place, theme.packed(ink), "×")
+    return bool(clicked)
 
 
 def fitting(text: str, width: float) -> str:
     """Return a text cut off so that it fits a width, with an ellipsis."""
+    key = (text, width, imgui.get_font_size())
+    if key not in _fitted:
+        if len(_fitted) > 2000:
+            _fitted.clear()
+        _fitted[key] = _cut(text, width)
+    return _fitted[key]
+
+
+def _cut(text: str, width: float) -> str:
     if imgui.calc_text_size(text).x <= width:
         return text
     while len(text) > 1 and imgui.calc_text_size(text + "…").x > width:

@@ -25,7 +25,7 @@ from playground.engine.trial import TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.begin import first_draft
 from playground.live.clock import Clock, is_animated, reads_mouse
-from playground.live.edits import Draft, Edits, reload_draft
+from playground.live.edits import Draft, Edits, reload_draft, taken
 from playground.live.files import watched
 from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
@@ -75,6 +75,7 @@ class Session:
         self.draws = 0  # pictures drawn so far
         self.hasty = False  # the picture has one sample a pixel only, and will be drawn again in full
         self.read_at = 0.0  # [s since the epoch] when the files were last read
+        self._another = False  # what is coming is another sketch than the one that is shown
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
         edits = edits or Edits()
         for name, value in (values or {}).items():
@@ -162,7 +163,7 @@ class Session:
         try:
             with noting_places() as self.places:
                 loaded = load(self.path)
-            old = self.shown or self.coming
+            old = None if self._another else self.shown or self.coming
             draft, notes = (
                 reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
             )
@@ -176,6 +177,19 @@ class Session:
             self._revision += 1  # the texts are the same, but an image may be another
             return
         self._propose(draft, notes)
+
+    def open(self, path: Path, *, keep: bool = False) -> None:
+        """Open another sketch; the picture stays until that one has proved good.
+
+        ``keep``: it is a copy of this one, and what is set by hand goes on.
+        """
+        self.path = find(path)
+        if not keep:
+            self._initial, self._in_file, self._another = Edits(), {}, True
+            self.map = None
+            self.steps.clear()
+            self.clock.rewind()
+        self.reload()
 
     def choose(self, pass_name: str, use: str) -> None:
         """Fill a pass with another technique, once that has proved good."""
@@ -235,9 +249,39 @@ class Session:
         kept = dict(changed.overrides).get(path, value)
         self._edit(lambda edits: edits.with_value(path, kept))  # type: ignore[arg-type]
 
-    def unset(self, path: str) -> None:
-        """Give a parameter back the file's value."""
-        self._edit(lambda edits: edits.without(path))
+    def set_all(self, values: Mapping[str, Value]) -> None:
+        """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
+        if self.shown is not None:
+            free = [(p, v) for p, v in values.items() if p not in self.shown.edits.locked]
+            fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
+            others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
+            self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+
+    def unset(self, *paths: str) -> None:
+        """Give parameters back the file's values."""
+        draft = self.shown
+        if draft is not None:
+            for path in paths:
+                draft = draft.without(path)
+            left = draft.edits.values
+            self._edit(lambda edits: replace(edits, values=left))
+
+    def lock(self, path: str, locked: bool) -> None:
+        """Lock a parameter against presets, chance and reloads, or let it go."""
+        self._edit(lambda edits: edits.with_lock(path, locked))
+
+    def restore(self, edits: Edits) -> None:
+        """Take other edits for those of now: values and camera at once, techniques once they proved good."""
+        if self.shown is None:
+            return
+        if edits.techniques == self.shown.edits.techniques:
+            self._edit(lambda old: replace(edits, techniques=old.techniques))
+            return
+        self._started = self._now()
+        try:
+            self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
+        except PlaygroundError as error:
+            self._file_error = error
 
     def look(self, camera: Camera) -> None:
         """See the land from another camera."""
@@ -245,12 +289,9 @@ class Session:
 
     def apply_preset(self, name: str) -> None:
         """Set the values of one of the sketch's presets."""
-        if self.sketch is None:
-            return
-        for preset in self.sketch.presets:
+        for preset in self.sketch.presets if self.sketch else ():
             if preset.name == name:
-                for path, value in preset.values:
-                    self.set(path, value)
+                self.set_all(dict(preset.values))
 
     def point(self, mouse: tuple[float, float, float, float]) -> None:
         """Tell plain shaders where the mouse is: pixels from the lower left, then where it was pressed."""
@@ -273,13 +314,12 @@ class Session:
         self._edit(lambda edits: replace(edits, camera=None))
 
     def reset_values(self) -> None:
-        """Give every parameter and every pass back what the file says, and stop no repeat early."""
+        """Give all that is not locked, and every pass, back what the file says; stop no repeat early."""
         self.steps.clear()
-        chosen = self.shown is not None and bool(self.shown.edits.techniques)
-        self._edit(lambda edits: replace(edits, values=()))
-        if chosen and self.shown is not None:
-            self._started = self._now()
-            self._propose(replace(self.shown.reset(), edits=Edits(camera=self.shown.edits.camera)), [])
+        if self.shown is not None:
+            locked = set(self.shown.edits.locked)
+            left = tuple(v for v in self.shown.edits.values if v[0] in locked)
+            self.restore(replace(self.shown.edits, values=left, techniques=()))
 
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
         self._revision += 1
@@ -409,7 +449,7 @@ class Session:
             self.stage = Stage.FAILED
             self._file_error = explained(error)
             return
-        self.shown = self.coming
+        self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
         self._file_error = self._draw_error = None

@@ -14,15 +14,18 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import dome, theme
-from playground.live.numbers import format_of, snapped, unit_of
+from playground.live.numbers import format_of, snapped, tidied, unit_of
+from playground.paths import shown
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, is_whole, length_of, write
 from playground.sketch.widgets import WIDGETS
 
-_CLAMP = imgui.SliderFlags_.always_clamp
+_CLAMP = imgui.SliderFlags_.always_clamp.value
+_LOGARITHMIC = imgui.SliderFlags_.logarithmic.value
+_PLAIN = imgui.SliderFlags_.no_input.value  # the panel has a field of its own, which reads expressions
 _PAD = 84.0
-_IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
+IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
 _WHOLE = 2**31 - 1
 
 
@@ -61,12 +64,16 @@ def draw_value(parameter: Parameter, value: Value, place: Place) -> Value | None
 
 
 def explanation(parameter: Parameter, path: str) -> str:
-    """Return what a tooltip says of a parameter: what it is, what it takes, its default, its path."""
+    """Return a tooltip: what a parameter is, takes, is by default, where it is declared, its path."""
     lines = [parameter.tooltip] if parameter.tooltip else []
     in_words = parameter.widget.choices or WIDGETS[parameter.widget.kind].expects
     unit = "" if in_words else unit_of(parameter)
     default = write(parameter, parameter.default) or "none"
     lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
+    if parameter.step:
+        lines.append(f"In steps of {parameter.step:g}{unit}.")
+    declared = f"uniform {parameter.type} {parameter.name}"
+    lines.append(f"{declared}, {shown(parameter.file)}:{parameter.line}" if parameter.file else declared)
     return "\n".join([*lines, path])
 
 
@@ -77,9 +84,9 @@ def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
     widget = parameter.widget
     if widget.low is None or widget.high is None:
         return _number(parameter, value, place)
-    flags = _CLAMP
+    flags = _CLAMP | _PLAIN
     if widget.kind == "log_slider":
-        flags |= imgui.SliderFlags_.logarithmic
+        flags |= _LOGARITHMIC
     form = format_of(parameter)
     if is_whole(parameter.type):
         whole = [int(n) for n in _as_list(value)]
@@ -107,10 +114,11 @@ def _number(parameter: Parameter, value: Value, place: Place) -> Value | None:
     if is_whole(parameter.type):
         whole = [int(n) for n in numbers]
         form = format_of(parameter)
-        changed, raw = _DRAG_WHOLE[len(whole)](place.label, whole, max(speed, 0.2), -_WHOLE, _WHOLE, form)
+        limits = -_WHOLE, _WHOLE
+        changed, raw = _DRAG_WHOLE[len(whole)](place.label, whole, max(speed, 0.2), *limits, form, _PLAIN)
     else:
         form = "%.6g" + _unit_format(parameter)
-        changed, raw = _DRAG[len(numbers)](place.label, _alone(numbers), speed, 0.0, 0.0, form)
+        changed, raw = _DRAG[len(numbers)](place.label, _alone(numbers), speed, 0.0, 0.0, form, _PLAIN)
     return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
 
 
@@ -138,7 +146,8 @@ def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
         changed, raw = imgui.color_edit4(place.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
     else:
         changed, raw = imgui.color_edit3(place.label, seen, flags)
-    picked = _as_list(raw)
+    # Eight bits a channel, as the field shows it and a file can say it.
+    picked = [round(c * 255) / 255 for c in _as_list(raw)]
     return (*srgb_to_linear(picked[:3]).tolist(), *picked[3:]) if changed else None
 
 
@@ -147,7 +156,7 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     wide = imgui.calc_item_width()
     origin = imgui.get_cursor_screen_pos()
     side = min(_PAD * place.scale, wide)
-    radius = side / 2
+    radius, beside = side / 2, wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
@@ -168,22 +177,24 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
         result = (round(found[0], 1), round(found[1], 1))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(beside)
     raised, elevation = imgui.drag_float(
         f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP
     )
     imgui.set_item_tooltip("Elevation above the horizon")
     imgui.end_group()
-    return (azimuth, elevation) if turned or raised else result
+    return (tidied(azimuth), tidied(elevation)) if turned or raised else result
 
 
 def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     x, y = _as_list(value)
     origin = imgui.get_cursor_screen_pos()
-    side = min(_PAD * place.scale, imgui.calc_item_width())
+    wide = imgui.calc_item_width()
+    side = min(_PAD * place.scale, wide)
+    beside = wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
@@ -197,12 +208,12 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
         result = (round(dragged[0], 4), round(1 - dragged[1], 4))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(-1)
-    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f east", _CLAMP)
-    imgui.set_next_item_width(-1)
-    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f north", _CLAMP)
+    imgui.set_next_item_width(beside)
+    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f E", _CLAMP)
+    imgui.set_next_item_width(beside)
+    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f N", _CLAMP)
     imgui.end_group()
-    return (x, y) if east or north else result
+    return (tidied(x), tidied(y)) if east or north else result
 
 
 def _pad(place: Place, side: float) -> tuple[float, float] | None:
@@ -246,7 +257,7 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 def _files_in(folder: Path) -> list[str]:
     inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
-    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in _IMAGES)[:200]
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in IMAGES)[:200]
 
 
 # ── between imgui's lists and parameters' values ─────────────────────────────
@@ -269,7 +280,7 @@ def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
     if is_whole(parameter.type):
         whole = tuple(round(n) for n in numbers)
         return whole[0] if length_of(parameter.type) == 1 else whole
-    found = tuple(float(n) for n in numbers)
+    found = tuple(tidied(n) for n in numbers)
     return found[0] if length_of(parameter.type) == 1 else found
 
 

@@ -59,6 +59,11 @@ class Window:
         self.close()
 
     @property
+    def handle(self) -> Any:
+        """GLFW's own window."""
+        return self._handle
+
+    @property
     def open(self) -> bool:
         """Whether nobody has asked it to close."""
         return not glfw.window_should_close(self._handle)
@@ -67,12 +72,6 @@ class Window:
     def lost(self) -> bool:
         """Whether the driver was reset, and took the context with it; False where nobody can tell."""
         return self._reset_status is not None and self._reset_status() != 0
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height in the screen's units."""
-        width, height = glfw.get_window_size(self._handle)
-        return width, height
 
     @property
     def pixels(self) -> tuple[int, int]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.trial import receive, send
+from playground.engine.trial_process import receive, send
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.gpu.context import ContextInfo, context_info, open_context
 from playground.gpu.textures import drain, read_picture

@@ -1,4 +1,4 @@
-"""Evaluate integer expressions of a sketch safely: sizes, repeats, visits, accepted sizes.
+"""Evaluate expressions safely: a sketch's sizes, repeats, visits, accepted sizes; numbers that are typed.
 
 An expression is read as Python's grammar and walked; nothing is ever handed to
 ``eval``. There are + - * / // % **, comparisons, ``a if b else c``, and the
@@ -62,6 +62,16 @@ def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ..
     if not isinstance(value, int):
         raise ExpressionError(f"'{text}' gives {float(value):g}; a whole number was expected")
     return int(value)
+
+
+def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
+    """Return the number that ``text`` stands for, whole or not. Raises ``ExpressionError`` in a sentence."""
+    return float(_walk(_parse(text), text, names.__getitem__, tuple(names)))
+
+
+def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
+    """Return the numbers of expressions parted by commas. Raises ``ExpressionError`` in a sentence."""
+    return [evaluate_number(part, names) for part in _parts(text)]
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:

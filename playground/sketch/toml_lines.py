@@ -13,7 +13,7 @@ from contextlib import suppress
 Place = tuple[str | int, ...]
 """Where something is: keys, and places in a list, as ``("pass", 0, "use")``."""
 
-_TOKEN = re.compile(
+TOKEN = re.compile(
     r'"""(?:[^\\]|\\.)*?"{3,5}(?!")'
     r"|'''.*?'{3,5}(?!')"
     r'|"(?:[^"\\\n]|\\.)*"'
@@ -62,7 +62,7 @@ class _Walker:
 
     def _tokens(self, text: str) -> Iterator[tuple[str, int]]:
         line = 1
-        for match in _TOKEN.finditer(text):
+        for match in TOKEN.finditer(text):
             token = match.group()
             if token == "\n" or not (token.isspace() or token.startswith("#")):
                 yield token, line

@@ -75,15 +75,133 @@ def test_a_parameter_of_another_type_falls_back_and_says_so(folder: Path) -> Non
     draft, notes = reload_draft(old, load(folder))
     assert values_of(draft.sketch)["height.level"] == 1
     assert not draft.edits.has("height.level")
-    assert "was a float and is a int" in notes[0]
+    assert "was float and is int now" in notes[0]
 
 
-def test_a_value_out_of_a_new_range_falls_back_and_says_so(folder: Path) -> None:
+def test_a_value_out_of_a_new_range_goes_to_its_nearest_end_and_says_so(folder: Path) -> None:
     old = edited(folder, level=0.9)
     change(folder / "land.glsl", "level = 0.5; //! slider(0, 1)", "level = 0.5; //! slider(0, 0.6)")
     draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.level"] == 0.5
-    assert "outside its range" in notes[0]
+    assert values_of(draft.sketch)["height.level"] == 0.6
+    assert notes == ["height.level = 0.9 is outside its new range 0 to 0.6: 0.6 is taken"]
+
+
+def test_a_new_default_shows_unless_a_hand_has_set_the_value(folder: Path) -> None:
+    old = edited(folder, other=0.75)
+    change(folder / "land.glsl", "level = 0.5;", "level = 0.125;")
+    change(folder / "land.glsl", "other = 0.5;", "other = 0.625;")
+    draft, notes = reload_draft(old, load(folder))
+    assert values_of(draft.sketch) == {
+        **values_of(draft.sketch),
+        "height.level": 0.125,
+        "height.other": 0.75,
+    }
+    assert notes == []
+
+
+def test_a_hand_set_value_outlives_a_new_default_of_its_own(folder: Path) -> None:
+    old = edited(folder, level=0.75)
+    change(folder / "land.glsl", "level = 0.5;", "level = 0.125;")
+    draft, notes = reload_draft(old, load(folder))
+    assert values_of(draft.sketch)["height.level"] == 0.75 and notes == []
+
+
+def test_a_value_that_the_file_has_come_to_say_is_no_longer_an_edit(folder: Path) -> None:
+    old = edited(folder, other=0.75)
+    change(folder / "sketch.toml", "other = 0.25", "other = 0.75")
+    draft, notes = reload_draft(old, load(folder))
+    assert values_of(draft.sketch)["height.other"] == 0.75
+    assert draft.edits == Edits() and notes == []
+
+
+def test_a_value_returns_with_its_technique(folder: Path) -> None:
+    old = edited(folder, level=0.9)
+    away = old.choose("height", "generation/diamond_square")
+    assert "height.level" not in values_of(away.sketch) and away.applied == {}
+    same, notes = reload_draft(away, load(folder))
+    assert notes == []
+    back = same.choose("height", "./land")
+    assert values_of(back.sketch)["height.level"] == 0.9
+    assert values_of(back.sketch)["height.other"] == 0.25, "and so does what the file sets there"
+
+
+def test_a_value_that_another_technique_does_not_take_waits(folder: Path) -> None:
+    low = KERNEL.replace("land", "low").replace("slider(0, 1)", "slider(0, 0.6)")
+    (folder / "low.glsl").write_text(low, encoding="utf-8")
+    whole = KERNEL.replace("land", "whole").replace("uniform float level = 0.5", "uniform int level = 1")
+    whole = whole.replace("return level", "return float(level)")
+    (folder / "whole.glsl").write_text(whole, encoding="utf-8")
+    for value, use, there in ((0.9, "./low", 0.5), (1.0, "./whole", 1)):
+        away = edited(folder, level=value).choose("height", use)
+        assert values_of(away.sketch)["height.level"] == there
+        same, notes = reload_draft(away, load(folder))
+        assert notes == [] and values_of(same.choose("height", "./land").sketch)["height.level"] == value
+
+
+def test_a_value_outlives_its_pass(folder: Path) -> None:
+    old = edited(folder, level=0.9)
+    text = (folder / "sketch.toml").read_text(encoding="utf-8")
+    (folder / "sketch.toml").write_text(text.replace('"height"', '"ground"'), encoding="utf-8")
+    gone, notes = reload_draft(old, load(folder))
+    assert len(notes) == 1 and "kept in case it returns" in notes[0]
+    (folder / "sketch.toml").write_text(text, encoding="utf-8")
+    again, notes = reload_draft(gone, load(folder))
+    assert values_of(again.sketch)["height.level"] == 0.9 and notes == []
+
+
+def test_a_parameter_that_returns_with_another_type_leaves_the_value_waiting(folder: Path) -> None:
+    old = edited(folder, level=1.0)
+    text = (folder / "land.glsl").read_text(encoding="utf-8")
+    line = "uniform float level = 0.5; //! slider(0, 1)"
+    change(folder / "land.glsl", line, "const float level = 0.5;")
+    gone, _ = reload_draft(old, load(folder))
+    (folder / "land.glsl").write_text(
+        text.replace(line, "uniform int level = 0; //! slider(0, 3)").replace("level +", "float(level) +"),
+        encoding="utf-8",
+    )
+    other, _ = reload_draft(gone, load(folder))
+    assert values_of(other.sketch)["height.level"] == 0
+    (folder / "land.glsl").write_text(text, encoding="utf-8")
+    again, _ = reload_draft(other, load(folder))
+    assert values_of(again.sketch)["height.level"] == 1.0
+
+
+def test_a_choice_keeps_its_name_when_its_menu_is_written_anew(folder: Path) -> None:
+    line = "uniform float level = 0.5; //! slider(0, 1)"
+    change(folder / "land.glsl", line, 'uniform int level = 0; //! menu("low", "high")')
+    change(folder / "land.glsl", "level +", "float(level) +")
+    old = edited(folder, level=1)
+    change(folder / "land.glsl", '"low", "high"', '"none", "low", "high"')
+    moved, notes = reload_draft(old, load(folder))
+    assert values_of(moved.sketch)["height.level"] == 2 and notes == []
+    change(folder / "land.glsl", '"none", "low", "high"', '"none", "low"')
+    lost, notes = reload_draft(moved, load(folder))
+    assert values_of(lost.sketch)["height.level"] == 0
+    assert notes == ["height.level: its menu has no 'high' any more: back to the file's value"]
+
+
+def test_what_is_locked_stays_whatever_the_files_say(folder: Path) -> None:
+    sketch = load(folder)
+    edits = Edits((("height.other", 0.75),), locked=("height.other", "height.level"))
+    old = Draft(sketch, sketch, edits)
+    change(folder / "land.glsl", "level = 0.5;", "level = 0.125;")
+    change(folder / "sketch.toml", "other = 0.25", "other = 0.3")
+    draft, notes = reload_draft(old, load(folder))
+    found = values_of(draft.sketch)
+    assert (found["height.level"], found["height.other"]) == (0.5, 0.75) and notes == []
+
+
+def test_an_edit_is_taken_back_by_any_name_of_its_parameter(folder: Path) -> None:
+    (folder / "both.toml").write_text(
+        '[[pass]]\nname = "inner"\nuse = "./land"\n[parameters]\nhigh = "inner.level"\n',
+        encoding="utf-8",
+    )
+    change(folder / "sketch.toml", "./land", "./both")
+    change(folder / "sketch.toml", "set = { other = 0.25 }", "")
+    sketch = load(folder)
+    draft = Draft(sketch, sketch, Edits((("height.inner.level", 0.75), ("height.inner.other", 0.125))))
+    assert values_of(draft.without("height.high").sketch)["height.inner.level"] == 0.5
+    assert values_of(draft.without("height.high").sketch)["height.inner.other"] == 0.125
 
 
 def test_a_parameter_that_goes_and_returns_keeps_its_value(folder: Path) -> None:

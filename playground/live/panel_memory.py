@@ -1,0 +1,28 @@
+"""What the panel remembers between two turns: what is searched for, typed, open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from playground.live.listing import Filter, Listing
+from playground.sketch.model import Value
+
+
+@dataclass
+class Memory:
+    """One panel's."""
+
+    listing: Listing = field(default_factory=Listing)
+    filter: Filter = field(default_factory=Filter)
+    focus_search: bool = False  # the keys go to the search from the next turn on
+    entry: str = ""  # the parameter whose value is typed
+    entry_text: str = ""
+    entry_opens: bool = False  # its field has to take the keys
+    held: tuple[str, bool, Value] = ("", False, 0)  # the widget last clicked on: path, by hand, value before
+    menu: str = ""  # the parameter whose menu is open
+    menu_opens: bool = False
+    heights: dict[tuple[str, float], float] = field(default_factory=dict)  # of each row, by path and scale
+    seed: int = 1  # of the next values by chance
+    strength: float = 0.1  # of a mutation
+    preset: str = ""  # the one last chosen
+    preset_name: str = ""  # of one to be saved

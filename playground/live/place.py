@@ -1,0 +1,103 @@
+"""What a window does besides drawing: it fills the screen and comes back, and takes files dropped on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import imgui_bundle  # noqa: F401  # before glfw, so that both use one GLFW library
+
+# isort: split
+import glfw
+
+Rectangle = tuple[int, int, int, int]
+"""x, y, width, height, in the screen's units."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A window's place on the screen, in the screen's units."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+    maximised: bool = False
+
+
+class Place:
+    """One window's; ``handle`` gives GLFW's window of the moment."""
+
+    def __init__(self, handle: Callable[[], Any]) -> None:
+        self._handle = handle
+        self._before: Geometry | None = None  # while it fills the screen: where it stood
+        self._dropped: list[Path] = []
+        self._listening: Any = None
+
+    @property
+    def full(self) -> bool:
+        """Whether it fills a screen."""
+        return self._before is not None
+
+    def geometry(self) -> Geometry:
+        """Return where it stands, or stood before it filled the screen."""
+        if self._before is not None:
+            return self._before
+        handle = self._handle()
+        (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
+        return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
+
+    def toggle_full(self) -> None:
+        """Fill the screen that most of it is on, or go back to where it stood."""
+        handle = self._handle()
+        if self._before is not None:
+            back, self._before = self._before, None
+            no_monitor: Any = None
+            glfw.set_window_monitor(
+                handle, no_monitor, back.x, back.y, back.width, back.height, glfw.DONT_CARE
+            )
+            if back.maximised:
+                glfw.maximize_window(handle)
+            return
+        stood = self.geometry()
+        monitors = glfw.get_monitors()
+        if not monitors:
+            return
+        shares = [_shared(stood, area) for area in screens()]
+        monitor = monitors[shares.index(max(shares))]
+        mode = glfw.get_video_mode(monitor)
+        self._before = stood
+        glfw.set_window_monitor(handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
+
+    def dropped(self) -> list[Path]:
+        """Return the files dropped on it since the last call."""
+        handle = self._handle()
+        if self._listening is not handle:
+            took: Any = self.drop
+            glfw.set_drop_callback(handle, took)
+            self._listening = handle
+        found, self._dropped = self._dropped, []
+        return found
+
+    def drop(self, _: object, names: Iterable[str]) -> None:
+        """Take in the names of files, as GLFW calls it."""
+        self._dropped += [Path(name) for name in names]
+
+
+def screens() -> list[Rectangle]:
+    """Return the screens that there are."""
+    found = []
+    for monitor in glfw.get_monitors():
+        (x, y), mode = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor)
+        found.append((x, y, mode.size.width, mode.size.height))
+    return found
+
+
+def _shared(place: Geometry, area: Rectangle) -> int:
+    """Return how much of a window is on a screen."""
+    x, y, width, height = area
+    across = min(place.x + place.width, x + width) - max(place.x, x)
+    down = min(place.y + place.height, y + height) - max(place.y, y)
+    return max(across, 0) * max(down, 0)

@@ -1,0 +1,371 @@
+"""Write what was set by hand back into a sketch's own TOML, and touch nothing else in it.
+
+Values go to the ``set`` of their pass, the camera to ``[view]``, a technique to ``use``. A
+value that stands there already is written over in its place; what its file does not hold
+yet comes in at the end of its table. The result is loaded before it takes the file's
+place: it says exactly what was set, or nothing is written.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+import stat
+import tomllib
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import fields, replace
+from pathlib import Path
+
+from playground.errors import DataError, ParameterError, PlaygroundError, SketchError
+from playground.paths import GLSL, shown
+from playground.sketch.assign import LAND, resolve, values_of
+from playground.sketch.colour import parse_hex, to_hex
+from playground.sketch.load import load
+from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
+from playground.sketch.places import leads_outside
+from playground.sketch.toml_lines import Place
+from playground.sketch.toml_spans import Spans, append, drop, put, text_of
+from playground.sketch.values import is_whole
+
+
+class ReadOnlySketch(DataError):
+    """A sketch's file cannot be written to, or is not to be: a copy can."""
+
+
+def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
+    """Return a sketch's TOML text with what ``wanted`` has over ``file``, which the text says.
+
+    ``wanted`` is ``file`` with other values over it, another camera, other techniques.
+    """
+    for key in LAND:
+        value = getattr(wanted, key)
+        if value is not None and value != getattr(file, key):
+            text = put(text, (), key, _land(value))
+    for spec in wanted.graph.passes:
+        was = file.graph.find(spec.name)
+        assert was is not None
+        if spec.use != was.use:
+            text = _with_technique(_view(text, file, spec.name), _table(file, spec.name), was, spec)
+    for path, value in wanted.overrides:
+        text = _with_value(text, file, wanted, path, value)
+    if wanted.camera != file.camera:
+        text = _with_camera(text, file, wanted.camera)
+    return text
+
+
+def with_preset(text: str, sketch: Sketch, name: str, values: Mapping[str, Value]) -> str:
+    """Return the text with a preset more, or with the values of the one of that name."""
+    known = [preset.name for preset in sketch.presets]
+    if name in known:
+        table: Place = ("preset", known.index(name), "set")
+        for path, value in values.items():
+            text = put(text, table, path, _written(sketch, path, value, ""))
+        return text
+    pairs = [f'"{path}" = {_written(sketch, path, value, "")}' for path, value in values.items()]
+    return append(text, ["[[preset]]", f"name = {text_of(name)}", "[preset.set]", *pairs])
+
+
+def save(file: Sketch, wanted: Sketch) -> None:
+    """Write ``wanted`` into the file that ``file`` was loaded from.
+
+    Raises ``ReadOnlySketch`` for one that cannot be written or belongs to the playground
+    itself, ``SketchError`` where the file no longer says what ``file`` does, or cannot
+    say what is wanted.
+    """
+    path = Path(file.file)
+    _write(path, file, lambda text: saved_text(text, file, _with_files_inside(wanted)), _same_as(wanted))
+
+
+def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
+    """Write a preset into the file that ``file`` was loaded from; raises as ``save`` does."""
+
+    def holds(found: Sketch) -> bool:
+        preset = next((p for p in found.presets if p.name == name), None)
+        return preset is not None and {**dict(preset.values), **values} == dict(preset.values)
+
+    _write(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
+
+
+def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
+    """Write ``wanted`` as a sketch in a new folder of ``folder``, with the files it needs; return its path.
+
+    Its own techniques and images come along; what lies in ``glsl/`` is found there.
+    Raises ``DataError`` where nothing can be written, and as ``save`` does.
+    """
+    source = Path(file.file)
+    text = _read(source)
+    target = _new_folder(folder, file.name)
+    try:
+        for name in _own_files(file, wanted):
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(Path(file.folder) / name, target / name)
+        path = target / "sketch.toml"
+        path.write_bytes(text.encode())
+        copied = load(path)
+        inside = _with_files_inside(_over(copied, wanted))
+        _write(path, copied, lambda t: saved_text(t, copied, inside), _same_as(wanted))
+    except (PlaygroundError, OSError) as error:
+        shutil.rmtree(target, ignore_errors=True)
+        if isinstance(error, OSError):
+            raise DataError(f"cannot be written: {error.strerror}", file=target) from None
+        raise
+    return path
+
+
+# ── what is written ──────────────────────────────────────────────────────────
+
+
+def _table(file: Sketch, name: str) -> Place:
+    """Return the place of a pass's table."""
+    if name == "view":
+        return ("view",)
+    return ("pass", [spec.name for spec in file.graph.passes].index(name))
+
+
+def _view(text: str, file: Sketch, name: str) -> str:
+    """Return the text with a [view], where the pass is the view and the file leaves that out."""
+    if name != "view" or "view" in tomllib.loads(_plain(text)):
+        return text
+    spec = file.graph.find("view")
+    assert spec is not None
+    wires = ", ".join(f"{key} = {text_of(source)}" for key, source in spec.inputs)
+    return append(text, ["[view]", f"use = {text_of(spec.use)}", f"inputs = {{ {wires} }}"])
+
+
+def _with_technique(text: str, table: Place, was: PassSpec, now: PassSpec) -> str:
+    """Return the text with another technique in a pass, without what that has no place for."""
+    text = put(text, table, "use", text_of(now.use))
+    for part in ("inputs", "values", "feedback"):
+        left = dict(getattr(now, part))
+        for key, _ in getattr(was, part):
+            if key not in left:
+                text = drop(text, (*table, "set" if part == "values" else part), key)
+    return text if now.repeat == was.repeat else drop(text, table, "repeat")
+
+
+def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value) -> str:
+    """Return the text with a parameter set, by the name that the file has for it already."""
+    name, _, inner = path.partition(".")
+    spec = wanted.graph.find(name)
+    assert spec is not None
+    text = _view(text, file, name)
+    mine = {target.path for target in resolve(spec.technique, inner)}
+    names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
+    table = (*_table(file, name), "set")
+    for key in names or [inner]:
+        written = _written(wanted, f"{name}.{key}", value, _said(text, table, key))
+        text = put(text, table, key, written)
+    return text
+
+
+def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
+    text = _view(text, file, "view")
+    table: Place = ("view", "camera")
+    for part in fields(Camera):
+        value = getattr(camera, part.name)
+        if value == getattr(file.camera, part.name):
+            continue
+        if value is None:
+            text = drop(text, table, part.name)
+        else:
+            numbers = value if isinstance(value, tuple) else (value,)
+            written = ", ".join(map(_number, numbers))
+            text = put(text, table, part.name, f"[{written}]" if isinstance(value, tuple) else written)
+    return text
+
+
+def _written(sketch: Sketch, path: str, value: Value, said: str) -> str:
+    """Return a value as TOML writes it; a direction in braces where ``said``, what stands there, has them."""
+    if path in LAND:
+        return _land(value)
+    parameter: Parameter = resolve(sketch.graph, path)[0].parameter
+    kind = parameter.widget.kind
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return text_of(value)
+    if kind == "menu" and isinstance(value, int):
+        return text_of(parameter.widget.choices[value])
+    if kind == "colour" and isinstance(value, tuple):
+        seen = to_hex(value)
+        if (*parse_hex(seen), 1.0)[: len(value)] == value:
+            return text_of(seen)
+    if kind == "direction" and isinstance(value, tuple) and said.startswith("{"):
+        return f"{{ azimuth = {_number(value[0])}, elevation = {_number(value[1])} }}"
+    whole = is_whole(parameter.type) or (bool(said) and said.lstrip("+-").isdigit())
+    if isinstance(value, tuple):
+        return f"[{', '.join(_number(n) for n in value)}]"
+    return _number(value) if whole or isinstance(value, int) else repr(float(value))
+
+
+def _number(value: float | int) -> str:
+    """Return a number without a point where it is whole."""
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    return repr(value)
+
+
+def _land(value: object) -> str:
+    if not isinstance(value, tuple):
+        return _number(value) if isinstance(value, int | float) else str(value)
+    numbers = [_number(n) for n in value]
+    return numbers[0] if len(set(numbers)) == 1 else f"[{', '.join(numbers)}]"
+
+
+def _said(text: str, table: Place, key: str) -> str:
+    """Return what the text says there so far, "" where nothing is."""
+    spans = Spans(text)
+    place = spans.find(table, key)
+    if place is None:
+        # Azimuth and elevation may also be set by two dotted keys, which no value stands behind.
+        return ""
+    pair = spans.pairs[place]
+    return text[pair.value : pair.end]
+
+
+# ── files ────────────────────────────────────────────────────────────────────
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_bytes().decode()
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"cannot be read: {error}", file=shown(path)) from None
+
+
+def _plain(text: str) -> str:
+    return text.removeprefix("\ufeff").replace("\r\n", "\n")
+
+
+def _write(
+    path: Path, file: Sketch, change: Callable[[str], str], is_right: Callable[[Sketch], bool]
+) -> None:
+    path = path.resolve()  # a link stays a link: what it leads to is written
+    if path.suffix != ".toml":
+        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=shown(path))
+    if path.is_relative_to(GLSL.resolve()):
+        raise ReadOnlySketch("this sketch belongs to the playground itself", file=shown(path))
+    if not os.access(path, os.W_OK) or not os.access(path.parent, os.W_OK):
+        raise ReadOnlySketch("this sketch cannot be written to", file=shown(path))
+    text = _read(path)
+    if not _same_text(load(path), file):
+        raise SketchError("the file has changed meanwhile: save again once it shows", file=shown(path))
+    mark = "\ufeff" if text.startswith("\ufeff") else ""
+    new = mark + change(text.removeprefix(mark))
+    if new == text:
+        return
+    beside = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(6)}.toml")
+    try:
+        beside.write_bytes(new.encode())
+        beside.chmod(stat.S_IMODE(path.stat().st_mode))
+        try:
+            right = is_right(load(beside))
+        except PlaygroundError:
+            right = False
+        if not right:
+            message = "what was set cannot be written into this file; copy it as --set words instead"
+            raise SketchError(message, file=shown(path))
+        if _read(path) != text:
+            raise SketchError("the file has changed meanwhile: save again once it shows", file=shown(path))
+        beside.replace(path)
+    except OSError as error:
+        raise DataError(f"cannot be written: {error.strerror}", file=shown(path)) from None
+    finally:
+        with suppress(OSError):
+            beside.unlink(missing_ok=True)
+
+
+def _same_text(a: Sketch, b: Sketch) -> bool:
+    """Say whether two sketches were read from the same words, whatever their kernels say."""
+
+    def words(sketch: Sketch) -> object:
+        parts = [
+            (p.name, p.use, p.inputs, p.values, p.size, p.repeat, p.feedback) for p in sketch.graph.passes
+        ]
+        return parts, replace(sketch, graph=a.graph)
+
+    return words(a) == words(b)
+
+
+def _same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
+    """Return a check that a sketch says what is wanted; files may have moved into its folder."""
+
+    def said(sketch: Sketch) -> object:
+        files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
+        values = {path: value for path, value in values_of(sketch).items() if path not in files}
+        uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
+        return values, uses, sketch.camera, [getattr(sketch, key) for key in LAND]
+
+    return lambda found: said(found) == said(wanted)
+
+
+def _with_files_inside(wanted: Sketch) -> Sketch:
+    """Return the sketch with every file from elsewhere copied beside it, for a sketch names only its own."""
+    folder, overrides = Path(wanted.folder), []
+    for path, value in wanted.overrides:
+        parameter = _parameter(wanted, path)
+        if parameter is not None and parameter.widget.kind == "file" and isinstance(value, str) and value:
+            if leads_outside(value, folder, parameter.file):
+                value = _brought(Path(value), folder)
+            elif Path(value).is_absolute():
+                value = Path(value).relative_to(folder).as_posix()
+        overrides.append((path, value))
+    return replace(wanted, overrides=tuple(overrides))
+
+
+def _parameter(sketch: Sketch, path: str) -> Parameter | None:
+    try:
+        return resolve(sketch.graph, path)[0].parameter
+    except ParameterError:
+        return None
+
+
+def _brought(source: Path, folder: Path) -> str:
+    if source.is_absolute() and source.is_relative_to(folder):
+        return source.relative_to(folder).as_posix()
+    target, number = folder / source.name, 2
+    try:
+        data = source.read_bytes()
+        while target.exists() and target.read_bytes() != data:
+            target, number = folder / f"{source.stem}-{number}{source.suffix}", number + 1
+        target.write_bytes(data)
+    except OSError as error:
+        raise DataError(f"cannot be copied beside the sketch: {error.strerror}", file=source) from None
+    return target.name
+
+
+def _new_folder(folder: Path, name: str) -> Path:
+    for number in range(1, 10_000):
+        target = folder / (name if number == 1 else f"{name}-{number}")
+        try:
+            target.mkdir()
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise DataError(f"cannot be written to: {error.strerror}", file=folder) from None
+        return target
+    raise DataError("has ten thousand copies of this sketch", file=folder)
+
+
+def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
+    """Return the files in the sketch's own folder that it needs, as seen from there; its TOML apart."""
+    folder, found = Path(file.folder), dict[str, None]()
+    texts = [Path(name) for name in (*file.files, *wanted.files)]
+    values = [v for v in values_of(wanted).values() if isinstance(v, str) and v]
+    for path in (*texts, *(folder / value for value in values)):
+        if path.is_file() and path.is_relative_to(folder) and str(path) != file.file:
+            found[path.relative_to(folder).as_posix()] = None
+    return list(found)
+
+
+def _over(copied: Sketch, wanted: Sketch) -> Sketch:
+    """Return the copy of a sketch with what is wanted over it."""
+    return replace(
+        wanted,
+        file=copied.file,
+        folder=copied.folder,
+        name=copied.name,
+        graph=replace(wanted.graph, path=copied.graph.path, name=copied.graph.name),
+    )

@@ -1,0 +1,168 @@
+"""A panel without a window: imgui with no screen, and a mouse and keys that a test moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import imgui_bundle
+from imgui_bundle import ImVec2, imgui
+
+from playground.engine.engine import Engine
+from playground.live import widgets
+from playground.live.actions import Actions
+from playground.live.drops import draw_drops
+from playground.live.keymap import draw_keymap
+from playground.live.keys import act_on_keys
+from playground.live.panel import Panel
+from playground.live.session import Session
+from playground.live.theme import Theme
+
+
+class Bare:
+    """A panel on a session, turn by turn, at 60 turns a second."""
+
+    def __init__(
+        self, engine: Engine, path: Path, size: tuple[int, int] = (1280, 720), scale: float = 1.0
+    ) -> None:
+        self.context = imgui.create_context()
+        io = imgui.get_io()
+        io.set_ini_filename("")
+        io.display_size = ImVec2(*size)
+        io.backend_flags |= imgui.BackendFlags_.renderer_has_textures
+        io.config_input_trickle_event_queue = False
+        self.theme = Theme(Path(imgui_bundle.__file__).parent / "assets" / "fonts")
+        self.theme.rescale(scale)
+        self.time = 0.0
+        self.session = Session(engine, path)
+        self.actions = Actions(self.session, self._quit, path, now=lambda: self.time)
+        self.panel = Panel()
+        self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
+        self._watched: list[tuple[object, str, object]] = []
+        for owner, name in (
+            (imgui, "button"),
+            (imgui, "menu_item_simple"),
+            (imgui, "selectable"),
+            (imgui, "checkbox"),
+            (imgui, "begin_combo"),
+            (imgui, "input_text_with_hint"),
+            (imgui, "input_text"),
+            (imgui, "input_int"),
+            (imgui, "invisible_button"),
+            (imgui, "drag_float"),
+            (imgui, "slider_float"),
+            (imgui, "slider_int"),
+            (imgui, "combo"),
+            (imgui, "tree_node_ex"),
+            (imgui, "collapsing_header"),
+        ):
+            self._watch(owner, name)
+        tables = widgets._SLIDE, widgets._SLIDE_WHOLE, widgets._DRAG, widgets._DRAG_WHOLE
+        self._tables = [(table, dict(table)) for table in tables]
+        for table in tables:
+            table.update({count: self._watched_form(draw) for count, draw in table.items()})
+        self.clipboard = ""
+        imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
+        self.quits = False
+        self.turn(3)
+
+    def _quit(self) -> None:
+        self.quits = True
+
+    def _watch(self, owner: object, name: str) -> None:
+        """Remember where everything is drawn, by its label."""
+        draw = getattr(owner, name)
+        self._watched.append((owner, name, draw))
+        setattr(owner, name, self._watched_form(draw))
+
+    def _watched_form(self, draw: Callable[..., Any]) -> Callable[..., Any]:
+        def watched(label: str, *rest: object) -> object:
+            answer = draw(label, *rest)
+            low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
+            self.places[label] = low.x, low.y, size.x, size.y
+            return answer
+
+        return watched
+
+    def _copied(self, _: object, text: str) -> None:
+        self.clipboard = text
+
+    def turn(self, count: int = 1, around: Callable[[Callable[[], object]], object] | None = None) -> None:
+        """Let turns pass; ``around`` is given the drawing of the panel, to measure it."""
+        for _ in range(count):
+            self.time += 1 / 60
+            imgui.get_io().delta_time = 1 / 60
+            self.session.frame((48, 32))
+            imgui.new_frame()
+            if around is None:
+                self.draw()
+            else:
+                around(self.draw)
+            act_on_keys(self.actions)
+            self.actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+            self.actions.take_notes()
+            imgui.render()
+            for texture in imgui.get_platform_io().textures:
+                texture.set_status(imgui.ImTextureStatus.ok)
+
+    def point(self, label: str, across: float = 0.5) -> None:
+        """Move the mouse over what has a label, to a share of its width."""
+        self.turn()
+        x, y, wide, high = self.places[label]
+        imgui.get_io().add_mouse_pos_event(x + across * wide, y + high / 2)
+        self.turn()
+
+    def press(self, down: bool, button: int = 0) -> None:
+        """Press a button of the mouse, or let it go."""
+        imgui.get_io().add_mouse_button_event(button, down)
+        self.turn()
+
+    def click(self, label: str, across: float = 0.5, *, times: int = 1, button: int = 0) -> None:
+        """Click on what has a label."""
+        self.point(label, across)
+        for _ in range(times):
+            self.press(True, button)
+            self.press(False, button)
+        self.places.clear()
+        self.turn(2 if times > 1 else 25)  # the next click is no double one
+
+    def drag(self, label: str, start: float, end: float) -> None:
+        """Drag from one share of a widget's width to another."""
+        self.point(label, start)
+        self.press(True)
+        for n in range(1, 6):
+            x, y, wide, high = self.places[label]
+            share = start + (end - start) * n / 5
+            imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
+            self.turn()
+        self.press(False)
+        self.turn(60)
+
+    def key(self, *keys: imgui.Key) -> None:
+        """Press keys together, and let them go."""
+        for down in (True, False):
+            for key in keys if down else reversed(keys):
+                imgui.get_io().add_key_event(key, down)
+            self.turn(2)
+
+    def type(self, text: str) -> None:
+        """Type a text over what is selected."""
+        for letter in text:
+            imgui.get_io().add_input_character(ord(letter))
+            self.turn()
+
+    def draw(self) -> None:
+        """Draw the panel, and what stands over the window."""
+        self.panel.draw(self.actions, self.theme)
+        draw_drops(self.actions, self.theme)
+        draw_keymap(self.actions, self.theme)
+
+    def close(self) -> None:
+        """End it; the engine is its owner's."""
+        for owner, name, draw in self._watched:
+            setattr(owner, name, draw)
+        for table, before in self._tables:
+            table.update(before)
+        self.session.release()
+        imgui.destroy_context(self.context)

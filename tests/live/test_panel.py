@@ -1,0 +1,353 @@
+"""The panel under a mouse and keys, without a screen: what each click and each text makes of a sketch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.images.files import write_png
+from playground.live.drops import take_dropped
+from playground.live.theme import PANEL_WIDTH
+from playground.paths import SKETCHES
+from playground.sketch.assign import values_of
+
+from .desk import Bare
+
+LAND = """// land.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high the hills are
+uniform float turn = 0.0; //! angle The way that the hills run
+uniform float rough = 1.0; //! log_slider(0.01, 100) unit("1/m") group("Shape") Waves in a metre
+uniform int count = 3; //! slider(1, 9) group("Shape") How many waves
+uniform vec2 sun = vec2(135.0, 40.0); //! direction group("Shape") Where the sun is
+uniform int kind = 0; //! menu("round", "sharp") group("Shape") What they are like
+uniform float gone = 0.5; //! slider(0, 1) group("A group whose name is longer than there is room for") Gone
+float kernel(ivec2 texel) { return level; }
+"""
+SKETCH = """format = 1
+title = "Hills, with a title that is longer than any panel has room for in one line"
+size = 33
+[[pass]]
+name = "height"
+use = "./land"
+set = { level = 0.6 }
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+[[preset]]
+name = "high"
+set = { "height.level" = 1.0, "height.count" = 5 }
+"""
+LEVEL, COUNT = "##height.level", "##height.count"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
+    made = Bare(any_engine, folder)
+    yield made
+    made.close()
+
+
+def value(bare: Bare, name: str) -> object:
+    assert bare.session.sketch is not None
+    return values_of(bare.session.sketch)[f"height.{name}"]
+
+
+def said(bare: Bare) -> str:
+    return "; ".join(notice.text for notice in bare.actions.notices)
+
+
+def test_a_drag_sets_a_value_and_is_one_step(bare: Bare) -> None:
+    bare.drag(LEVEL, 0.6, 0.9)
+    moved = value(bare, "level")
+    assert isinstance(moved, float) and 0.8 < moved < 1.0
+    assert len(bare.actions.history.steps) == 1
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert value(bare, "level") == 0.6
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.z)
+    assert value(bare, "level") == moved
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.y)
+    assert value(bare, "level") == moved
+
+
+@pytest.mark.parametrize("by", ["a click with Ctrl", "a double click", "the menu"])
+def test_a_value_is_typed_as_an_expression(bare: Bare, by: str) -> None:
+    if by == "a click with Ctrl":
+        imgui.get_io().add_key_event(imgui.Key.mod_ctrl, True)
+        bare.click(LEVEL, 0.2)
+        imgui.get_io().add_key_event(imgui.Key.mod_ctrl, False)
+    elif by == "a double click":
+        bare.click(LEVEL, 0.2, times=2)
+    else:
+        bare.click(LEVEL, 0.2, button=1)
+        bare.click("Type a value")
+    bare.turn(3)
+    assert value(bare, "level") == 0.6, "the click itself has moved nothing"
+    bare.type("1/8 + 1/8")
+    bare.key(imgui.Key.enter)
+    assert value(bare, "level") == 0.25
+    assert [list(s.after.values()) for s in bare.actions.history.steps][-1] == [0.25]
+
+
+def test_what_cannot_be_typed_is_said_and_escape_leaves_it(bare: Bare) -> None:
+    bare.click(LEVEL, 0.2, times=2)
+    bare.turn(3)
+    bare.type("2")
+    bare.key(imgui.Key.enter)
+    assert value(bare, "level") == 0.6 and "outside its range 0 to 1" in said(bare)
+    bare.turn(60)
+    bare.click(LEVEL, 0.2, times=2)
+    bare.turn(3)
+    bare.type("0.125")
+    bare.key(imgui.Key.escape)
+    assert value(bare, "level") == 0.6
+
+
+def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
+    def change() -> None:
+        bare.session.set_all({"height.level": 0.75, "height.count": 5, "height.rough": 2.0})
+        bare.turn(2)
+
+    change()
+    bare.click(f"{LEVEL}-reset")
+    assert (value(bare, "level"), value(bare, "count")) == (0.6, 5)
+    change()
+    bare.click("##reset Shape")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.75, 3, 1.0)
+    change()
+    bare.click("##reset height")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
+    bare.actions.undo()
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.75, 5, 2.0)
+    bare.click("Reset")
+    bare.click("All values and techniques")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
+
+
+def test_a_padlock_locks_and_chance_leaves_it(bare: Bare) -> None:
+    bare.point(LEVEL)
+    bare.click("lock height.level")
+    assert bare.session.shown is not None and bare.session.shown.edits.locked == ("height.level",)
+    bare.click("Random")
+    bare.click("Random values")
+    assert "Random, seed 1: 6 parameters" in said(bare)
+    assert value(bare, "level") == 0.6 and value(bare, "rough") != 1.0
+    first = dict(values_of(bare.session.sketch))  # type: ignore[arg-type]
+    bare.click("Mutate")
+    assert "Mutation, seed 2" in said(bare)
+    bare.actions.undo()
+    assert values_of(bare.session.sketch) == first, "chance is one step"  # type: ignore[arg-type]
+
+
+def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
+    bare.type("/")
+    bare.turn(2)
+    bare.type("waves metre")
+    bare.places.clear()
+    bare.turn(2)
+    shown = {label for label in bare.places if label.startswith("##height.")}
+    assert shown == {"##height.rough"}
+    bare.key(imgui.Key.escape)
+    bare.turn(2)
+    assert bare.panel.memory.filter.search == ""
+    bare.session.set("height.count", 5)
+    bare.click("Changed##only")
+    bare.places.clear()
+    bare.turn(2)
+    assert COUNT in bare.places and LEVEL not in bare.places
+
+
+def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, folder: Path) -> None:
+    bare.click("##preset")
+    bare.click("high")
+    assert (value(bare, "level"), value(bare, "count")) == (1.0, 5)
+    assert len(bare.actions.history.steps) == 1
+    bare.click("Save")
+    bare.click("##name")
+    bare.type("mine")
+    bare.click("Save preset")
+    bare.turn(5)
+    assert 'name = "mine"' in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert bare.session.sketch is not None and [p.name for p in bare.session.sketch.presets] == [
+        "high",
+        "mine",
+    ]
+
+
+def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
+    for number in (0.1, 0.2, 0.3):
+        bare.session.set("height.level", number)
+        bare.turn(90)
+    bare.click("History")
+    bare.click("Level: the file's to 0.1##1")
+    assert value(bare, "level") == 0.1 and bare.actions.history.done == 1
+    bare.click("Level: 0.2 to 0.3##3")
+    assert value(bare, "level") == 0.3
+
+
+def test_what_is_set_is_copied(bare: Bare) -> None:
+    bare.session.set_all({"height.level": 0.25, "height.kind": 1})
+    bare.click("Copy")
+    bare.click("As --set words")
+    assert bare.clipboard == "--set height.level=0.25 --set height.kind=sharp"
+    bare.turn(25)
+    bare.click("Copy")
+    bare.click("As TOML")
+    assert 'set = { level = 0.25, kind = "sharp" }' in bare.clipboard
+
+
+def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
+    bare.session.set("height.level", 0.25)
+    bare.turn(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert bare.actions.saved is None, "and no picture"
+
+
+@pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])
+def test_nothing_reaches_beyond_the_panel(
+    folder: Path, any_engine: Engine, size: tuple[int, int], scale: float
+) -> None:
+    bare = Bare(any_engine, folder, size, scale)
+    bare.session.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
+    bare.places.clear()
+    bare.turn(3)
+    right = PANEL_WIDTH * scale
+    for label, (x, _, wide, _) in bare.places.items():
+        assert 0 <= x and x + wide <= right, label
+    for name, widget in (("level", ""), ("sun", "-elevation")):
+        field, cross = bare.places[f"##height.{name}{widget}"], bare.places[f"##height.{name}-reset"]
+        assert field[0] + field[2] <= cross[0], "the reset stands beside its field"
+    bare.close()
+
+
+def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) -> None:
+    for size, scale in (((1280, 720), 1.0), ((800, 600), 1.0), ((1600, 1200), 2.0)):
+        bare = Bare(any_engine, folder, size, scale)
+        bare.type("?")
+        bare.turn(3)
+        window = imgui.internal.find_window_by_name("keys")
+        assert window.content_size.y + 2 * window.window_padding.y <= window.size.y + 1, "nothing is cut off"
+        assert 0 <= window.pos.x and window.pos.x + window.size.x <= size[0]
+        assert 0 <= window.pos.y and window.pos.y + window.size.y <= size[1]
+        bare.key(imgui.Key.escape)
+        assert not bare.actions.keymap_shown and not bare.quits
+        bare.key(imgui.Key.f1)
+        assert bare.actions.keymap_shown
+        imgui.get_io().add_mouse_pos_event(5, 5)
+        bare.press(True)
+        bare.press(False)
+        assert not bare.actions.keymap_shown
+        bare.key(imgui.Key.escape)
+        assert bare.quits
+        bare.close()
+
+
+IMAGE = """// land.glsl -- a height from an image
+#pragma kernel(output = "height:r32f")
+uniform sampler2D image;  //! file() label("Elevation")
+float kernel(ivec2 texel) { return texelFetch(image, texel % textureSize(image, 0), 0).r; }
+"""
+
+
+def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_engine: Engine) -> None:
+    write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
+    image = folder / "other" / "white.png"
+    image.parent.mkdir()
+    write_png(image, np.full((4, 4, 4), 255, np.uint8))
+    (folder / "land.glsl").write_text(IMAGE, encoding="utf-8")
+    text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
+    (folder / "sketch.toml").write_text(text, encoding="utf-8")
+    bare = Bare(any_engine, folder)
+    take_dropped(bare.actions, [image, folder / "other" / "notes.txt"])
+    assert "notes.txt is neither a sketch, a shader nor an image" in said(bare)
+    bare.turn(3)
+    bare.click("Elevation   height.image##height.image")
+    assert value(bare, "image") == str(image.resolve()) and bare.actions.dropped == []
+    assert bare.session.read_values("height:height").max() == 1.0  # type: ignore[union-attr]
+    bare.actions.undo()
+    assert value(bare, "image") == "none.png"
+    take_dropped(bare.actions, [image, image])
+    bare.turn(3)
+    bare.click("Elevation   height.image##height.image")
+    assert len(bare.actions.dropped) == 1, "and the next is asked about"
+    bare.actions.undo()
+    bare.turn(3)
+    imgui.get_io().add_mouse_pos_event(1000, 700)
+    bare.press(True)
+    bare.press(False)
+    bare.turn(2)
+    assert bare.actions.dropped == [] and value(bare, "image") == "none.png", "a click beside it is a no"
+    bare.close()
+
+
+def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
+    other = folder / "two"
+    other.mkdir()
+    for name in ("land.glsl", "sketch.toml"):
+        (other / name).write_bytes((folder / name).read_bytes())
+    bare.session.set("height.level", 0.25)
+    take_dropped(bare.actions, [other])
+    bare.turn(3)
+    assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
+    shader = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+    (other / "plain.frag").write_text(shader, encoding="utf-8")
+    take_dropped(bare.actions, [other / "plain.frag"])
+    bare.turn(3)
+    assert bare.session.path.name == "plain.frag" and bare.session.error is None
+    assert bare.session.sketch is not None and bare.session.sketch.name == "plain"
+    take_dropped(bare.actions, [folder / "gone.toml"])
+    assert "gone.toml" in said(bare)
+    take_dropped(bare.actions, [folder / "picture.png"])
+    assert "picture.png is neither" in said(bare)
+
+
+def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
+    write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
+    take_dropped(bare.actions, [folder / "white.png"])
+    assert "no parameter of this sketch takes a file" in said(bare) and bare.actions.dropped == []
+
+
+def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
+    bare = Bare(any_engine, SKETCHES / "white_noise.toml")
+    bare.actions.folder = tmp_path
+    bare.session.set("height.seed", 4)
+    bare.turn(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.turn(3)
+    bare.click("Cancel")
+    bare.turn(5)
+    assert list(tmp_path.iterdir()) == []
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.turn(3)
+    bare.click("Save a copy")
+    bare.turn(5)
+    assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
+    bare.close()
+
+
+def test_keys_that_come_up_within_the_turn_are_heard(bare: Bare) -> None:
+    bare.session.set("height.level", 0.25)
+    bare.turn(2)
+    events = imgui.get_io()
+    events.add_key_event(imgui.Key.mod_ctrl, True)
+    bare.turn()
+    events.add_key_event(imgui.Key.z, True)
+    events.add_key_event(imgui.Key.mod_ctrl, False)
+    bare.turn()
+    events.add_key_event(imgui.Key.z, False)
+    bare.turn(2)
+    assert value(bare, "level") == 0.6

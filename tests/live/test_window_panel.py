@@ -1,0 +1,109 @@
+"""The panel as a person meets it: a real X server, a mouse and keys by xdotool, a file that is saved."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .screen import ON_LINUX, Program, Screen
+
+WIDTH, HEIGHT = 800, 500
+LEVEL = 200, 243  # the first parameter's slider, at scale 1
+RUN = """
+import sys
+from playground.live.app import run
+sys.exit(run(sys.argv[1], size=SIZE, time_limit=300))
+"""
+LAND = """// land.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
+"""
+SKETCH = """format = 1  # ours
+title = "Hills"
+size = 65
+extent = 1000.0
+relief = 200.0
+[[pass]]
+name = "height"
+use = "./land"
+set = { level = 0.75 }   # by eye
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+
+pytestmark = ON_LINUX
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
+    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH + 200, HEIGHT + 100)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    return tmp_path
+
+
+def opened(screen: Screen, folder: Path, size: object) -> Program:
+    run = RUN.replace("SIZE", repr(size))
+    program = Program(screen, folder, [sys.executable, "-c", run, str(folder)], folder)
+    program.wait(lambda now: now["draws"] > 0)
+    return program
+
+
+def test_a_value_is_typed_undone_and_saved(screen: Screen, folder: Path) -> None:
+    program = opened(screen, folder, (WIDTH, HEIGHT))
+    try:
+        first = program.now()["picture"]
+        screen.do("mousemove", *LEVEL, "keydown", "ctrl", "click", 1, "keyup", "ctrl", "sleep", 1)
+        screen.do("type", "--delay", 200, "1/4")
+        screen.do("key", "Return")
+        low = program.wait(lambda now: now["picture"] != first)["picture"]
+
+        screen.do("mousemove", WIDTH - 100, 200, "key", "ctrl+s")
+        program.wait(lambda now: any("saved 1 value" in text for text in now["notices"]))
+        file = folder / "sketch.toml"
+        assert file.read_text(encoding="utf-8") == SKETCH.replace("0.75", "0.25")
+        reloaded = program.wait(lambda now: now["stage"] == "NONE")
+        assert reloaded["picture"] == low and not reloaded["error"]
+
+        screen.do("key", "ctrl+z")
+        program.wait(lambda now: now["picture"] == first)
+        screen.do("key", "ctrl+shift+z")
+        program.wait(lambda now: now["picture"] == low)
+        screen.do("key", "ctrl+z")
+        program.wait(lambda now: now["picture"] == first)
+        screen.do("key", "ctrl+s")
+        program.wait(lambda now: file.read_text(encoding="utf-8") == SKETCH)
+        screen.do("key", "Escape")
+        assert program.ended() == 0, program.complaint()
+    finally:
+        program.close()
+
+
+def test_it_fills_the_screen_and_comes_back(screen: Screen, folder: Path) -> None:
+    program = opened(screen, folder, (WIDTH, HEIGHT))
+
+    def full() -> bool:
+        return bool(screen.pixels()[HEIGHT + 50 :, :200].any())
+
+    try:
+        assert not full()
+        for filled in (True, False):
+            before = program.now()["picture"]
+            screen.do("mousemove", 600, 300, "key", "F11")
+            program.wait(lambda now, old=before: now["picture"] != old)
+            program.wait(lambda now, so=filled: full() == so)
+        screen.do("mousemove", 600, 300, "key", "Escape")
+        assert program.ended() == 0, program.complaint()
+    finally:
+        program.close()
