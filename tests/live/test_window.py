@@ -24,7 +24,7 @@ PANEL = 330  # pixels at scale 1
 RUN = """
 import sys
 from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(800, 500), time_limit=90))
+sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
 
 LAND = """// land.glsl -- hills
@@ -226,7 +226,7 @@ def lost(self):
     return found
 window.Window.lost = property(lost)
 from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(800, 500), time_limit=90))
+sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
 
 
@@ -236,8 +236,8 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
     monkeypatch.setitem(globals(), "RUN", RESET)
     app = App(screen, tmp_path)
     try:
-        screen.do("mousemove", PANEL + 200, 200, "click", 4)
         first = app.now()["picture"]
+        screen.do("mousemove", PANEL + 200, 200, "click", 4)
         nearer = app.wait(lambda now: now["picture"] != first)["picture"]
         panel, picture = screen.pixels()[:, :PANEL], app.picture()
         (app.pictures / "reset").touch()
