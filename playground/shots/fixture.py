@@ -7,6 +7,7 @@ sketch can have the same.
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,6 +22,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo, context_info
+from playground.gpu.textures import read_picture
 from playground.shots.checking import checker_of
 from playground.shots.names import USED
 from playground.shots.suite import ShotCase, Taken
@@ -90,6 +92,9 @@ class ShotFixture:
         floats of which 0..1 are shown. ``by`` is what drew it: an engine, a moderngl context,
         or, for what OpenGL has no part in, a name for the folder of references. Frames of
         ``shot.render`` know it. ``name`` is letters, digits, _ and -, once in a test.
+
+        Of an engine's last frame, what went into it is looked at too: a number that is not finite
+        in a texture fails. An earlier frame of the engine is refused with ``ValueError``.
         """
         __tracebackhide__ = True
         start, self._started = self._started, time.perf_counter()
@@ -101,8 +106,7 @@ class ShotFixture:
         case = ShotCase(sketch, Shot(name))
         self._names.add(name)
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
-        frame = replace(_taken(picture), gl_error=_error_left(by)) if by is not None else _taken(picture)
-        self._checker.hold(self._node, case, frame, info, start)
+        self._checker.hold(self._node, case, _drawn_by(picture, by), info, start)
 
     def _beside(self, sketch: str | Path) -> Path:
         """Return where a sketch is: beside the test file, or where a command would find it."""
@@ -110,7 +114,7 @@ class ShotFixture:
         return find(beside if beside.exists() else sketch)
 
     def _refuse_name(self, name: str) -> None:
-        if not name.replace("-", "_").isidentifier():
+        if not re.fullmatch(r"[\w-]+", name):
             raise ValueError(f"name = {name!r}: a picture needs a name of letters, digits, _ and -")
         if name in self._names:
             raise ValueError(f"a second picture named {name!r} in this test: each needs a name of its own")
@@ -131,6 +135,37 @@ class ShotFixture:
         if isinstance(by, ContextInfo):
             return self._checker.expect(by)
         return self._checker.expect(by.info if isinstance(by, Engine) else context_info(by))
+
+
+def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> Taken:
+    """Return a picture as the studio gives it, with all that is known of how it was drawn."""
+    taken = _taken(picture)
+    if by is None:  # drawn by the studio, which has looked
+        return taken
+    taken = replace(taken, gl_error=_error_left(by))
+    if not isinstance(by, Engine):
+        return taken
+    last = _last_picture(by)
+    if last is not None and np.array_equal(last, taken.array):
+        return replace(taken, not_finite=str(by.not_finite() or ""), drawn=by.drawn())
+    if isinstance(picture, Frame):
+        raise ValueError(
+            "this is not the last frame of its engine, so what went into it cannot be looked at any more: "
+            "check each frame before the engine draws the next one or is released"
+        )
+    return taken
+
+
+def _last_picture(engine: Engine) -> NDArray[np.uint8] | None:
+    """Return the picture that an engine drew last; None where it has none."""
+    if engine.plan is None:
+        return None
+    view = next(iter(engine.plan.flat.outputs["view"].values()))
+    result = engine.results.get(view.path)
+    if result is None:
+        return None
+    with engine.borrowed():
+        return read_picture(result.textures[view.output])
 
 
 def _error_left(by: By) -> str:

@@ -72,6 +72,58 @@ def test_broken_numbers_are_told_by_their_word(tests: Run, edit: Edit) -> None:
         result.stdout.fnmatch_lines(["test_slope.py/ramp: nan: 1 of 20 pixels are not finite numbers"])
 
 
+ENGINE_TESTS = """
+import pytest
+from playground.api import headless
+
+@pytest.fixture
+def engine():
+    with headless(software=True) as made:
+        yield made
+
+def test_last(shot, engine):
+    shot.check(engine.render("slope.toml", size=(32, 32)), "last", by=engine)
+
+def test_part(shot, engine):
+    shot.check(engine.render("slope.toml", size=(32, 32)).array[:16], "part", by=engine)
+
+def test_earlier(shot, engine):
+    first = engine.render("slope.toml", size=(32, 32))
+    engine.render("slope.toml", size=(32, 33))
+    shot.check(first, "earlier", by=engine)
+"""
+
+
+def test_what_went_into_an_engines_last_frame_is_looked_at(
+    run: Run, edit: Edit, pytester: pytest.Pytester
+) -> None:
+    pytester.makepyfile(test_engine=ENGINE_TESTS)
+    result = run("--shots-update", "--tb=short")
+    result.assert_outcomes(passed=2, failed=1)
+    result.stdout.fnmatch_lines(
+        ["test_engine.py:18: in test_earlier", "E   ValueError: this is not the last*"]
+    )
+    folder = Path("screenshots/test_engine.py/llvmpipe")
+    assert read_png(folder / "last.png")[1]["drawn"] and "drawn" not in read_png(folder / "part.png")[1]
+    # One texel of the land is no number: in the picture that is a dark spot, and no more.
+    edit(
+        "land.glsl", "return gain *", "if (texel == ivec2(5, 7)) return sqrt(gain - 2.0);\n    return gain *"
+    )
+    before = (folder / "last.png").read_bytes()
+    for arguments in ((), ("--shots-update",)):
+        result = run("-k", "last", *arguments)
+        result.assert_outcomes(failed=1, deselected=2)
+        result.stdout.fnmatch_lines(["test_engine.py/last: nan: pass 'height', * at texel (5, 7) *"])
+    assert (folder / "last.png").read_bytes() == before
+
+
+def test_a_name_may_begin_with_a_digit(run: Run, pytester: pytest.Pytester) -> None:
+    call = "shot.check(np.linspace(0, 1, 48).reshape(4, 4, 3), '3d-view', by='numpy')"
+    pytester.makepyfile(test_digit=f"import numpy as np\ndef test_one(shot): {call}")
+    run("--shots-update").assert_outcomes(passed=1)
+    assert Path("screenshots/test_digit.py/numpy/3d-view.png").is_file()
+
+
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
