@@ -7,6 +7,7 @@
     judge.py        a picture, its fingerprint, references → whether it passes, in a word
     suite.py        sketches → cases → frames → outcomes
     results.py      a folder with a record of each checked shot and its pictures
+    places.py       where in that folder each has its own; removing what is not so any more
     page/           what shows them, as HTML
     report.py       one file of a folder of results, with no network
     accept.py       a picture of them becomes a reference; undoing that

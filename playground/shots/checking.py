@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
@@ -28,8 +29,8 @@ from playground.errors import (
 )
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
-from playground.shots.names import LEFT, REFERENCE_RENDERER, SAID
-from playground.shots.recording import Recorder
+from playground.shots.names import LEFT, REFERENCE_RENDERER, SAID, UNCOMPARED
+from playground.shots.recording import Recorder, typed
 from playground.shots.references import write_reference
 from playground.shots.results import NEVER_ACCEPTED
 from playground.shots.studio import Studio
@@ -38,6 +39,23 @@ from playground.shots.suite import Outcome, ShotCase, Taken, check
 _ENDS = {TrialCrash: "crash", TrialTimeout: "hang", OpenGLFault: "gl-error"}
 """The words for what gives no picture; anything else that a sentence explains is an "error"."""
 
+
+def word_of(error: PlaygroundError) -> str:
+    """Return the word for what gave no picture: "crash", "hang", "gl-error" or "error"."""
+    return next((word for kind, word in _ENDS.items() if isinstance(error, kind)), "error")
+
+
+@dataclass(frozen=True)
+class _Raised:
+    """What a test has been told instead of being given a picture."""
+
+    told: PlaygroundError
+    word: str
+    sentence: str
+    case: ShotCase
+
+
+_RAISED: pytest.StashKey[_Raised] = pytest.StashKey()
 _CHECKER: pytest.StashKey[Checker] = pytest.StashKey()
 
 
@@ -46,6 +64,7 @@ def checker_of(config: pytest.Config) -> Checker:
     if _CHECKER not in config.stash:
         checker = config.stash[_CHECKER] = Checker(config)
         config.add_cleanup(checker.close)  # also after Ctrl-C
+        config.pluginmanager.register(checker)
     return config.stash[_CHECKER]
 
 
@@ -99,9 +118,11 @@ class Checker:
             outcome = error
         if isinstance(outcome, PlaygroundError):
             self._gave_none(node, case, outcome, start)
-        self.recorder.record(node, outcome, time.perf_counter() - start, self.accepting(node, outcome))
+        command = self.accepting(node, outcome)
+        unkept = self.recorder.record(node, outcome, time.perf_counter() - start, command)
         if not outcome.ok:
-            pytest.fail(self._explained(node, outcome), pytrace=False)
+            lines = [self._explained(node, outcome), *([f"    {unkept}"] if unkept else [])]
+            pytest.fail("\n".join(lines), pytrace=False)
 
     def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
         """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
@@ -112,16 +133,16 @@ class Checker:
         except PlaygroundError as error:
             found = error
         if isinstance(found, ContextError):
-            self._without(str(found))
+            self._without(node, case, str(found))
         if isinstance(found, PlaygroundError):
             self.show_what_was_printed(node)
             self._gave_none(node, case, found, start)
-        return self.expect(found)
+        return self.expect(node, case, found)
 
-    def expect(self, renderer: ContextInfo) -> ContextInfo:
+    def expect(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> ContextInfo:
         """Return a renderer whose pictures may be compared; else skip the test, or fail it."""
         if renderer.slug != self.expected and not self.any_renderer:
-            self._without(f"OpenGL gave {renderer.renderer}")
+            self._without(node, case, f"OpenGL gave {renderer.renderer}")
         return renderer
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
@@ -139,21 +160,43 @@ class Checker:
             options.append(f"--shots-renderer={self.expected}")
         if outcome.renderer.slug != self.expected and self.any_renderer:
             options.append("--shots-any-renderer")
-        return f"pytest {' '.join(options)} {shlex.quote(node.nodeid)}"
+        return f"pytest {' '.join(options)} {shlex.quote(typed(node))}"
 
     # ── in words ─────────────────────────────────────────────────────────────
 
-    def _without(self, found: str) -> NoReturn:
+    def fail(self, node: pytest.Item, case: ShotCase, message: str) -> NoReturn:
+        """Fail a test in which no picture was compared, with a record that says so."""
+        unkept = self.recorder.record_none(node, case, "error", message, 0.0)
+        pytest.fail("\n".join([message, *([f"    {unkept}"] if unkept else [])]), pytrace=False)
+
+    def raised(self, node: pytest.Item, case: ShotCase, error: PlaygroundError) -> PlaygroundError:
+        """Return what a test is to raise for a mistake, with its word; it is recorded if the test fails."""
+        word, sentence = word_of(error), str(error)
+        told = error if word == "error" else type(error)(f"{word}: {sentence}")
+        node.stash[_RAISED] = _Raised(told, word, sentence, case)
+        return told.with_traceback(None)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:
+        """Leave the record of a test that failed for what `raised` gave it."""
+        raised = item.stash.get(_RAISED, None)
+        if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.told:
+            self.recorder.forget_earlier(item, raised.case)
+            self.recorder.record_none(item, raised.case, raised.word, raised.sentence, call.duration)
+
+    def _without(self, node: pytest.Item, case: ShotCase, found: str) -> NoReturn:
         message = f"the expected renderer is missing: shots are compared on {self.expected}; {found}"
         if os.environ.get("CI", "").lower() not in ("", "0", "false"):
-            pytest.fail(f"{message} (a failure, for CI is set)", pytrace=False)
+            self.fail(node, case, f"{message} (a failure, for CI is set)")
+        node.user_properties.append((UNCOMPARED, message))
         pytest.skip(message)
 
     def _gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> NoReturn:
         """Fail the test for a shot of which there is no picture, or that cannot be compared."""
-        word = next((word for kind, word in _ENDS.items() if isinstance(error, kind)), "error")
-        self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
-        pytest.fail(f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}", pytrace=False)
+        word = word_of(error)
+        unkept = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
+        message = f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}"
+        pytest.fail("\n".join([message, *([f"    {unkept}"] if unkept else [])]), pytrace=False)
 
     def _check(self, case: ShotCase, frame: Taken, renderer: ContextInfo) -> Outcome:
         return check(case, frame, renderer, self.expected if self.any_renderer else renderer.slug)

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,10 +18,11 @@ from playground.errors import DataError, PlaygroundError, counted, nearest
 from playground.images.files import read_texts
 from playground.paths import shown
 from playground.shots.checking import checker_of
+from playground.shots.recording import references_name
 from playground.shots.references import FOLDER, home_of, stale_references
 from playground.shots.suite import ShotCase
 from playground.sketch.load import load
-from playground.sketch.model import Sketch
+from playground.sketch.model import Graph, Shot, Sketch
 
 _HOMES: pytest.StashKey[set[Path]] = pytest.StashKey()
 
@@ -50,8 +52,7 @@ class SketchFile(pytest.File):
                 else:
                     item.add_marker(mark)
             yield item
-        names = {shot.name for shot in sketch.shots}
-        name = "references" if "references" not in names else "references of all shots"
+        name = references_name({shot.name for shot in sketch.shots})
         last = ReferencesItem.from_parent(self, name=name, sketch=sketch)
         last.add_marker("shots")
         yield last
@@ -78,7 +79,7 @@ class ShotItem(pytest.Item):
     def runtest(self) -> None:
         """Draw it and compare it."""
         if self.trouble:
-            pytest.fail(self.trouble, pytrace=False)
+            checker_of(self.config).fail(self, self.case, self.trouble)
         checker_of(self.config).shot(self, self.case)
 
     def reportinfo(self) -> tuple[Path, int, str]:
@@ -103,17 +104,19 @@ class ReferencesItem(pytest.Item):
 
     def runtest(self) -> None:
         """Fail for references that no shot uses."""
+        checker, case = checker_of(self.config), ShotCase(self.sketch, Shot(self.name))
         try:
             stale = stale_references([self.sketch])
             home = home_of(self.sketch)
         except DataError as error:
-            pytest.fail(str(error), pytrace=False)
+            checker.fail(self, case, str(error))
         own = [p for p in stale if p.relative_to(home).parts[0] == self.sketch.name]
         if self.first_of_home:
             own += [p for p in stale if p not in own and _is_reference(p, home)]
         if own:
             files = "".join(f"\n    {shown(path)}" for path in sorted(own))
-            pytest.fail(f"no shot uses {counted(len(own), 'reference')}; remove:{files}", pytrace=False)
+            checker.fail(self, case, f"no shot uses {counted(len(own), 'reference')}; remove:{files}")
+        checker.recorder.forget(self, case)
 
     def reportinfo(self) -> tuple[Path, int, str]:
         """Return where it is written, the line from 0, and its name."""
@@ -129,7 +132,11 @@ class FailingItem(pytest.Item):
 
     def runtest(self) -> None:
         """Fail."""
-        pytest.fail(self.message, pytrace=False)
+        folder = str(self.path.parent)
+        name = self.path.parent.name if self.path.name == "sketch.toml" else self.path.stem
+        sketch = Sketch(name, str(self.path), folder, Graph(name, str(self.path), ()))
+        shot = Shot(re.sub(r"[./\\\0]", "-", self.name))
+        checker_of(self.config).fail(self, ShotCase(sketch, shot), self.message)
 
     def reportinfo(self) -> tuple[Path, int, str]:
         """Return where it is written, the line from 0, and its name."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.errors import DataError
+from playground.errors import DataError, PlaygroundError
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture
 from playground.shots.checking import checker_of
@@ -45,6 +45,7 @@ class ShotFixture:
         self._names: set[str] = set()
         self._drawn: dict[int, tuple[Frame, ContextInfo]] = {}  # frames kept, so that their ids stay theirs
         self._started = time.perf_counter()
+        self._begun = False
 
     def render(
         self,
@@ -67,23 +68,30 @@ class ShotFixture:
         fails it where ``CI`` is set, without the expected renderer.
         """
         __tracebackhide__ = True
-        found = sketch if isinstance(sketch, Sketch) else load(self._beside(sketch))
-        begun = found.shot(shot) if shot else Shot(self._node.name)
-        prepared = found.for_shot(begun).with_values(values or {})
-        asked = Shot(
-            shot or "render",
-            size or begun.size,
-            begun.time if time is None else float(time),
-            steps=tuple({**dict(begun.steps), **(steps or {})}.items()),
-        )
-        case = ShotCase(prepared, asked)
-        renderer = self._checker.renderer(self._node, case)
+        own = self._case(re.sub(r"[./\\\0]", "-", self._node.name))
+        mistake: PlaygroundError
         try:
-            frame = self._checker.studio.take(case)
+            found = sketch if isinstance(sketch, Sketch) else load(self._beside(sketch))
+            begun = found.shot(shot) if shot else Shot(self._node.name)
+            prepared = found.for_shot(begun).with_values(values or {})
+            asked = Shot(
+                shot or "render",
+                size or begun.size,
+                begun.time if time is None else float(time),
+                steps=tuple({**dict(begun.steps), **(steps or {})}.items()),
+            )
+            renderer = self._checker.renderer(self._node, own)
+            self._begin(own)
+            frame = self._checker.studio.take(ShotCase(prepared, asked))
+        except PlaygroundError as error:
+            mistake = error
+        else:
+            self._drawn[id(frame)] = (frame, renderer)
+            return frame
         finally:
             self._checker.show_what_was_printed(self._node)
-        self._drawn[id(frame)] = (frame, renderer)
-        return frame
+        # Without the frames it came through, which say nothing of the test's own mistake.
+        raise self._checker.raised(self._node, own, mistake) from None
 
     def check(self, picture: Frame | NDArray[Any], name: str, *, by: By | None = None) -> None:
         """Fail the test unless the picture is its reference of that name, or ``--shots-update`` writes it.
@@ -99,11 +107,9 @@ class ShotFixture:
         __tracebackhide__ = True
         start, self._started = self._started, time.perf_counter()
         self._refuse_name(name)
-        info = self._renderer_of(picture, by)
-        file = self._node.path
-        # References only need a sketch's name and its place: here they are the test file's.
-        sketch = Sketch(file.name, str(file), str(file.parent), Graph(file.name, str(file), ()))
-        case = ShotCase(sketch, Shot(name))
+        case = self._case(name)
+        info = self._renderer_of(case, picture, by)
+        self._begin(case)
         self._names.add(name)
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
         self._checker.hold(self._node, case, _drawn_by(picture, by), info, start)
@@ -119,7 +125,21 @@ class ShotFixture:
         if name in self._names:
             raise ValueError(f"a second picture named {name!r} in this test: each needs a name of its own")
 
-    def _renderer_of(self, picture: object, by: By | None) -> ContextInfo:
+    def _case(self, name: str) -> ShotCase:
+        """Return what a picture of that name is checked as: a shot of the test file."""
+        # References only need a sketch's name and its place.
+        file = self._node.path
+        return ShotCase(
+            Sketch(file.name, str(file), str(file.parent), Graph(file.name, str(file), ())), Shot(name)
+        )
+
+    def _begin(self, case: ShotCase) -> None:
+        """Remove, once, the records that this test has left in earlier runs."""
+        if not self._begun:
+            self._begun = True
+            self._checker.recorder.forget_earlier(self._node, case)
+
+    def _renderer_of(self, case: ShotCase, picture: object, by: By | None) -> ContextInfo:
         if isinstance(by, str):  # a folder that is named is wanted, whatever OpenGL is there
             if not by or ContextInfo(0, by, "", "", 0).slug != by:
                 raise ValueError(f"by = {by!r}: a folder's name is lower-case letters, digits and -")
@@ -133,8 +153,9 @@ class ShotFixture:
                 )
             return info
         if isinstance(by, ContextInfo):
-            return self._checker.expect(by)
-        return self._checker.expect(by.info if isinstance(by, Engine) else context_info(by))
+            return self._checker.expect(self._node, case, by)
+        info = by.info if isinstance(by, Engine) else context_info(by)
+        return self._checker.expect(self._node, case, info)
 
 
 def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> Taken:

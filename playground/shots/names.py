@@ -26,6 +26,12 @@ CHECKED = "shots-checked"
 LOOSE = "shots-structure-only"
 """… that names the renderer whose picture could only be compared by its structure."""
 
+UNCOMPARED = "shots-uncompared"
+"""… that says why a shot was not compared."""
+
+UNKEPT = "shots-unkept"
+"""… that says why a result could not be kept."""
+
 USED = "shots-used"
 """… that names a reference which a test in Python has used, as "llvmpipe/dawn"."""
 

@@ -26,7 +26,16 @@ from typing import TYPE_CHECKING
 import pytest
 
 from playground.shots import used
-from playground.shots.names import CHECKED, LEFT, LOOSE, REFERENCE_RENDERER, REPORT, SAID
+from playground.shots.names import (
+    CHECKED,
+    LEFT,
+    LOOSE,
+    REFERENCE_RENDERER,
+    REPORT,
+    SAID,
+    UNCOMPARED,
+    UNKEPT,
+)
 
 if TYPE_CHECKING:
     from playground.shots.fixture import ShotFixture
@@ -183,6 +192,8 @@ class Results:
         self.lines: list[str] = []
         self.left = 0  # references that --shots-update left alone
         self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
+        self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
+        self.unkept: dict[str, None] = {}  # why results could not be kept
         self.seen = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
@@ -197,7 +208,11 @@ class Results:
             self.left += name == LEFT
             if name == LOOSE:
                 self.loose[str(value)] += 1
-            self.seen = self.seen or name == CHECKED
+            if name == UNCOMPARED:
+                self.uncompared[str(value)] += 1
+            if name == UNKEPT:
+                self.unkept[str(value)] = None
+            self.seen = self.seen or name in (CHECKED, UNCOMPARED)
             self.failed = self.failed or (name == CHECKED and value != "same")
 
     @pytest.hookimpl(wrapper=True)
@@ -206,8 +221,14 @@ class Results:
         result = yield
         if not hasattr(self.config, "workerinput"):
             for node, message in self.uses.stale().items():
+                from playground.shots.recording import record_stale
+
+                path = self.config.rootpath / node.partition("::")[0]
+                told = record_stale(self.config, path, message)
                 place = (node.partition("::")[0], None, "references")
-                report = pytest.TestReport(node, place, {"shots": 1}, "failed", message, "call")
+                report = pytest.TestReport(
+                    node, place, {"shots": 1}, "failed", message, "call", user_properties=told
+                )
                 self.config.hook.pytest_runtest_logreport(report=report)
         return result
 
@@ -221,13 +242,17 @@ class Results:
             self.lines.append(
                 f"{count} drawn by {renderer} compared by structure only, as --shots-any-renderer allows"
             )
-        folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
-        wanted = self.failed or self.config.getoption("--shots-report")
-        if wanted or (folder / "index.html").exists():  # one of a run before would not be true any more
-            from playground.shots.recording import report
+        for why, count in self.uncompared.items():
+            shots = "1 shot was" if count == 1 else f"{count} shots were"
+            self.lines.append(f"{shots} not compared: {why}")
+        self.lines += self.unkept
+        if self.unkept:
+            return
+        from playground.shots.recording import finish
 
-            lines = report(folder)
-            self.lines += lines if wanted else []
+        self.lines += finish(
+            self.config, self.uses.complete(), self.failed or self.config.getoption("--shots-report")
+        )
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Say what was written, what was left alone, and where there is something to look at."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,10 +18,19 @@ from playground.paths import shown
 from playground.shots.compare import difference_picture
 from playground.shots.flip import flip_picture
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
-from playground.shots.names import CHECKED, LOOSE
+from playground.shots.names import CHECKED, LOOSE, SCREENSHOTS, UNKEPT
+from playground.shots.places import clean, drop, file_of, place_of, records_in
 from playground.shots.references import accepted, home_of, reference_texts
-from playground.shots.report import write_report
-from playground.shots.results import FOLDER, PICTURES, Record, digests_of, write_result
+from playground.shots.report import NAME, write_report
+from playground.shots.results import (
+    FOLDER,
+    PASSED,
+    PICTURES,
+    Record,
+    digests_of,
+    read_result,
+    write_result,
+)
 from playground.shots.suite import Outcome, ShotCase
 
 _CATCHES = {
@@ -40,9 +49,13 @@ class Recorder:
         self.folder: Path = self.root / config.getoption("--shots-output")
         # The same in all processes: xdist gives its workers one.
         self._run = os.environ.get("PYTEST_XDIST_TESTRUNUID") or os.urandom(16).hex()
+        self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
-    def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> None:
-        """Leave the record of a picture that was compared, with the pictures unless it passed."""
+    def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> str:
+        """Leave the record of a picture that was compared, with the pictures unless it passed.
+
+        Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
+        """
         found, seen, reference = outcome.comparison, outcome.judgement.seen, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
@@ -62,28 +75,91 @@ class Recorder:
             references=digests_of(accepted(outcome.case.sketch, name, own)),
             command=command,
         )
-        self._write(node, record, {} if outcome.ok else _pictures(outcome))
         if outcome.tier == OTHER_RENDERER:
             node.user_properties.append((LOOSE, own))
+        return self._keep(node, outcome.case, record, {} if outcome.ok else _pictures(outcome))
 
-    def record_none(
-        self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float
-    ) -> None:
-        """Leave the record of a shot of which there is no picture."""
+    def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
+        """Leave the record of a shot of which there is no picture; returns what `record` does."""
         first, _, rest = sentence.partition("\n")
-        record = self._begun(node, case, word, first, seconds)
-        self._write(node, replace(record, error=rest), {})
+        record = replace(self._begun(node, case, word, first, seconds), error=rest)
+        return self._keep(node, case, record, {})
+
+    def forget(self, node: pytest.Item, case: ShotCase) -> None:
+        """Remove the record of what failed without a picture, if there is one: it is not so any more."""
+        node.user_properties.append((CHECKED, PASSED))
+        try:
+            before = self._before(self._place(case), case.shot.name)
+            if before:
+                drop(self.folder, before)
+        except (DataError, OSError):  # nothing to be kept, nothing to be removed
+            pass
+
+    def forget_earlier(self, node: pytest.Item, case: ShotCase) -> None:
+        """Remove what a test has left in earlier runs: it runs anew, and may check other pictures."""
+        try:
+            place = self._place(case)
+            own = [record for record in self._earlier[place] if record.node == typed(node)]
+            self._earlier[place] = [record for record in self._earlier[place] if record not in own]
+            for record in own:
+                # Another test may have left one of that name meanwhile.
+                if record.root == str(self.root) and self._before(place, record.shot) == record:
+                    drop(self.folder, record)
+        except (DataError, OSError):
+            pass
 
     def pictures(self, case: ShotCase) -> Iterator[tuple[str, Path]]:
         """Yield word and file of each picture that a failed shot has left."""
+        try:
+            place = self._place(case)
+        except (DataError, OSError):
+            return
         for word in PICTURES:
-            path = self.folder / case.sketch.name / f"{case.shot.name}.{word}.png"
+            path = self.folder / place / f"{case.shot.name}.{word}.png"
             if path.exists():
                 yield word, path
 
-    def _write(self, node: pytest.Item, record: Record, pictures: dict[str, NDArray[np.uint8]]) -> None:
-        write_result(self.folder, record, pictures)
+    def _keep(
+        self, node: pytest.Item, case: ShotCase, record: Record, pictures: dict[str, NDArray[np.uint8]]
+    ) -> str:
         node.user_properties.append((CHECKED, record.word))
+        try:
+            place = self._place(case)
+            record = replace(record, folder="" if place == record.sketch else place)
+            before = self._before(place, record.shot)
+            if before and before.run == record.run and before.node != record.node and not before.ok:
+                # Two tests check pictures of one name: what passed may not hide what failed.
+                if record.ok:
+                    return ""
+                record = replace(record, sentence=f"{record.sentence}; {before.node} failed as well")
+            write_result(self.folder, record, pictures)
+        except (DataError, OSError) as error:
+            said = _unkept(error)
+            node.user_properties.append((UNKEPT, said))
+            return said
+        return ""
+
+    def _before(self, place: str, shot: str) -> Record | None:
+        try:
+            return read_result(self.folder / place / f"{shot}.json")
+        except DataError:  # none, or one of another version
+            return None
+
+    def _place(self, case: ShotCase) -> str:
+        """Return the folder of a sketch's records; at the first look, remove those of shots that are gone."""
+        home = _home(case, self.root)
+        name = case.sketch.name
+        place = place_of(self.folder, name, self.root / home) if home else name
+        if place not in self._earlier:
+            there = list(records_in(self.folder, place))
+            shots = {shot.name for shot in case.sketch.shots}
+            shots |= {references_name(shots)} if shots else set()
+            own = Path(case.sketch.file)
+            gone = [r for r in there if shots and r.shot not in shots and file_of(r, self.root) == own]
+            for record in gone:
+                drop(self.folder, record)
+            self._earlier[place] = [r for r in there if r.run != self._run and r not in gone]
+        return place
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
         return Record(
@@ -93,11 +169,27 @@ class Recorder:
             sentence,
             root=str(self.root),
             home=_home(case, self.root),
-            node=node.nodeid,
+            node=typed(node),
             seconds=seconds,
             when=time.time(),
             run=self._run,
         )
+
+
+def typed(node: pytest.Item) -> str:
+    """Return a test's id as one types it in the folder where pytest was started.
+
+    Pytest's own begins at its root folder, which may be another.
+    """
+    root, path = node.config.invocation_params.dir, node.path
+    file = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
+    _, parted, rest = node.nodeid.partition("::")
+    return file + parted + rest
+
+
+def references_name(shots: Collection[str]) -> str:
+    """Return the name of the test that no reference is there in vain, beside shots of those names."""
+    return "references" if "references" not in shots else "references of all shots"
 
 
 def _home(case: ShotCase, root: Path) -> str:
@@ -133,6 +225,61 @@ def _pictures(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
     if actual.shape == reference.pixels.shape:
         pictures["flip"] = flip_picture(actual, reference.pixels)
     return pictures
+
+
+def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:
+    """Leave a record that a test file has references in vain; return what its report is to carry."""
+    recorder = Recorder(config)
+    home = str(path.parent / SCREENSHOTS)
+    root = recorder.root
+    file = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
+    first, _, rest = message.partition("\n")
+    try:
+        place = place_of(recorder.folder, path.name, Path(home))
+        # Of the same run as what its tests have left, which may have run in other processes.
+        runs = {record.when: record.run for record in records_in(recorder.folder)}
+        record = Record(
+            path.name,
+            "references",
+            "error",
+            first,
+            root=str(root),
+            home=home,
+            error=rest,
+            node=f"{file}::references",
+            when=time.time(),
+            run=runs[max(runs)] if runs else "",
+            folder="" if place == path.name else place,
+        )
+        write_result(recorder.folder, record, {})
+    except (DataError, OSError) as error:
+        return [(CHECKED, "error"), (UNKEPT, _unkept(error))]
+    return [(CHECKED, "error")]
+
+
+def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: bool) -> list[str]:
+    """Remove the records that mean nothing any more, see that no page shows them, and report if it is wanted.
+
+    ``complete`` has what was checked by test files of which every test ran and passed. Returns
+    what there is to say.
+    """
+    recorder = Recorder(config)
+    page = recorder.folder / NAME
+    try:
+        clean(recorder.folder, recorder.root, complete)
+        if not wanted and not page.exists():
+            return []
+        if not any(recorder.folder.glob("*/*.json")):
+            page.unlink(missing_ok=True)
+            return []
+    except OSError as error:
+        return [_unkept(error)]
+    lines = report(recorder.folder)
+    return lines if wanted else []
+
+
+def _unkept(error: Exception) -> str:
+    return f"no results are kept: {error}; --shots-output names another folder"
 
 
 def report(folder: Path) -> list[str]:

@@ -6,6 +6,8 @@
     <folder>/<sketch>/<shot>.difference.png   16 times as strong
     <folder>/<sketch>/<shot>.flip.png         where an eye would see it
 
+A second sketch of that name has a folder of its own beside the first's: see `places`.
+
 A record stands alone: the report, ``review`` and ``accept`` need neither the sketch nor a
 graphics card, so a folder that was made elsewhere (by a continuous integration, say) can be
 looked at and accepted here. Each file is written whole or not at all, so that several
@@ -82,11 +84,17 @@ class Record:
     seconds: float = 0.0  # [s] that taking and comparing took
     when: float = 0.0  # [s since 1970, UTC] when it was checked
     run: str = ""  # names the run of the tests; the same for all its processes
+    folder: str = ""  # its folder here, where a sketch of the same name has the plain one; else ""
+
+    @property
+    def place_name(self) -> str:
+        """The name of its folder here: the sketch's, unless another one has that."""
+        return self.folder or self.sketch
 
     @property
     def name(self) -> str:
-        """Return "sketch/shot"."""
-        return f"{self.sketch}/{self.shot}"
+        """Return "sketch/shot", where the sketch is named as its folder here."""
+        return f"{self.place_name}/{self.shot}"
 
     @property
     def ok(self) -> bool:
@@ -154,11 +162,12 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
     that cannot be a file's.
     """
     _check_names(record.sketch, record.shot, folder)
+    place = folder / record.place_name
     make_folder(folder)
     try:
-        (folder / record.sketch).mkdir(exist_ok=True)
+        place.mkdir(exist_ok=True)
     except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=folder / record.sketch) from error
+        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
     result_path(folder, record).unlink(missing_ok=True)
     files: dict[str, str] = {}
     digest = ""
@@ -202,7 +211,7 @@ def read_results(folder: Path) -> list[Record]:
     found = [read_result(path) for path in sorted(folder.glob("*/*.json"))]
     if not found:
         raise DataError("no record of a shot is in it; pytest leaves them when it checks shots", file=folder)
-    return sorted(found, key=lambda record: (record.sketch, record.shot))
+    return sorted(found, key=lambda record: (record.place_name, record.shot))
 
 
 def read_result(path: Path) -> Record:
@@ -214,14 +223,14 @@ def read_result(path: Path) -> Record:
     except UnicodeDecodeError as error:
         raise DataError("not the record of a shot: not text in UTF-8", file=path) from error
     record = from_json(text, path)
-    if (record.sketch, record.shot) != (path.parent.name, path.stem):
+    if (record.place_name, record.shot) != (path.parent.name, path.stem):
         raise DataError(f"the record of {record.name} lies where another belongs", file=path)
     return record
 
 
 def result_path(folder: Path, record: Record) -> Path:
     """Return where a shot's record is."""
-    return folder / record.sketch / f"{record.shot}.json"
+    return folder / f"{record.name}.json"
 
 
 def digest_of(data: bytes) -> str:
@@ -241,7 +250,7 @@ def digests_of(files: Iterable[Path]) -> dict[str, str]:
 
 
 def _picture_name(record: Record, word: str) -> str:
-    return f"{record.sketch}/{record.shot}.{word}.png"
+    return f"{record.name}.{word}.png"
 
 
 def _check_names(sketch: str, shot: str, file: str | Path) -> None:
@@ -320,6 +329,7 @@ def _pictures(value: object) -> dict[str, str]:
 _READERS: dict[str, tuple[str, Callable[[object], Any]]] = {
     "sketch": ("the name of a sketch", _matching(_SKETCH)),
     "shot": ("the name of a shot", _matching(_SHOT)),
+    "folder": ("the name of a folder", _matching(re.compile(f"(?:{_SKETCH.pattern})?"))),
     "numbers": ("an object of numbers", _numbers),
     "size": ("two numbers of pixels", _pair(1)),
     "expected_size": ("two numbers of pixels", _pair(1)),

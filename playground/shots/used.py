@@ -50,6 +50,7 @@ class _File:
     tests: int = 0  # in the file; 0: not known
     passed: set[str] = field(default_factory=set)  # node ids
     used: set[str] = field(default_factory=set)  # "renderer/name"
+    vain: bool = False  # whether there are references that none of them uses
 
 
 class Uses:
@@ -70,6 +71,18 @@ class Uses:
         file.passed.add(report.nodeid)
         file.used.update(str(value) for name, value in report.user_properties if name == USED)
 
+    def complete(self) -> dict[Path, set[str]]:
+        """Return the test files of which every test ran and passed, with the names of what they checked.
+
+        "references" is among them where `stale` has found some of the file.
+        """
+        return {
+            self._root / name: {used.rpartition("/")[2] for used in file.used}
+            | ({"references"} if file.vain else set())
+            for name, file in self._files.items()
+            if file.tests and len(file.passed) == file.tests
+        }
+
     def stale(self) -> dict[str, str]:
         """Return, by the node id of a test that would have found it, what is there in vain, in words."""
         from playground.errors import counted
@@ -86,6 +99,7 @@ class Uses:
                 pictures = sorted((folder / renderer).glob("*.png"))
                 stale += [p for p in pictures if f"{renderer}/{p.name.partition('.')[0]}" not in file.used]
             stale += _of_files_that_are_gone(folder.parent)
+            file.vain = bool(stale)
             if stale:
                 files = "".join(f"\n    {shown(path)}" for path in stale)
                 found[f"{name}::references"] = (

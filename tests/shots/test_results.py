@@ -54,11 +54,18 @@ PIXELS = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
 
 def test_every_field_of_the_example_says_something() -> None:
     """So that a field that is lost on the way cannot go unseen."""
-    alone = {"pictures", "digest"}  # what write_result fills in
+    alone = {"pictures", "digest", "folder"}  # what write_result fills in; tested by itself
     assert not [f.name for f in fields(Record) if not getattr(FULL, f.name) and f.name not in alone]
 
 
-@pytest.mark.parametrize("record", [FULL, Record("a", "b", "same", "every pixel")], ids=["full", "bare"])
+OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
+
+
+@pytest.mark.parametrize(
+    "record",
+    [FULL, OTHER, Record("a", "b", "same", "every pixel")],
+    ids=["full", "in a folder of its own", "bare"],
+)
 def test_a_record_comes_back_as_it_was(record: Record) -> None:
     text = to_json(record)
     assert from_json(text) == record
@@ -96,6 +103,13 @@ def test_results_come_by_sketch_and_shot(tmp_path: Path) -> None:
     assert [record.name for record in read_results(tmp_path)] == ["a/m", "b/a", "b/z"]
 
 
+def test_two_sketches_of_one_name_stand_side_by_side(tmp_path: Path) -> None:
+    written = [write_result(tmp_path, record, {"actual": PIXELS}) for record in (FULL, OTHER)]
+    assert read_results(tmp_path) == written
+    assert [record.name for record in written] == ["hills & dales/dawn", "hills & dales-1a2b3c4d/dawn"]
+    assert len({record.pictures["actual"] for record in written}) == 2
+
+
 def test_a_stamp_tells_one_result_from_the_next() -> None:
     assert FULL.stamp == replace(FULL).stamp != replace(FULL, when=FULL.when + 1).stamp
 
@@ -107,6 +121,8 @@ def test_a_stamp_tells_one_result_from_the_next() -> None:
         ({"sketch": ".."}, "'sketch' in a record is the name of a sketch; found \"..\""),
         ({"sketch": "a/b"}, "'sketch' in a record"),
         ({"shot": "a.b"}, "'shot' in a record"),
+        ({"folder": ".."}, "'folder' in a record is the name of a folder; found \"..\""),
+        ({"folder": "a/b"}, "'folder' in a record"),
         ({"shot": "..\\x"}, "'shot' in a record"),
         ({"word": 3}, "'word' in a record is a text; found 3"),
         ({"numbers": {"a": "1"}}, "'numbers' in a record is an object of numbers"),

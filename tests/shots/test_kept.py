@@ -1,0 +1,280 @@
+"""What the results folder keeps: each failure, and nothing that is not so any more."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from playground.errors import TrialCrash, TrialTimeout
+from playground.shots.places import place_of
+
+Run = Callable[..., pytest.RunResult]
+Edit = Callable[[str, str, str], None]
+
+REPORT = Path("shots-report")
+RAMP = "import numpy as np\nRAMP = np.linspace(0, 1, 48).reshape(4, 4, 3)\n"
+
+
+def words() -> dict[str, str]:
+    """Return the word of each record, by folder and shot."""
+    return {
+        path.relative_to(REPORT).with_suffix("").as_posix(): json.loads(path.read_text())["word"]
+        for path in REPORT.glob("*/*.json")
+    }
+
+
+def headline() -> str:
+    """Return what the page's title says."""
+    return (REPORT / "index.html").read_text().partition("<title>")[2].partition("</title>")[0]
+
+
+def sentence(name: str) -> str:
+    found: str = json.loads((REPORT / f"{name}.json").read_text())["sentence"]
+    return found
+
+
+def test_sketches_of_one_name_do_not_hide_each_others_failures(run: Run, edit: Edit) -> None:
+    for folder in ("a", "b"):
+        Path(folder).mkdir()
+        shutil.copy("slope.toml", folder)
+        shutil.copy("land.glsl", folder)
+    run("a/slope.toml", "b/slope.toml", "--shots-update").assert_outcomes(passed=6)
+    edit("a/land.glsl", "return gain *", "return 0.5 * gain *")
+    for _ in range(2):  # the second run finds the same folders
+        run("a/slope.toml", "b/slope.toml").assert_outcomes(passed=4, failed=2)
+        (other,) = {name.partition("/")[0] for name in words()} - {"slope"}
+        assert other.startswith("slope-")
+        wrong, right = "differs", "same"
+        assert words() == {
+            "slope/plain": wrong,
+            "slope/bright": wrong,
+            f"{other}/plain": right,
+            f"{other}/bright": right,
+        }
+        assert "2 of 4 shots failed" in headline()
+        assert (REPORT / "slope/plain.difference.png").is_file()
+    run("b/slope.toml").assert_outcomes(passed=3)
+    assert words()["slope/plain"] == wrong, "the other's stays"
+    edit("a/land.glsl", "return 0.5 * gain *", "return gain *")
+    edit("b/land.glsl", "return gain *", "return 0.5 * gain *")
+    result = run("b/slope.toml::plain")
+    result.stdout.fnmatch_lines([f"    actual      */shots-report/{other}/plain.actual.png"])
+    shutil.rmtree("a")
+    run("b/slope.toml").assert_outcomes(passed=1, failed=2)
+    assert words() == {f"{other}/plain": wrong, f"{other}/bright": wrong}
+    assert not (REPORT / "slope").exists()
+
+
+def test_test_files_of_one_name_are_two(run: Run) -> None:
+    for folder, gain in (("a", 1.0), ("b", 0.5)):
+        Path(folder).mkdir()
+        test = f"def test_one(shot): shot.check({gain} * RAMP, 'ramp', by='numpy')\n"
+        Path(folder, "test_x.py").write_text(RAMP + test)
+    both = ("--import-mode=importlib", "a", "b")
+    run(*both, "--shots-update").assert_outcomes(passed=2)
+    shutil.copy("b/screenshots/test_x.py/numpy/ramp.png", "a/screenshots/test_x.py/numpy/ramp.png")
+    run(*both).assert_outcomes(passed=1, failed=1)
+    assert sorted(words().values()) == ["differs", "same"]
+    assert words()["test_x.py/ramp"] == "differs"
+
+
+@pytest.mark.parametrize("first", ["0.5 * ", ""], ids=["the first fails", "the second fails"])
+def test_of_two_tests_that_check_one_name_what_failed_is_kept(run: Run, first: str) -> None:
+    second = "" if first else "0.5 * "
+    test = RAMP + "def test_{}(shot): shot.check({}RAMP, 'ramp', by='numpy')\n"
+    Path("test_x.py").write_text(test.format("a", ""))
+    run("--shots-update").assert_outcomes(passed=1)
+    Path("test_x.py").write_text(test.format("a", first) + test.format("b", second))
+    run().assert_outcomes(passed=1, failed=1)
+    assert words() == {"test_x.py/ramp": "differs"}
+    Path("test_x.py").write_text(test.format("a", "0.5 * ") + test.format("b", "0.6 * "))
+    run().assert_outcomes(failed=2)
+    assert sentence("test_x.py/ramp").endswith("; test_x.py::test_a failed as well")
+    Path("test_x.py").write_text(test.format("a", "") + test.format("b", ""))
+    run().assert_outcomes(passed=2)
+    assert words() == {"test_x.py/ramp": "same"}
+
+
+def test_a_sketch_that_does_not_load_is_on_the_page_until_it_does(accepted: Run, edit: Edit) -> None:
+    accepted("slope.toml", "--shots-report")
+    assert "All 2 shots passed" in headline()
+    edit("slope.toml", 'use = "./land"', 'use = "./lend"')
+    accepted("slope.toml").assert_outcomes(failed=1)
+    assert words() == {"slope/plain": "same", "slope/bright": "same", "slope/sketch": "error"}
+    assert "1 of 3 shots failed" in headline() and "lend" in sentence("slope/sketch")
+    edit("slope.toml", 'use = "./lend"', 'use = "./land"')
+    accepted("slope.toml").assert_outcomes(passed=3)
+    assert words() == {"slope/plain": "same", "slope/bright": "same"}
+    assert "All 2 shots passed" in headline()
+
+
+def test_a_reference_in_vain_is_on_the_page_until_it_is_gone(accepted: Run) -> None:
+    old = Path("screenshots/slope/llvmpipe/old.png")
+    shutil.copy(old.with_name("plain.png"), old)
+    accepted("slope.toml").assert_outcomes(passed=2, failed=1)
+    assert words()["slope/references"] == "error" and "1 of 3 shots failed" in headline()
+    assert "remove" in sentence("slope/references")
+    old.unlink()
+    accepted("slope.toml").assert_outcomes(passed=3)
+    assert "slope/references" not in words() and "All 2 shots passed" in headline()
+
+
+def test_an_unknown_marker_is_on_the_page(accepted: Run, edit: Edit) -> None:
+    edit("slope.toml", 'name = "bright"', 'name = "bright"\nmarks = ["other"]')
+    accepted("slope.toml", "--strict-markers").assert_outcomes(passed=2, failed=1)
+    assert words()["slope/bright"] == "error" and "1 of 2 shots failed" in headline()
+
+
+def test_a_renderer_that_is_missing_in_ci_is_on_the_page(
+    accepted: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Path("test_one.py").write_text("def test_one(shot): shot.render('slope.toml')\n")
+    asked = ("slope.toml", "test_one.py", "--shots-renderer=nvidia-h200")
+    result = accepted(*asked)
+    result.assert_outcomes(skipped=3, passed=1)
+    result.stdout.fnmatch_lines(
+        ["*= shots =*", "3 shots were not compared: the expected renderer is missing: *"]
+    )
+    monkeypatch.setenv("CI", "true")
+    accepted(*asked).assert_outcomes(failed=3, passed=1)
+    assert words() == {"slope/plain": "error", "slope/bright": "error", "test_one.py/test_one": "error"}
+    assert "All 3 shots failed" in headline() or "3 of 3 shots failed" in headline()
+
+
+RENDERS = """
+import pytest
+from playground.errors import TrialCrash
+
+def test_one(shot):
+    shot.check(shot.render("slope.toml", shot="bright"), "one")
+
+def test_meant(shot):
+    with pytest.raises(TrialCrash, match="SIGSEGV"):
+        shot.render("slope.toml", shot="plain")
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "word"),
+    [
+        (TrialCrash("drawing it crashed: by SIGSEGV\n    | nir: wrong"), "crash"),
+        (TrialTimeout("took 9 s"), "hang"),
+    ],
+    ids=["crash", "hang"],
+)
+def test_what_render_raised_is_told_in_its_word_and_on_the_page(
+    run: Run, ends: dict[str, Exception], end: Exception, word: str
+) -> None:
+    Path("test_x.py").write_text(RENDERS)
+    run("--shots-update", "-k", "one").assert_outcomes(passed=1, deselected=1)
+    ends["bright"], ends["plain"] = end, TrialCrash("drawing it crashed: by SIGSEGV")
+    result = run("--shots-report")
+    result.assert_outcomes(passed=1, failed=1)
+    said = str(end).partition("\n")[0]
+    result.stdout.fnmatch_lines([f"E *Trial*: {word}: {said}", "test_x.py:6: *"])
+    assert "playground/shots" not in result.stdout.str().replace("shots-report", "").replace("\\", "/")
+    assert words() == {"test_x.py/test_one": word}, "and not what an earlier run has found"
+    assert sentence("test_x.py/test_one") == said
+    ends.clear()
+    run("-k", "one").assert_outcomes(passed=1, deselected=1)
+    assert words() == {"test_x.py/one": "same"} and "1 shot passed" in headline()
+
+
+def test_a_sketch_with_a_mistake_is_told_in_render_without_our_frames(run: Run, edit: Edit) -> None:
+    Path("test_x.py").write_text(RENDERS)
+    edit("slope.toml", 'use = "./land"', 'use = "./lend"')
+    result = run("-k", "one")
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["E *SketchError: slope.toml:6: *lend*"])
+    assert "/playground/" not in result.stdout.str()
+    assert words() == {"test_x.py/test_one": "error"} and "1 of 1 shot failed" in headline()
+
+
+def test_records_of_what_is_gone_go(accepted: Run, edit: Edit) -> None:
+    shutil.copy("slope.toml", "other.toml")
+    Path("test_x.py").write_text(RAMP + "def test_one(shot): shot.check(RAMP, 'ramp', by='numpy')\n")
+    accepted("slope.toml", "other.toml", "test_x.py", "--shots-update").assert_outcomes(passed=7)
+    everything = {"slope/plain", "slope/bright", "other/plain", "other/bright", "test_x.py/ramp"}
+    assert set(words()) == everything
+    edit("slope.toml", 'name = "bright"', 'name = "brighter"')
+    accepted("slope.toml::plain").assert_outcomes(passed=1)
+    assert set(words()) == everything - {"slope/bright"}
+    Path("other.toml").unlink()
+    edit("test_x.py", "'ramp'", "'slant'")
+    Path("screenshots/test_x.py/numpy/ramp.png").rename("screenshots/test_x.py/numpy/slant.png")
+    accepted("slope.toml::plain", "test_x.py").assert_outcomes(passed=2)
+    assert set(words()) == {"slope/plain", "test_x.py/slant"}
+
+
+def test_references_of_a_test_file_in_vain_are_on_the_page(run: Run) -> None:
+    Path("test_x.py").write_text(RAMP + "def test_one(shot): shot.check(RAMP, 'ramp', by='numpy')\n")
+    run("--shots-update").assert_outcomes(passed=1)
+    old = Path("screenshots/test_x.py/numpy/old.png")
+    shutil.copy(old.with_name("ramp.png"), old)
+    run().assert_outcomes(passed=1, failed=1)
+    assert words() == {"test_x.py/ramp": "same", "test_x.py/references": "error"}
+    assert "1 of 2 shots failed" in headline() and "earlier run" not in (REPORT / "index.html").read_text()
+    old.unlink()
+    run().assert_outcomes(passed=1)
+    assert words() == {"test_x.py/ramp": "same"} and "1 shot passed" in headline()
+
+
+def test_where_results_cannot_be_kept_one_sentence_says_so(accepted: Run, edit: Edit) -> None:
+    Path("taken").write_text("mine")
+    asked = ("slope.toml", "--shots-output", "taken")
+    said = "no results are kept: *taken*; --shots-output names another folder"
+    result = accepted(*asked)
+    result.assert_outcomes(passed=3)
+    result.stdout.fnmatch_lines(["*= shots =*", said])
+    assert result.stdout.str().count("no results are kept") == 1
+    edit("land.glsl", "return gain *", "return 0.5 * gain *")
+    result = accepted(*asked)
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(["slope/plain: differs: *", f"    {said}", "slope/bright: differs: *"])
+    edit("land.glsl", "float(size.x)", "float(siez.x)")
+    result = accepted(*asked)
+    result.stdout.fnmatch_lines(["slope/plain: *land.glsl:7:*siez*", f"    {said}"])
+    result.stdout.no_fnmatch_line("*Traceback*")
+    assert Path("taken").read_text() == "mine"
+
+
+def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
+    accepted: Run, edit: Edit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pytest's own ids begin at its root folder."""
+    Path("pytest.ini").write_text("[pytest]\n")
+    Path("sub").mkdir()
+    for file in ("slope.toml", "land.glsl"):
+        shutil.copy(file, "sub")
+    whole = str(Path("slope.toml").absolute())
+    monkeypatch.chdir("sub")
+    for given, named in (("slope.toml", "slope.toml"), ("../slope.toml", whole)):
+        if given != named:
+            edit("../land.glsl", "return gain *", "return 0.5 * gain *")
+        result = accepted(given, "-k", "plain")
+        result.assert_outcomes(failed=1, deselected=2)
+        result.stdout.fnmatch_lines([f"    accept it   pytest --shots-update {named}::plain"])
+        accepted("--shots-update", f"{named}::plain").assert_outcomes(passed=1)
+        accepted(given, "-k", "plain").assert_outcomes(passed=1, deselected=2)
+
+
+def test_of_sketches_of_one_name_that_come_at_once_one_has_the_plain_folder(tmp_path: Path) -> None:
+    homes = [tmp_path / name / "screenshots" for name in "abcdefgh"]
+    start = threading.Barrier(len(homes))
+
+    def ask(home: Path) -> str:
+        start.wait(60)
+        return place_of(tmp_path / "out", "hills", home)
+
+    with ThreadPoolExecutor(len(homes)) as pool:
+        places = list(pool.map(ask, homes))
+    assert len(set(places)) == len(homes) and "hills" in places
+    assert [place_of(tmp_path / "out", "hills", home) for home in homes] == places
+    (tmp_path / "out").rename(tmp_path / "moved")  # with what lies beside it, it may be moved
+    assert place_of(tmp_path / "moved", "hills", homes[0]) == places[0]
