@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import pickle
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -321,23 +323,31 @@ def test_a_child_that_cannot_start_is_tried_twice_and_no_more(fake: Studio) -> N
 def test_an_answer_at_the_last_moment_counts_and_the_next_is_drawn(
     fake: Studio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The limit ends here between the answer and its being read, whatever the machine has to do."""
     assert fake.renderer.slug == "llvmpipe"
+    timers: list[Callable[[], None]] = []
+
+    class Timer:
+        def __init__(self, limit: float, end: Callable[[], None]) -> None:
+            timers.append(end)
+
+        def start(self) -> None: ...
+        def cancel(self) -> None: ...
+        def join(self) -> None: ...
 
     def receive_late(stream: BinaryIO) -> object:
         answer = receive(stream)
+        timers[-1]()
         assert fake._child is not None
-        fake._child.process.wait(60)  # until the limit has ended it
+        fake._child.process.wait(60)
         return answer
 
-    fake.limit = 0.2
-    monkeypatch.setattr(studio_module, "receive", receive_late)
-    try:
+    with monkeypatch.context() as patch:
+        patch.setattr(studio_module, "receive", receive_late)
+        patch.setattr(threading, "Timer", Timer)
         assert fake.take(made_up("late")).drawn == "late"
-    except TrialTimeout:
-        pass  # a machine so busy that the answer itself came after the limit
-    monkeypatch.undo()
-    monkeypatch.setattr(studio_module, "CHILD", "fake_child")
-    fake.limit = 120.0
+    assert fake.process is None, "it was ended, and is not asked again"
+    assert fake.take(made_up("next")).drawn == "next"
 
 
 def test_ctrl_c_leaves_no_child_and_no_answer_for_the_next(
@@ -381,3 +391,55 @@ def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: Studio, tmp_
         parent.kill()
         parent.wait()
         assert lives.read() == b""  # waits until the child is gone
+
+
+ENDING = """format = 1
+size = 32
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+[[shot]]
+name = "crash"
+[[shot]]
+name = "hang"
+[[shot]]
+name = "next"
+"""
+
+
+def test_a_real_childs_ends_are_told_by_the_plugin(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for variable in ("CI", "PYTEST_ADDOPTS"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.syspath_prepend(pytester.path)
+    monkeypatch.setattr(studio_module, "CHILD", "fake_child")
+    files = {"fake_child.py": FAKE, "land.glsl": KERNEL, "bands.toml": ENDING}
+    for name, text in files.items():
+        Path(name).write_text(text)
+    Path("test_x.py").write_text("def test_one(shot): shot.render('bands.toml', shot='crash')\n")
+
+    def run(*arguments: str) -> pytest.RunResult:
+        fixed = ("-p", "playground.shots.plugin", "-p", "no:cacheprovider", "-W", "error", "bands.toml")
+        return pytester.runpytest_inprocess(*fixed, *arguments)
+
+    result = run("test_x.py", "-k", "crash or next or one")
+    result.assert_outcomes(failed=3, deselected=2)
+    result.stdout.fnmatch_lines(
+        [
+            "bands/crash: crash: drawing bands/crash crashed: the process was ended by SIGABRT",
+            "    | nir: validation failed after split_vars",
+            "bands/next: blank: *",
+            "E *TrialCrash: crash: drawing bands/crash crashed: the process was ended by SIGABRT",
+        ]
+    )
+    result.stdout.no_fnmatch_line("*Traceback*")
+    result = run("-k", "hang", "--shots-timeout=0.2")  # where it is sure to be over
+    result.assert_outcomes(failed=1, deselected=3)
+    said = "drawing bands/hang took more than 0.2 s and was stopped"
+    result.stdout.fnmatch_lines([f"bands/hang: hang: {said}*"])
+    words = {p.stem: json.loads(p.read_text())["word"] for p in Path("shots-report/bands").glob("*.json")}
+    assert words == {"crash": "crash", "next": "blank", "hang": "hang"}
