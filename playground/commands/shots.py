@@ -62,9 +62,11 @@ def _group(ctx: typer.Context) -> None:
 def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> None:
     """List shots, their sizes, and whether there is a reference."""
     from playground.sketch.find import shipped_sketches
-    from playground.sketch.load import load
+    from playground.sketch.load import load_with
+    from playground.sketch.techniques import Techniques
 
-    rows = [row for name in sketches or shipped_sketches() for row in _rows(load(name))]
+    techniques = Techniques()  # most sketches share theirs
+    rows = [row for name in sketches or shipped_sketches() for row in _rows(load_with(techniques, name))]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False))
         return

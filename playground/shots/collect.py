@@ -21,9 +21,11 @@ from playground.shots.checking import checker_of
 from playground.shots.recording import references_name
 from playground.shots.references import FOLDER, home_of, stale_references
 from playground.shots.suite import ShotCase
-from playground.sketch.load import load
+from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Shot, Sketch
+from playground.sketch.techniques import Techniques
 
+_TECHNIQUES: pytest.StashKey[Techniques] = pytest.StashKey()
 _HOMES: pytest.StashKey[set[Path]] = pytest.StashKey()
 
 
@@ -33,7 +35,8 @@ class SketchFile(pytest.File):
     def collect(self) -> Iterator[pytest.Item]:
         """Yield a test for each shot, and one for the references; one that fails for what is no sketch."""
         try:
-            sketch = load(self.path)
+            techniques = self.config.stash.setdefault(_TECHNIQUES, Techniques())  # most sketches share theirs
+            sketch = load_with(techniques, self.path)
         except PlaygroundError as error:
             yield from self._failing(str(error))
             return
