@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
 from playground.engine.engine import Engine
+from playground.engine.mistakes import all_mistakes
 from playground.engine.plan import smallest_land
 from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch
 from playground.engine.trial_process import Doing, Ready, receive, send
-from playground.errors import ContextError, PlaygroundError, TrialCrash
+from playground.errors import ContextError, PlaygroundError, ShaderError, TrialCrash
 from playground.gpu.context import open_context
 from playground.gpu.program import compile_library
 from playground.gpu.textures import drain, is_lost
@@ -95,7 +96,11 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request, te
                 # A mesh's fineness proves nothing more, and takes longer than all the rest.
                 engines[driver].runner.draws.finest = _FINEST
                 engines[driver].runner.tell = lambda step: tell(step.path, step.kernel.path)
-            _draw(engines[driver], request)
+            try:
+                _draw(engines[driver], request)
+            except ShaderError as error:
+                size, when = request.size, request.time
+                raise all_mistakes(error, engines[driver], request.sketch, size=size, time=when) from None
     except PlaygroundError as error:
         if is_lost(ctx):
             return TrialReport(False, TrialCrash(f"{tell.subject} made the driver reset itself in the trial"))

@@ -332,6 +332,22 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             "GLSL cannot read this: look for a missing `;`, comma or bracket here and on the line above.",
         ),
         (
+            r"of operator % must be an integer|operands to \"%\" must be integral|'%' ?:.*\bfloat\b",
+            re.I,
+            "`%` is for whole numbers: write `mod(a, b)` for floats.",
+        ),
+        (
+            r"(?:if-statement|loop) condition must be scalar boolean",
+            re.I,
+            "A condition is a bool: compare a number, as in `x > 0.0`.",
+        ),
+        (r"recursion", re.I, "GLSL has no recursion: write a loop."),
+        (
+            r"C-style initialization",
+            re.I,
+            "Braces do not fill an array here: write `float[](1.0, 2.0)`.",
+        ),
+        (
             r"swizzle|field selection|cannot access field|unknown field|no such field",
             re.I,
             "These components do not exist here: a `vec3` has x y z (or r g b), a scalar has none, "

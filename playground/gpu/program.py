@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.logs import LogEntry, hint, parse_log, source_column, split_moderngl
+from playground.gpu.names import guess
 from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
@@ -48,7 +49,7 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
     found: dict[tuple[str, int, str], Diagnostic] = {}
     for entry in parse_log(log):
-        diagnostic = _diagnostic(entry, stage, wrapped)
+        diagnostic = diagnostic_of(entry, stage, wrapped)
         found.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
     if not any(d.severity == "error" for d in found.values()):
         message = log.strip() or "the driver refused the shader and gave no reason"
@@ -56,10 +57,11 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
     return ShaderError(diagnostics=found.values())
 
 
-def _diagnostic(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
-    more = hint(entry.message)
-    message = f"{entry.message}; {more}" if more else entry.message
+def diagnostic_of(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
+    """Return one complaint of a driver in the kernel's own files, with its hint."""
     line = stage.locate(entry.line) if entry.line else None
+    more = guess(entry.message, stage.source, line) or hint(entry.message)
+    message = f"{entry.message}; {more}" if more else entry.message
     if line is not None:
         column = (
             source_column(line.code, entry.column) if entry.column else _column_of(entry.message, line.code)
@@ -69,7 +71,7 @@ def _diagnostic(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
         # Past the last line: either an unclosed bracket, or the wrapper's call does not fit.
         last = next((ln for ln in reversed(stage.source.lines) if ln.code.strip()), stage.source.lines[-1])
         return last.diagnostic(
-            f"{message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
+            f"{entry.message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
         )
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
 

@@ -1,0 +1,51 @@
+"""Find every mistake of a sketch's shaders, not only that of the first pass that fails."""
+
+from __future__ import annotations
+
+from playground.engine.engine import Engine
+from playground.errors import Diagnostic, PlaygroundError, ShaderError
+from playground.sketch.model import Sketch
+
+MOST = 200  # diagnostics; more help nobody
+
+
+def all_mistakes(
+    error: PlaygroundError, engine: Engine, sketch: Sketch, *, size: tuple[int, int], time: float = 0.0
+) -> PlaygroundError:
+    """Return an error with the mistakes of all other kernels of the sketch behind its own.
+
+    Each pass is compiled in the form that the engine would run; nothing is drawn. An error
+    that is not a shader's, and one of a sketch with no plan, comes back as it is.
+    """
+    if not isinstance(error, ShaderError):
+        return error
+    try:
+        plan = engine.plan_for(sketch, size, time)
+    except PlaygroundError:
+        return error
+    found: dict[tuple[str, int, int, str], Diagnostic] = {}
+    _take(found, error)
+    tried: set[tuple[int, str]] = set()
+    for step in plan.walk():
+        if step.kernel.kind == "source" or len(found) >= MOST:
+            continue
+        try:
+            kernel, driver = engine.form_of(step)
+            if (id(kernel), driver) in tried:
+                continue
+            tried.add((id(kernel), driver))
+            if engine.runner.tell is not None:
+                engine.runner.tell(step)
+            engine.runner.programs.get(kernel, driver)
+        except ShaderError as other:
+            _take(found, other)
+        except PlaygroundError:
+            continue  # this machine lacks something, which is no mistake of the text
+    return ShaderError(diagnostics=found.values())
+
+
+def _take(found: dict[tuple[str, int, int, str], Diagnostic], error: ShaderError) -> None:
+    """Add an error's diagnostics; one of a file that several kernels include is told once."""
+    for diagnostic in error.diagnostics:
+        place = (diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message)
+        found.setdefault(place, diagnostic)
