@@ -10,9 +10,7 @@ import time
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
-from playground.errors import Diagnostic
 from playground.gpu.program import compile_wrapped
-from playground.gpu.said import warnings_of
 from playground.gpu.wrap import with_choices, wrap
 from playground.sketch.model import Kernel
 
@@ -37,7 +35,6 @@ class Program:
         self.uniforms: dict[str, Any] = {name: compiled[name] for name in compiled}
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
         self.frame = 0  # when it was last used
-        self.warnings: tuple[Diagnostic, ...] = ()  # what the driver said of it
 
     def __contains__(self, name: str) -> bool:
         return name in self.uniforms
@@ -75,7 +72,6 @@ class Programs:
         self.ctx = ctx
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
-        self.warnings: dict[str, tuple[Diagnostic, ...]] = {}  # of each program last used, by file
         self._frame = 0
         self._by_text: OrderedDict[tuple[str, ...], Program] = OrderedDict()
         # The kernel stands beside its texts so that its identity stays its own.
@@ -97,7 +93,6 @@ class Programs:
         known = self._texts.get(wanted)
         if known is not None and known[1] in self._by_text:
             self._texts.move_to_end(wanted)
-            self.warnings[kernel.path] = self._by_text[known[1]].warnings
             return self._used(known[1])
         wrapped = wrap(kernel, driver)
         if choices:
@@ -110,9 +105,6 @@ class Programs:
             start = time.perf_counter()
             self._keep(text, compile_wrapped(self.ctx, wrapped))
             self.compile_times[kernel.path] = (time.perf_counter() - start) * 1e3
-            program = self._by_text[text]
-            program.warnings = warnings_of(self.ctx, program.compiled, wrapped)
-        self.warnings[kernel.path] = self._by_text[text].warnings
         return self._used(text)
 
     def own(self, fragment: str) -> Program:

@@ -1,8 +1,13 @@
-"""What a driver says of a program that it takes: its warnings, which moderngl keeps to itself."""
+"""What a driver says of a text that it takes: its warnings, which moderngl keeps to itself.
+
+Mesa says nothing of a text that it finds in its cache on disk, so each stage is compiled
+once more, with a comment at its end that no cache can know, and thrown away.
+"""
 
 from __future__ import annotations
 
 import ctypes
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -15,52 +20,55 @@ if TYPE_CHECKING:
     import moderngl
 
 _MOST = 64 * 1024  # bytes of a log
-_MOST_STAGES = 6
-_STAGES = {0x8B31: "vertex", 0x8B30: "fragment", 0x91B9: "compute"}
-_SHADER_TYPE = 0x8B4F
+_STAGES = {"vertex": 0x8B31, "fragment": 0x8B30, "compute": 0x91B9}
 
 _UINT, _INT = ctypes.c_uint, ctypes.c_int
 _AT = ctypes.POINTER
 
 
-def warnings_of(ctx: moderngl.Context, compiled: object, wrapped: Wrapped) -> tuple[Diagnostic, ...]:
-    """Return the warnings in the logs of a program's stages, in the kernel's own files.
+def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ...]:
+    """Return what a driver warns of in a kernel's text, in the kernel's own files.
 
-    Only those at a line that the kernel's author wrote. Empty where the logs cannot be read:
-    OpenGL's functions are asked of whatever moderngl asks, which is not among its promises.
+    Only what is at a line of the files, not of what the wrapper adds. Empty where the text
+    does not compile, and where OpenGL's functions cannot be reached: they are asked of whatever
+    moderngl asks, which is not among its promises.
     """
     load = getattr(getattr(ctx.mglo, "_context", None), "load_opengl_function", None)
-    number = getattr(compiled, "glo", 0)
-    if load is None or not number:
-        return ()
     found: dict[tuple[str, int, str], Diagnostic] = {}
-    for kind, log in _logs(load, number):
-        stage = wrapped.stages.get(_STAGES.get(kind, ""))
-        for entry in parse_log(log) if stage is not None else ():
-            if entry.severity == "warning" and stage is not None and stage.locate(entry.line) is not None:
+    if load is None:
+        return ()
+    for name, stage in wrapped.stages.items():
+        if not stage.first:  # none of it is the author's
+            continue
+        for entry in parse_log(_log(load, _STAGES[name], f"{stage.text}// {time.time_ns()}\n")):
+            if entry.severity == "error":
+                return ()
+            if stage.locate(entry.line) is not None:
                 diagnostic = diagnostic_of(entry, stage, wrapped)
                 found.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
     return tuple(found.values())
 
 
-def _logs(load: Callable[[str], int], number: int) -> list[tuple[int, str]]:
-    """Return (type, log) of each shader attached to a program."""
+def _log(load: Callable[[str], int], kind: int, text: str) -> str:
+    """Compile a text, return the driver's log, and leave nothing behind."""
 
-    def function(name: str, *types: Any) -> Any:
+    def function(name: str, result: Any, *types: Any) -> Any:
         address = load(name)
-        return ctypes.CFUNCTYPE(None, *types)(address) if address else None
+        return ctypes.CFUNCTYPE(result, *types)(address) if address else None
 
-    attached = function("glGetAttachedShaders", _UINT, _INT, _AT(_INT), _AT(_UINT))
-    get = function("glGetShaderiv", _UINT, _UINT, _AT(_INT))
-    read = function("glGetShaderInfoLog", _UINT, _INT, _AT(_INT), ctypes.c_char_p)
-    if attached is None or get is None or read is None:
-        return []
-    count, shaders = _INT(), (_UINT * _MOST_STAGES)()
-    attached(number, _MOST_STAGES, ctypes.byref(count), shaders)
-    logs = []
-    for shader in shaders[: count.value]:
-        kind, text = _INT(), ctypes.create_string_buffer(_MOST)
-        get(shader, _SHADER_TYPE, ctypes.byref(kind))
-        read(shader, _MOST, None, text)
-        logs.append((kind.value, text.value.decode("utf-8", "replace")))
-    return logs
+    create = function("glCreateShader", _UINT, _UINT)
+    source = function("glShaderSource", None, _UINT, _INT, _AT(ctypes.c_char_p), _AT(_INT))
+    build = function("glCompileShader", None, _UINT)
+    read = function("glGetShaderInfoLog", None, _UINT, _INT, _AT(_INT), ctypes.c_char_p)
+    delete = function("glDeleteShader", None, _UINT)
+    if None in (create, source, build, read, delete):
+        return ""
+    shader = create(kind)
+    if not shader:
+        return ""
+    log = ctypes.create_string_buffer(_MOST)
+    source(shader, 1, ctypes.byref(ctypes.c_char_p(text.encode())), None)
+    build(shader)
+    read(shader, _MOST, None, log)
+    delete(shader)
+    return log.value.decode("utf-8", "replace")

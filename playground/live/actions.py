@@ -8,12 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
+from playground.live.editors import Opener
 from playground.live.edits import Edits
 from playground.live.history import History, State, applied, edits_of, state_of, steps_of
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
+from playground.live.problems import Problems
 from playground.live.session import Session
 from playground.live.stages import Stage
+from playground.live.texts import Editing
 from playground.paths import shown
 from playground.sketch.model import Value
 
@@ -49,6 +52,11 @@ class Actions:
     offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
     opening: str = ""  # the question to be asked next: "offer" or "dropped"
     held: bool = False  # a mouse button is down: what changes is one step
+    problems: Problems = field(default_factory=Problems)
+    opener: Opener = field(default_factory=Opener)  # starts the user's editor
+    editing: list[Editing] = field(default_factory=list)  # files open in windows of our own
+    leaving: bool = False  # the window is to close, and something is not saved: it is asked what to do
+    reveal: str = ""  # the pass that the panel is to bring into sight
 
     def __post_init__(self) -> None:
         self.painting = Painting(self.session, self.folder)
@@ -62,6 +70,8 @@ class Actions:
         """Put what the session has to say on the screen, and take away what has been read."""
         while self.session.notes:
             self.say(self.session.notes.popleft())
+        while self.opener.notes:
+            self.say(self.opener.notes.popleft())
         self.notices = [n for n in self.notices if n.until > self.now()]
 
     def save_picture(self) -> None:
@@ -91,6 +101,10 @@ class Actions:
         """Show a texture from above; None: the sketch's own view."""
         self.last_map = ref or self.last_map
         self.session.show(ref)
+
+    def show_pass(self, name: str) -> None:
+        """Bring the panel, and a pass in it into sight."""
+        self.panel_shown, self.reveal = True, name
 
     def toggle_panel(self) -> None:
         """Hide the panel, or bring it back."""

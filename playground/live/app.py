@@ -18,19 +18,25 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.engine.trial import Trial
-from playground.errors import PlaygroundError
+from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
+from playground.gpu.said import warnings_of
+from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.live.actions import Actions
+from playground.live.code_window import draw_code, unsaved
 from playground.live.drops import draw_drops, take_dropped
+from playground.live.editors import Opener
+from playground.live.errors_list import draw_errors
 from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.memory import Remembered
-from playground.live.overlay import Area, draw_error, draw_notices, draw_waiting
+from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.picture import Painter
 from playground.live.place import Place
+from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
 from playground.live.session import REST, Session
 from playground.live.status import Status
@@ -38,7 +44,7 @@ from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, Value
+from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
 from playground.sketch.places import TEXTS
 
 FRAME = 1 / 60  # [s] between pictures while time runs
@@ -131,6 +137,8 @@ class Live:
         self.panel = Panel()
         self.place = Place(lambda: window.handle)
         self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
+        self.actions.opener = Opener(wake)
+        self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
         self._settling = _SETTLES
@@ -142,7 +150,7 @@ class Live:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
-        while self.window.open:
+        while self._stays():
             patience = self._patience()
             if end is not None:
                 left = end - time.perf_counter()
@@ -156,6 +164,16 @@ class Live:
             if self.window.lost:
                 self.recover()
             self.follower.follow()
+
+    def _stays(self) -> bool:
+        """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""
+        if self.window.open:
+            return True
+        if not unsaved(self.actions):
+            return False
+        self.window.stay()
+        self.actions.leaving, self._settling = True, _SETTLES
+        return True
 
     def release(self) -> None:
         """Give back all that was made in the window's context."""
@@ -181,6 +199,8 @@ class Live:
             return 0.0
         if self.session.testing:
             return _TRIAL
+        if self.warnings.waiting:
+            return 0.0
         if self.session.hasty:
             return REST / 2
         if self.rememberer.waits:
@@ -204,9 +224,10 @@ class Live:
         take_dropped(actions, self.place.dropped())
         window.begin()
         left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
-        act_on_keys(actions)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
+        draw_code(actions, window.theme, area)
+        act_on_keys(actions)
         self.hand.act(area, window.density)
         actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         wide, high = window.pixels
@@ -217,8 +238,8 @@ class Live:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
         self._say_reload()
         actions.take_notes()
-        if session.error is not None:
-            draw_error(session.error, actions, window.theme, area)
+        actions.problems.take(session.error, self.warnings.of(session.sketch))
+        draw_errors(actions, window.theme, area)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
         draw_notices(actions, window.theme, area)
@@ -230,9 +251,19 @@ class Live:
         if picture is not None:
             self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
         window.end()
+        if not session.testing and self._settling == 0:
+            self.warnings.look()
         self.status.write(actions)
         stands = self.place.geometry()
         self.rememberer.look((stands.width, stands.height))
+
+    def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
+        """Return what the driver warns of in a kernel that it has drawn with."""
+        try:
+            driver = COMPUTE if kernel.kind in ("compute", "plain_compute") else FRAGMENT
+            return warnings_of(self.window.ctx, wrap(kernel, driver)) if kernel.kind != "source" else ()
+        except PlaygroundError:
+            return ()
 
     def _say_reload(self) -> None:
         """Say so when a save has become a picture."""

@@ -58,8 +58,10 @@ def files_named_by(error: PlaygroundError) -> frozenset[Path]:
     """Return the files that an error points at; those of its includes as well."""
     named = [d.file for d in error.diagnostics]
     named += [place.rpartition(":")[0] for d in error.diagnostics for place in d.chain]
-    found = set()
-    for name in filter(None, named):
-        path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else Path.cwd() / name
-        found.add(path if path.is_file() else Path.cwd() / name)
-    return frozenset(found)
+    return frozenset(path_named(name) for name in filter(None, named))
+
+
+def path_named(name: str) -> Path:
+    """Return the file that a diagnostic names, as its user would, as an absolute path."""
+    path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else Path.cwd() / name
+    return path if path.is_file() else Path.cwd() / name

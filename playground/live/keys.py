@@ -37,12 +37,18 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.f11, "F11", "fill the screen, or no longer", "", lambda a: a.full_screen()),
     Key(imgui.Key.none, "?", "show or hide these keys", "keys", lambda a: a.toggle_keymap(), letter="?"),
     Key(imgui.Key.f1, "F1", "show or hide these keys", "", lambda a: a.toggle_keymap()),
+    Key(imgui.Key.f8, "F8, Shift+F8", "next error, previous error", "", lambda a: _step(a)),
     Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
     Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.escape()),
 )
+
+
+def _step(actions: Actions) -> None:
+    io = imgui.get_io()
+    actions.problems.step(-1 if io.key_shift or imgui.is_key_released(imgui.Key.mod_shift) else 1)
 
 
 def act_on_keys(actions: Actions) -> None:

@@ -14,9 +14,10 @@ from playground.live.listing import Group, Item, Section, Values
 from playground.live.panel_memory import Memory
 from playground.live.parameters import draw_menu, draw_parameter
 from playground.live.rows import cross, row, slot
+from playground.live.sources import editor_name, open_source
 from playground.live.theme import Theme
 from playground.sketch.choose import choices
-from playground.sketch.model import PassSpec, Sketch
+from playground.sketch.model import PassSpec, Sketch, kernels_of
 
 
 @dataclass
@@ -42,7 +43,11 @@ class Sections:
                 continue
             imgui.spacing()
             imgui.push_id(spec.name)
-            if memory.filter:
+            revealed = actions.reveal == spec.name
+            if revealed:
+                actions.reveal = ""
+                imgui.set_scroll_here_y(0.0)
+            if memory.filter or revealed:
                 imgui.set_next_item_open(True)
             if drawing.header(spec, section):
                 if not memory.filter:
@@ -108,7 +113,10 @@ class _Drawing:
         place = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
         imgui.get_window_draw_list().add_text(place, theme.packed(theme.ACCENT if ran else theme.DIM), text)
         if imgui.is_item_hovered():
-            imgui.set_tooltip("How often its kernels ran; green: for this very picture")
+            imgui.set_tooltip(
+                "How often its kernels ran; green: for this very picture\nRight click: its files"
+            )
+        _files(spec, self.actions)
         if section is not None:
             self._reset(spec.name, section.items)
         return opened
@@ -171,6 +179,22 @@ class _Drawing:
         note = f"{counted(len(paths), 'parameter')} back to the file's values"
         if cross(f"##reset {name}", note, high):
             self.actions.reset(name, paths)
+
+
+def _files(spec: PassSpec, actions: Actions) -> None:
+    """Draw the menu of a pass, under its bar: its files, to be opened in an editor."""
+    if not imgui.begin_popup_context_item("files"):
+        return
+    imgui.text_disabled(f"Files of {spec.name}")
+    for file in dict.fromkeys(f for _, kernel in kernels_of(spec.technique) for f in kernel.files if f):
+        imgui.push_id(file)
+        if imgui.menu_item_simple(f"Edit {Path(file).name}", editor_name()):
+            open_source(actions, Path(file))
+        imgui.set_item_tooltip(file)
+        if editor_name() and imgui.menu_item_simple(f"Edit {Path(file).name} here"):
+            open_source(actions, Path(file), here=True)
+        imgui.pop_id()
+    imgui.end_popup()
 
 
 def _steps(spec: PassSpec, actions: Actions) -> None:

@@ -103,6 +103,10 @@ class Window:
         """Close it at the end of this turn."""
         glfw.set_window_should_close(self._handle, True)
 
+    def stay(self) -> None:
+        """Take back that it was asked to close."""
+        glfw.set_window_should_close(self._handle, False)
+
     def wait(self, seconds: float) -> None:
         """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
         if seconds <= 0:

@@ -147,12 +147,11 @@ def test_what_a_driver_warns_of_is_told_in_the_kernel_s_lines(ctx: moderngl.Cont
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver warns of other things")
     wrapped = wrap(read(tmp_path, BODY.format("float a; return a;")), FRAGMENT)
-    program = compile_wrapped(ctx, wrapped)
-    (found,) = warnings_of(ctx, program, wrapped)
-    assert (found.severity, found.line, found.column) == ("warning", 5, 21)
-    assert "`a' used uninitialized" in found.message and found.file.endswith("k.glsl")
-    program.release()
-    clean = wrap(read(tmp_path, BODY.format("return level;")), FRAGMENT)
-    program = compile_wrapped(ctx, clean)
-    assert warnings_of(ctx, program, clean) == ()
-    program.release()
+    compile_wrapped(ctx, wrapped).release()
+    for _ in range(2):  # a text that is in the driver's cache by now is told of all the same
+        (found,) = warnings_of(ctx, wrapped)
+        assert (found.severity, found.line, found.column) == ("warning", 5, 21)
+        assert "`a' used uninitialized" in found.message and found.file.endswith("k.glsl")
+    assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return level;")), FRAGMENT)) == ()
+    assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return leve;")), FRAGMENT)) == ()
+    assert ctx.error == "GL_NO_ERROR"

@@ -1,0 +1,63 @@
+"""Open a file at a line where its user edits: another program, or a window of our own."""
+
+from __future__ import annotations
+
+import time
+from functools import lru_cache
+from pathlib import Path
+
+from playground.errors import Diagnostic, PlaygroundError
+from playground.live.actions import Actions
+from playground.live.editors import find_editor
+from playground.live.files import path_named
+from playground.live.texts import Editing, OpenText
+from playground.paths import shown
+
+_LOOK_AGAIN = 5.0  # [s]
+
+
+def open_problem(actions: Actions, diagnostic: Diagnostic, *, here: bool = False) -> None:
+    """Open the file that a mistake is in, at its place; ``here``: in a window of our own."""
+    if diagnostic.file:
+        open_source(actions, path_named(diagnostic.file), diagnostic.line, diagnostic.column, here=here)
+
+
+def open_place(actions: Actions, place: str) -> None:
+    """Open "file:line", as an include chain has it."""
+    name, _, line = place.rpartition(":")
+    open_source(actions, path_named(name or place), int(line) if name and line.isdigit() else 0)
+
+
+def open_source(actions: Actions, path: Path, line: int = 0, column: int = 0, *, here: bool = False) -> None:
+    """Open a file at a line and a column, both from 1; 0 where unknown."""
+    if not path.is_file():
+        actions.say(f"there is no file {shown(path)} to open")
+        return
+    if not here:
+        editor, complaint = find_editor()
+        if complaint:
+            actions.say(complaint)
+        if editor is not None and actions.opener.open(editor, path, line, column):
+            actions.say(f"opened {shown(path)} in {editor.name}")
+            return
+    known = next((wanted for wanted in actions.editing if wanted.text.path == path), None)
+    if known is None:
+        try:
+            known = Editing(OpenText.read(path))
+        except PlaygroundError as error:
+            actions.say(str(error))
+            return
+        actions.editing.append(known)
+    known.line, known.column, known.asked = max(line, 1), max(column, 1), True
+
+
+def editor_name() -> str:
+    """Return what a click on a place opens: "code", "vim"; "" for the window of our own."""
+    return _name_at(int(time.monotonic() / _LOOK_AGAIN))
+
+
+@lru_cache(maxsize=1)
+def _name_at(_: int) -> str:
+    """Look for the editor; a tooltip asks at every turn, and the whole PATH is searched."""
+    editor, _why = find_editor()
+    return editor.name if editor is not None else ""

@@ -1,0 +1,36 @@
+"""Find parameters that no code reads: moving them changes nothing."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from playground.errors import Diagnostic
+from playground.sketch.model import Kernel
+
+
+def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
+    """Return a warning for each parameter and input of a kernel's own file that nothing reads.
+
+    What its companion, a pragma or a macro reads counts as read. Uniforms of included files are
+    left alone, for a library serves many; so are sources and draws, whose uniforms the engine reads.
+    """
+    if kernel.kind in ("source", "draw"):
+        return ()
+    texts = [kernel.source] + ([kernel.companion.source] if kernel.companion is not None else [])
+    code = "\n".join([text.code for text in texts] + [line.pragma for text in texts for line in text.lines])
+    found = []
+    for name in [parameter.name for parameter in kernel.parameters] + [i.name for i in kernel.inputs]:
+        declared = rf"\buniform\b[^;\n]*?\b{re.escape(name)}\s*(?:=[^;\n]*)?;"
+        rest = re.sub(declared, "", code)
+        if re.search(rf"\b(?:\w+_)?{re.escape(name)}\b", rest):
+            continue
+        for line in kernel.source.lines:
+            match = re.search(declared, line.code)
+            if match and Path(line.file) == Path(kernel.source.path):
+                column = match.start() + match[0].index(name) + 1
+                found.append(
+                    line.diagnostic(f"nothing reads '{name}', so it has no effect", column, "warning")
+                )
+                break
+    return tuple(found)

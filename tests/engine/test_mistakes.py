@@ -1,0 +1,89 @@
+"""Every pass that does not compile is told of at once, each mistake once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.mistakes import all_mistakes
+from playground.engine.trial import Trial, TrySketch
+from playground.errors import PlaygroundError, ShaderError, SketchError
+from playground.sketch.load import load
+
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "./first"
+[[pass]]
+name = "other"
+use = "./second"
+[[pass]]
+name = "good"
+use = "./third"
+[view]
+use = "view/map"
+[view.inputs]
+shown = "height"
+"""
+KERNEL = """#include "both.glsl"
+#pragma kernel(output = "{name}:r32f")
+float kernel(ivec2 texel) {{ return {body}; }}
+"""
+
+
+def sketch_in(folder: Path, first: str, second: str, both: str = "0.0") -> Path:
+    (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    (folder / "both.glsl").write_text(f"float both() {{ return {both}; }}\n", encoding="utf-8")
+    for name, output, body in (
+        ("first", "height", first),
+        ("second", "other", second),
+        ("third", "good", "0.0"),
+    ):
+        (folder / f"{name}.glsl").write_text(KERNEL.format(name=output, body=body), encoding="utf-8")
+    return folder / "sketch.toml"
+
+
+def drawn(engine: Engine, path: Path) -> PlaygroundError:
+    sketch = load(path)
+    with pytest.raises(ShaderError) as caught:
+        engine.draw(sketch, size=(32, 18))
+    return all_mistakes(caught.value, engine, sketch, size=(32, 18))
+
+
+def files(error: PlaygroundError) -> list[str]:
+    return [Path(d.file).name for d in error.diagnostics if d.severity == "error"]
+
+
+def test_two_passes_that_fail_are_both_told_in_order(engine: Engine, tmp_path: Path) -> None:
+    found = files(drawn(engine, sketch_in(tmp_path, "first_name", "second_name")))
+    assert found[0] == "first.glsl" and set(found) == {"first.glsl", "second.glsl"}
+
+
+def test_a_pass_that_the_picture_does_not_need_is_told_too(engine: Engine, tmp_path: Path) -> None:
+    sketch = load(sketch_in(tmp_path, "missing", "missing"))
+    error = ShaderError("of another pass", file="elsewhere.glsl")
+    told = all_mistakes(error, engine, sketch, size=(32, 18))
+    assert files(told)[0] == "elsewhere.glsl" and set(files(told)[1:]) == {"first.glsl", "second.glsl"}
+
+
+def test_a_mistake_in_a_file_that_all_include_is_told_once(engine: Engine, tmp_path: Path) -> None:
+    found = drawn(engine, sketch_in(tmp_path, "both()", "both()", "missing_name")).diagnostics
+    assert len({(d.file, d.line, d.column, d.message) for d in found}) == len(found)
+    assert {Path(d.file).name for d in found} == {"both.glsl"}
+
+
+def test_an_error_of_another_kind_comes_back_as_it_is(any_engine: Engine, tmp_path: Path) -> None:
+    sketch = load(sketch_in(tmp_path, "0.0", "0.0"))
+    error = SketchError("not a shader's")
+    assert all_mistakes(error, any_engine, sketch, size=(32, 18)) is error
+
+
+def test_the_trial_tells_of_all(tmp_path: Path) -> None:
+    sketch = load(sketch_in(tmp_path, "first_name", "second_name"))
+    with Trial(limit_seconds=60.0) as trial:
+        report = trial.run(TrySketch(sketch))
+    assert report.error is not None
+    assert set(files(report.error)) == {"first.glsl", "second.glsl"}

@@ -1,0 +1,313 @@
+"""The list of what is wrong: what is in it, what a click and a key do, and the editor in the window."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.errors import Diagnostic, PlaygroundError, ShaderError
+from playground.live import code_window, errors_list, sources
+from playground.live.code_window import draw_code, unsaved
+from playground.live.editors import Editor
+from playground.live.errors_list import draw_errors
+from playground.live.problems import Problems, Warnings, passes_of
+from playground.sketch.load import load
+
+from .desk import Bare
+
+LAND = """// land.glsl -- hills
+#include "wave.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+uniform float spare = 0.5; //! slider(0, 1) Nothing
+float kernel(ivec2 texel) { return level * wave(vec2(texel)); }
+"""
+WAVE = "// wave.glsl -- a wave\nfloat wave(vec2 p) {\n    return 0.5 + 0.1 * sin(p.x);\n}\n"
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+[view.inputs]
+shown = "height"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name, text in {"land.glsl": LAND, "wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    for variable in ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR"):
+        monkeypatch.delenv(variable, raising=False)
+    return tmp_path
+
+
+def diagnostic(file: str, line: int, message: str, severity: str = "error") -> Diagnostic:
+    text = Path(file).read_text(encoding="utf-8").splitlines()[line - 1]
+    return Diagnostic(message, file, line, 3, severity, text)
+
+
+# ── the list itself ──────────────────────────────────────────────────────────
+
+
+def test_files_with_errors_come_first_and_the_words_are_the_terminal_s(folder: Path) -> None:
+    wrong = diagnostic("wave.glsl", 3, "this is wrong")
+    odd = diagnostic("land.glsl", 5, "this is odd", "warning")
+    problems, error = Problems(), ShaderError(diagnostics=[wrong])
+    problems.take(error, [odd, odd])
+    assert problems.all == (wrong, odd)
+    assert problems.headline() == "1 error, 1 warning in 2 files"
+    assert problems.text() == f"{error}\nwarning: {odd}"
+    assert problems.open
+
+
+def test_warnings_alone_do_not_open_it_and_it_closes_when_all_is_mended(folder: Path) -> None:
+    problems = Problems()
+    odd = diagnostic("land.glsl", 5, "this is odd", "warning")
+    problems.take(None, [odd])
+    assert not problems.open and problems.warnings == (odd,)
+    error = ShaderError(diagnostics=[diagnostic("wave.glsl", 3, "wrong")])
+    problems.take(error, [odd])
+    assert problems.open
+    problems.open = False
+    problems.take(error, [odd])
+    assert not problems.open, "folded by hand it stays"
+    problems.take(ShaderError(diagnostics=error.diagnostics), [odd])
+    assert problems.open, "a save that fails again opens it again"
+    problems.take(None, [odd])
+    assert not problems.open and problems.headline() == "1 warning"
+
+
+def test_stepping_goes_round(folder: Path) -> None:
+    problems = Problems()
+    problems.step(1)
+    assert problems.at == -1 and not problems.open, "there is nothing to look at"
+    problems.take(ShaderError(diagnostics=[diagnostic("wave.glsl", n, "wrong") for n in (1, 2, 3)]))
+    seen = []
+    for by in (1, 1, 1, 1, -1, -1):
+        problems.step(by)
+        seen.append(problems.at)
+    assert seen == [0, 1, 2, 0, 2, 1]
+    other = Problems()
+    other.take(ShaderError(diagnostics=[diagnostic("wave.glsl", n, "wrong") for n in (1, 2, 3)]))
+    other.step(-1)
+    assert other.at == 2
+
+
+def test_the_lines_around_are_those_of_the_file(folder: Path) -> None:
+    problems = Problems()
+    wrong = diagnostic("land.glsl", 4, "wrong")
+    lines = LAND.splitlines()
+    assert problems.lines_around(wrong) == [(n, lines[n - 1]) for n in range(2, 7)]
+    assert problems.lines_around(diagnostic("land.glsl", 1, "wrong")) == [
+        (n, lines[n - 1]) for n in (1, 2, 3)
+    ]
+    (folder / "land.glsl").write_text("// nothing of it is left\n", encoding="utf-8")
+    assert problems.lines_around(wrong) == [(4, lines[3])], "the line as it was, and no others"
+    assert problems.lines_around(Diagnostic("no place")) == []
+
+
+def test_a_warning_moves_with_its_line_and_goes_with_it(folder: Path) -> None:
+    odd = diagnostic("land.glsl", 5, "odd", "warning")
+    problems = Problems()
+    (folder / "land.glsl").write_text("// one more\n" + LAND, encoding="utf-8")
+    problems.take(None, [odd])
+    assert problems.warnings == (replace(odd, line=6),)
+    (folder / "land.glsl").write_text(LAND.replace("spare", "other"), encoding="utf-8")
+    problems.take(None, [odd])
+    assert problems.warnings == ()
+
+
+def test_the_sketch_s_own_kernels_are_looked_at_once(folder: Path) -> None:
+    asked: list[str] = []
+
+    def review(kernel: object) -> tuple[Diagnostic, ...]:
+        asked.append(Path(kernel.path).name)  # type: ignore[attr-defined]
+        return ()
+
+    warnings, sketch = Warnings(review), load(folder / "sketch.toml")
+    assert warnings.of(sketch) == []
+    for _ in range(3):
+        warnings.look()
+    (found,) = warnings.of(sketch)
+    assert asked == ["land.glsl"], "once, and the library's view not at all"
+    assert (found.line, found.severity) == (5, "warning") and "nothing reads 'spare'" in found.message
+    assert warnings.of(sketch.with_values({"height.level": 0.2})) == [found]
+    assert not warnings.waiting
+    assert passes_of(sketch, diagnostic("wave.glsl", 3, "wrong")) == ["height"]
+
+
+# ── on the screen ────────────────────────────────────────────────────────────
+
+
+class Desk(Bare):
+    """The panel with the list and the editor."""
+
+    def draw(self) -> None:
+        area = (330.0, 0.0, 950.0, 720.0)
+        draw_code(self.actions, self.theme, area)
+        self.actions.problems.take(self.session.error)
+        draw_errors(self.actions, self.theme, area)
+        super().draw()
+
+
+@pytest.fixture
+def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
+    made = Desk(any_engine, folder / "sketch.toml")
+    for name in ("small_button", "text_link", "input_text_multiline"):
+        made._watch(imgui, name)
+    yield made
+    made.close()
+
+
+def broken(desk: Desk, folder: Path) -> PlaygroundError:
+    (folder / "wave.glsl").write_text(WAVE.replace("sin", "sine"), encoding="utf-8")
+    desk.session.reload()
+    desk.turn(4)
+    assert desk.session.error is not None
+    return desk.session.error
+
+
+def test_an_error_is_listed_copied_folded_and_gone_when_mended(desk: Desk, folder: Path) -> None:
+    assert not any("##place" in label for label in desk.places)
+    error = broken(desk, folder)
+    assert "wave.glsl:3:" in next(label for label in desk.places if label.endswith("##place"))
+    assert any(label.startswith("land.glsl:2##chain") for label in desk.places)
+    desk.click("Copy##errors")
+    assert desk.clipboard == str(error)
+    desk.click("Fold##errors")
+    assert not desk.actions.problems.open
+    desk.click(next(label for label in desk.places if label.endswith("##badge")))
+    assert desk.actions.problems.open
+    (folder / "wave.glsl").write_text(WAVE, encoding="utf-8")
+    desk.session.reload()
+    desk.turn(2)
+    desk.places.clear()
+    desk.turn(2)
+    assert not any("##" in label and ("badge" in label or "place" in label) for label in desk.places)
+
+
+def test_the_words_can_be_selected(desk: Desk, folder: Path) -> None:
+    broken(desk, folder)
+    message = desk.session.error.diagnostics[0].message  # type: ignore[union-attr]
+    desk.click("##message", 0.01)
+    desk.key(imgui.Key.mod_ctrl, imgui.Key.a)
+    desk.key(imgui.Key.mod_ctrl, imgui.Key.c)
+    assert desk.clipboard in [d.message for d in desk.session.error.diagnostics], message  # type: ignore[union-attr]
+
+
+def test_f8_steps_through_them(desk: Desk, folder: Path) -> None:
+    broken(desk, folder)
+    count = len(desk.actions.problems.all)
+    assert count > 1
+    desk.key(imgui.Key.f8)
+    desk.key(imgui.Key.f8)
+    assert desk.actions.problems.at == 1
+    desk.key(imgui.Key.mod_shift, imgui.Key.f8)
+    desk.key(imgui.Key.mod_shift, imgui.Key.f8)
+    assert desk.actions.problems.at == count - 1
+
+
+def test_a_click_on_the_place_starts_the_editor(
+    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[tuple[str, Path, int, int]] = []
+    monkeypatch.setattr(sources, "find_editor", lambda: (Editor(("code",)), ""))
+
+    def start(editor: Editor, file: Path, line: int, column: int) -> bool:
+        told.append((editor.name, file, line, column))
+        return True
+
+    monkeypatch.setattr(desk.actions.opener, "open", start)
+    broken(desk, folder)
+    first = desk.actions.problems.all[0]
+    desk.click(f"{first.place}##place")
+    assert told == [("code", folder / "wave.glsl", 3, first.column)]
+    assert not desk.actions.editing
+    desk.turn()
+    desk.click(next(label for label in desk.places if "##chain" in label))
+    assert told[-1] == ("code", folder / "land.glsl", 2, 0)
+
+
+def test_without_an_editor_it_opens_here_is_edited_and_saved(
+    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sources, "find_editor", lambda: (None, ""))
+    broken(desk, folder)
+    first = desk.actions.problems.all[0]
+    desk.click(f"{first.place}##place")
+    (editing,) = desk.actions.editing
+    view = code_window._view_of(editing)
+    place = view.editor.get_main_cursor_position()
+    assert (place.line, place.index) == (2, first.column - 1)
+    assert view.editor.has_markers() and not unsaved(desk.actions)
+    desk.type("// ")
+    assert unsaved(desk.actions) == ["wave.glsl"]
+    wanted = view.editor.get_text()
+    desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert (folder / "wave.glsl").read_text(encoding="utf-8") == wanted != WAVE
+    assert not unsaved(desk.actions)
+    view.editor.undo()
+    desk.turn(2)
+    assert unsaved(desk.actions), "what was saved is no longer what is seen"
+
+
+def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) -> None:
+    wave = folder / "wave.glsl"
+    sources.open_source(desk.actions, wave, 4, 1, here=True)
+    desk.turn(3)
+    desk.type("// mine ")
+    theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
+    wave.write_text(theirs, encoding="utf-8")
+    desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert wave.read_text(encoding="utf-8") == theirs, "not overwritten"
+    desk.turn(3)
+    desk.click("Merge both")
+    assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
+    assert not unsaved(desk.actions)
+
+
+@pytest.mark.parametrize(
+    ("button", "mine", "open_after"), [("Save and close", True, 0), ("Close", False, 0), ("Stay", False, 1)]
+)
+def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_after: int) -> None:
+    sources.open_source(desk.actions, folder / "wave.glsl", 4, 1, here=True)
+    desk.turn(3)
+    desk.type("// mine ")
+    code_window._view_of(desk.actions.editing[0]).closing = True
+    desk.turn(3)
+    desk.click(button)
+    assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine
+    assert len(desk.actions.editing) == open_after
+
+
+@pytest.mark.parametrize(("button", "quits"), [("Save and quit", True), ("Quit", True), ("Stay", False)])
+def test_quitting_asks(desk: Desk, folder: Path, button: str, quits: bool) -> None:
+    sources.open_source(desk.actions, folder / "wave.glsl", 4, 1, here=True)
+    desk.turn(3)
+    desk.type("// mine ")
+    desk.actions.leaving = True
+    desk.turn(3)
+    desk.click(button)
+    assert desk.quits == quits
+    assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == (button == "Save and quit")
+
+
+def test_a_file_that_is_gone_is_a_sentence(desk: Desk, folder: Path) -> None:
+    sources.open_source(desk.actions, folder / "gone.glsl", here=True)
+    assert desk.actions.notices[-1].text == "there is no file gone.glsl to open"
+    assert not desk.actions.editing
+
+
+def test_nothing_wrong_draws_nothing(desk: Desk) -> None:
+    desk.turn(2)
+    assert desk.actions.problems.all == () and errors_list.MOST > 0
+    assert not any("badge" in label for label in desk.places)
