@@ -238,7 +238,7 @@ class Live:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch))
+        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
         draw_errors(actions, window.theme, area)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)

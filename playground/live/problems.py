@@ -13,6 +13,8 @@ from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.live.files import path_named
 from playground.paths import GLSL
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
+from playground.sketch.places import root_of
+from playground.sketch.techniques import read_kernel
 from playground.sketch.unread import unread
 
 AROUND = 2
@@ -29,6 +31,7 @@ class Problems:
     at: int = -1  # which is looked at; -1: none yet
     moved: bool = False  # it was moved to another, which must come into sight
     _error: PlaygroundError | None = None
+    _also: tuple[Diagnostic, ...] = ()  # mistakes in files that were not come to
     _texts: dict[Path, tuple[object, list[str]]] = field(default_factory=dict)
 
     @property
@@ -36,9 +39,19 @@ class Problems:
         """Everything, file by file: files with errors first, in each the errors first."""
         return tuple(d for _, mine in self.by_file() for d in mine)
 
-    def take(self, error: PlaygroundError | None, warnings: Iterable[Diagnostic] = ()) -> None:
-        """Take in what is wrong now. A new error opens the list; mended, an open list closes."""
-        told = () if error is None else error.diagnostics
+    def take(
+        self,
+        error: PlaygroundError | None,
+        warnings: Iterable[Diagnostic] = (),
+        sketch: Sketch | None = None,
+    ) -> None:
+        """Take in what is wrong now. A new error opens the list; mended, an open list closes.
+
+        ``sketch`` is the one that is shown: what else of its files cannot be read is told as well.
+        """
+        if error is not self._error:
+            self._also = () if error is None else unreadable(sketch)
+        told = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
         errors = tuple(d for d in told if d.severity == "error")
         mild = [*(d for d in told if d.severity != "error"), *warnings]
         known = {(d.file, d.line, d.message) for d in errors}
@@ -156,6 +169,23 @@ class Warnings:
         if self.waiting:
             text = self.waiting.pop()
             self._found[text] = (*unread(self._kernels[text]), *self._review(self._kernels[text]))
+
+
+def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
+    """Return what is wrong with the headers of a sketch's own kernels, as their files are now.
+
+    Whoever loads a sketch stops at the first.
+    """
+    found: dict[Diagnostic, None] = {}
+    paths = {k.path for _, k in kernels_of(sketch.graph)} if sketch is not None else set()
+    for path in sorted(Path(name) for name in paths):
+        if path.is_relative_to(GLSL) or not path.is_file():
+            continue
+        try:
+            read_kernel(path, root_of(path))
+        except PlaygroundError as error:
+            found |= dict.fromkeys(error.diagnostics)
+    return tuple(found)
 
 
 def passes_of(sketch: Sketch | None, diagnostic: Diagnostic) -> list[str]:

@@ -10,7 +10,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.errors import Diagnostic, PlaygroundError, ShaderError
+from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
 from playground.live import code_window, errors_list, sources
 from playground.live.code_window import draw_code, unsaved
 from playground.live.editors import Editor
@@ -113,6 +113,18 @@ def test_the_lines_around_are_those_of_the_file(folder: Path) -> None:
     (folder / "land.glsl").write_text("// nothing of it is left\n", encoding="utf-8")
     assert problems.lines_around(wrong) == [(4, lines[3])], "the line as it was, and no others"
     assert problems.lines_around(Diagnostic("no place")) == []
+
+
+def test_headers_that_cannot_be_read_are_told_beside_the_first(folder: Path) -> None:
+    sketch = load(folder / "sketch.toml")
+    (folder / "land.glsl").write_text(LAND.replace("slider(0, 1) How", "slyder(0, 1) How"), encoding="utf-8")
+    problems, error = Problems(), SketchError("another file is wrong", file="sketch.toml", line=2)
+    problems.take(error, (), sketch)
+    assert [(d.file, d.line) for d in problems.all] == [("sketch.toml", 2), ("land.glsl", 4)]
+    with pytest.raises(PlaygroundError) as caught:
+        load(folder / "sketch.toml")
+    problems.take(caught.value, (), sketch)
+    assert [(d.file, d.line) for d in problems.all] == [("land.glsl", 4)], "once"
 
 
 def test_a_warning_moves_with_its_line_and_goes_with_it(folder: Path) -> None:
