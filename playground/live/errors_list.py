@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import Diagnostic, counted
 from playground.live import theme
 from playground.live.actions import Actions
-from playground.live.excerpt import short_place
+from playground.live.excerpt import numbered, short_place
 from playground.live.overlay import Area
 from playground.live.problems import passes_of
 from playground.live.sources import editor_name, open_place, open_problem
@@ -143,8 +143,15 @@ def _diagnostic(
 
     ``again``: the one before is on the same line, so that its lines need not be shown twice.
     """
+    looked_at, heights = actions.problems.at == place, actions.problems.heights
+    start, size = imgui.get_cursor_screen_pos(), (place, imgui.get_content_region_avail().x)
+    above = imgui.get_window_pos().y
+    known = heights.get(size)
+    away = start.y > above + imgui.get_window_height() or (known is not None and start.y + known < above)
+    if known is not None and away and not actions.problems.moved and not imgui.is_any_item_active():
+        imgui.dummy(ImVec2(1, known))
+        return
     imgui.spacing()
-    looked_at = actions.problems.at == place
     top = imgui.get_cursor_screen_pos()
     if looked_at and actions.problems.moved:
         imgui.set_scroll_here_y(0.0)
@@ -162,6 +169,7 @@ def _diagnostic(
             if imgui.text_link(f"{short_place(included, folder)}##chain {at}"):
                 open_place(actions, included)
     imgui.end_group()
+    heights[size] = imgui.get_item_rect_max().y - start.y
     if looked_at:
         low = ImVec2(top.x - 6 * look.scale, top.y)
         high = ImVec2(top.x - 3 * look.scale, imgui.get_item_rect_max().y)
@@ -194,18 +202,9 @@ def _links(diagnostic: Diagnostic, actions: Actions, look: Theme, folder: str) -
 
 def _code(diagnostic: Diagnostic, lines: list[tuple[int, str]], look: Theme) -> None:
     """Draw lines of the file with their numbers, a mark under the column."""
-    wide = len(str(lines[-1][0]))
-    indent = min((len(text) - len(text.lstrip()) for _, text in lines if text.strip()), default=0)
-    rows: list[str] = []
-    wrong = 0
-    for number, text in lines:
-        if number == diagnostic.line:
-            wrong = len(rows)
-        rows.append(f"{number:>{wide}} | {text.rstrip()[indent:].expandtabs(4)}".rstrip())
-        if number == diagnostic.line and diagnostic.column:
-            before = len(text[: diagnostic.column - 1][indent:].expandtabs(4))
-            rows.append(f"{' ' * wide} | {' ' * before}^")
     with look.font(look.code):
+        room = int((imgui.get_content_region_avail().x - 4 * look.scale) / imgui.calc_text_size("M").x)
+        rows, wrong = numbered(lines, diagnostic.line, diagnostic.column, room)
         line = imgui.get_text_line_height()
         low = imgui.get_cursor_screen_pos()
         low = ImVec2(low.x, low.y + wrong * line)

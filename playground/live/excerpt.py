@@ -1,4 +1,4 @@
-"""Cut an offending line so that it fits, with its column in sight."""
+"""Show the lines around a mistake with their numbers, cut so that they fit, the column in sight."""
 
 from __future__ import annotations
 
@@ -7,25 +7,37 @@ from pathlib import Path
 _BEFORE = 0.6  # share of the room that may lie before the column
 
 
-def cut(line: str, column: int, room: int) -> tuple[str, int]:
-    """Return (the line without its indentation, cut to ``room`` characters; where its column is, from 0).
+def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -> tuple[list[str], int]:
+    """Return (lines of a file as rows, a mark below the wrong one's column; which row is wrong, from 0).
 
-    ``column`` counts from 1; with 0 there is none, and -1 comes back. Tabs become four spaces.
+    ``lines`` are (number, text); ``wrong`` is a number, ``column`` counts from 1, 0 where it is
+    unknown; rows have about ``room`` characters. What all lines are indented by goes, tabs become
+    four spaces, and long lines are moved to the left together until the column is in sight.
     """
-    whole = line.rstrip().expandtabs(4)
-    indent = len(whole) - len(whole.lstrip())
-    text = whole[indent:]
-    mark = max(len(line[: column - 1].expandtabs(4)) - indent, 0) if column else -1
-    room = max(room, 8)
-    if len(text) <= room:
-        return text, mark
-    start = 0
-    if mark > room * _BEFORE:
-        start = min(mark - int(room * _BEFORE), len(text) - room + 1)
-        text, mark = "…" + text[start + 1 :], mark - start
-    if len(text) > room:
-        text = text[: room - 1] + "…"
-    return text, mark
+    digits = len(str(lines[-1][0]))
+    texts = {number: text.rstrip().expandtabs(4) for number, text in lines}
+    indent = min((len(text) - len(text.lstrip()) for text in texts.values() if text), default=0)
+    raw = dict(lines).get(wrong, "")
+    mark = max(len(raw[: column - 1].expandtabs(4)) - indent, 0) if column else -1
+    room = max(room - digits - 3, 8)
+    longest = max(len(text) for text in texts.values()) - indent
+    shift = 0
+    if mark > room * _BEFORE and longest > room:
+        shift = min(mark - int(room * _BEFORE), longest - room + 1)
+    rows: list[str] = []
+    at = 0
+    for number, whole in texts.items():
+        text = whole[indent:]
+        if shift and text:
+            text = f"…{text[shift + 1 :]}"
+        if len(text) > room:
+            text = f"{text[: room - 1]}…"
+        if number == wrong:
+            at = len(rows)
+        rows.append(f"{number:>{digits}} | {text}".rstrip())
+        if number == wrong and mark >= 0:
+            rows.append(f"{' ' * digits} | {' ' * (mark - shift)}^")
+    return rows, at
 
 
 def short_place(place: str, folder: str) -> str:

@@ -29,6 +29,7 @@ class Problems:
     warnings: tuple[Diagnostic, ...] = ()
     open: bool = False
     at: int = -1  # which is looked at; -1: none yet
+    heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
     moved: bool = False  # it was moved to another, which must come into sight
     _error: PlaygroundError | None = None
     _also: tuple[Diagnostic, ...] = ()  # mistakes in files that were not come to
@@ -55,6 +56,7 @@ class Problems:
         errors = tuple(d for d in told if d.severity == "error")
         mild = [*(d for d in told if d.severity != "error"), *warnings]
         known = {(d.file, d.line, d.message) for d in errors}
+        before = self.errors, self.warnings
         self.warnings = tuple(
             found
             for d in dict.fromkeys(mild)
@@ -66,6 +68,8 @@ class Problems:
             self.open = error is not None
         elif not self.errors and not self.warnings:
             self.open, self.at = False, -1
+        if before != (self.errors, self.warnings):
+            self.heights.clear()
 
     def by_file(self) -> list[tuple[str, list[Diagnostic]]]:
         """Return (file, what is wrong with it), each file once; "" stands for no file."""

@@ -10,7 +10,7 @@ import pytest
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
-from playground.live.excerpt import cut, short_place
+from playground.live.excerpt import numbered, short_place
 from playground.live.gesture import Gesture, steered
 from playground.live.numbers import decimals, format_of, snapped
 from playground.live.pictures import save_new
@@ -65,18 +65,20 @@ def test_a_dot_outside_the_disc_is_on_the_horizon() -> None:
     assert direction_at(7.0, 0.0) == pytest.approx((90.0, 0.0))
 
 
-def test_a_short_line_loses_only_its_indentation() -> None:
-    assert cut("    float x = foo;", 15, 40) == ("float x = foo;", 10)
-    assert cut("\tfloat x = foo;", 12, 40) == ("float x = foo;", 10)
-    assert cut("float x = foo;", 0, 40) == ("float x = foo;", -1)
+def test_lines_are_numbered_their_indentation_goes_and_a_mark_is_below_the_column() -> None:
+    lines = [(9, "    float a;"), (10, "\tfloat x = foo;"), (11, "")]
+    rows, wrong = numbered(lines, 10, 12, 60)
+    assert rows == [" 9 | float a;", "10 | float x = foo;", "   |           ^", "11 |"]
+    assert wrong == 1
+    assert numbered(lines, 10, 0, 60)[0] == [" 9 | float a;", "10 | float x = foo;", "11 |"]
 
 
-@pytest.mark.parametrize("column", [1, 30, 60, 119, 120])
+@pytest.mark.parametrize("column", [1, 40, 120, 200])
 def test_a_long_line_is_cut_around_its_column(column: int) -> None:
-    line = "".join(chr(ord("a") + i % 26) for i in range(120))
-    text, mark = cut(line, column, 30)
-    assert len(text) <= 30
-    assert text[mark] == line[column - 1]
+    line = "".join(chr(97 + n % 26) for n in range(200))
+    rows, wrong = numbered([(4, "short"), (5, line), (6, "")], 5, column, 44)
+    assert all(len(row) <= 44 for row in rows)
+    assert rows[wrong][rows[wrong + 1].index("^")] == line[column - 1]
 
 
 def test_places_are_named_from_the_sketchs_folder(tmp_path: Path) -> None:
