@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from playground.live.actions import Actions
 from playground.live.saving import save_values
+from playground.live.sources import edit_problem
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.none, "?", "show or hide these keys", "keys", lambda a: a.toggle_keymap(), letter="?"),
     Key(imgui.Key.f1, "F1", "show or hide these keys", "", lambda a: a.toggle_keymap()),
     Key(imgui.Key.f8, "F8, Shift+F8", "next error, previous error", "", lambda a: _step(a)),
+    Key(imgui.Key.e, "E", "edit the file of the error looked at", "", edit_problem),
     Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),

@@ -22,6 +22,15 @@ def open_problem(actions: Actions, diagnostic: Diagnostic, *, here: bool = False
         open_source(actions, path_named(diagnostic.file), diagnostic.line, diagnostic.column, here=here)
 
 
+def edit_problem(actions: Actions) -> None:
+    """Open the file of the mistake that is looked at, at first of the first."""
+    problems = actions.problems
+    if not problems.all:
+        actions.say("nothing is wrong, so there is nothing to edit")
+        return
+    open_problem(actions, problems.all[max(problems.at, 0)])
+
+
 def open_place(actions: Actions, place: str) -> None:
     """Open "file:line", as an include chain has it."""
     name, _, line = place.rpartition(":")

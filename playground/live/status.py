@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.live.actions import Actions
+from playground.live.code_window import unsaved
 
 VARIABLE = "PLAYGROUND_STATUS"
 
@@ -42,6 +43,8 @@ class Status:
             "stage": session.stage.name,
             "notices": [n.text for n in actions.notices],
             "playing": session.clock.playing,
+            "editing": [e.text.path.name for e in actions.editing],
+            "unsaved": unsaved(actions),
             "map": session.map.ref if session.map else "",
             "steps": dict(session.steps),
             "saved": str(actions.saved or ""),

@@ -1,0 +1,92 @@
+"""Errors in a real window: the user's editor is started at the line, the one in the window mends the file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .screen import ON_LINUX, Program, Screen
+
+RUN = """
+import sys
+from playground.live.app import run
+sys.exit(run(sys.argv[1], size=(800, 600), time_limit=300))
+"""
+LAND = """// land.glsl -- hills
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    return sin(0.3 * float(texel.x));
+}
+"""
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+[view.inputs]
+shown = "height"
+"""
+
+pytestmark = ON_LINUX
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
+    made = Screen(tmp_path_factory.mktemp("screen"), 800, 600)
+    yield made
+    made.close()
+
+
+def opened(screen: Screen, folder: Path) -> Program:
+    (folder / "land.glsl").write_text(LAND, encoding="utf-8")
+    (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    made = Program(screen, folder, [sys.executable, "-c", RUN, str(folder)], folder)
+    made.wait(lambda now: now["draws"] > 0)
+    screen.do("mousemove", 500, 100)
+    return made
+
+
+def test_a_key_starts_the_editor_at_the_line(
+    screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = tmp_path / "told.txt"
+    script = tmp_path / "editor.py"
+    script.write_text("import pathlib, sys\npathlib.Path(sys.argv[1]).write_text('|'.join(sys.argv[2:]))\n")
+    command = f"{sys.executable} {script} {told} {{file}} {{line}} {{column}}"
+    monkeypatch.setenv("PLAYGROUND_EDITOR", command)
+    window = opened(screen, tmp_path)
+    try:
+        (tmp_path / "land.glsl").write_text(LAND.replace("sin", "sine"), encoding="utf-8")
+        window.wait(lambda now: now["error"])
+        screen.do("key", "e")
+        window.wait(lambda _: told.exists() and told.read_text())
+        assert told.read_text() == f"{tmp_path / 'land.glsl'}|4|12"
+        window.wait(lambda now: any("opened land.glsl in" in text for text in now["notices"]))
+    finally:
+        window.close()
+
+
+@pytest.mark.slow
+def test_the_editor_in_the_window_mends_the_file(
+    screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PLAYGROUND_EDITOR", "builtin")
+    window = opened(screen, tmp_path)
+    try:
+        good = window.now()["picture"]
+        (tmp_path / "land.glsl").write_text(LAND.replace("sin(", "in("), encoding="utf-8")
+        window.wait(lambda now: now["error"])
+        screen.do("key", "e")
+        window.wait(lambda now: now["editing"] == ["land.glsl"])
+        screen.do("key", "s")  # the cursor stands before "in"
+        window.wait(lambda now: now["unsaved"] == ["land.glsl"])
+        screen.do("keydown", "ctrl", "sleep", 0.3, "key", "s", "sleep", 0.3, "keyup", "ctrl")
+        window.wait(lambda now: not now["error"] and now["picture"] == good)
+        assert (tmp_path / "land.glsl").read_text(encoding="utf-8") == LAND
+    finally:
+        window.close()
