@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.api import headless
-from playground.capture.video import QUALITY, Video
+from playground.capture.video import QUALITY, Video, alpha_note
 from playground.engine.engine import Engine, opened
 from playground.errors import ParameterError
 from playground.sketch.keyframes import duration
@@ -103,17 +103,21 @@ def write_film(
     *,
     quality: str = QUALITY,
     done: Callable[[], None] = lambda: None,
+    say: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write a film as a video by the path's ending, whole or not at all, and return its path.
 
-    Each picture is encoded as it is drawn; ``done`` is called after each. The file is read
-    back before it takes its name: the pictures in it are counted. See ``Video`` for what is
-    refused, and for what is left of it when it is interrupted.
+    Each picture is encoded as it is drawn; ``done`` is called after each, ``say`` with a
+    sentence where alpha was dropped. The file is read back before it takes its name: the
+    pictures in it are counted. See ``Video`` for what is refused, and for what is left of it
+    when it is interrupted.
     """
     with Video(path, film.size, film.fps, film.count, quality=quality) as video:
         for picture in frames(engine, film):
             video.add(picture)
             done()
+    if note := alpha_note(video.dropped, film.count, "the video"):
+        say(note)
     return Path(path)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.capture.sweep import USUAL_STEPS, Swept, read_sweep, swept
-from playground.capture.video import QUALITY, Video
+from playground.capture.video import QUALITY, Video, alpha_note, has_alpha
 from playground.engine.engine import Engine, opened
 from playground.errors import ParameterError
 from playground.images.files import write_png
@@ -103,9 +103,23 @@ def write_sheet(
     size: tuple[int, int] = USUAL_SIZE,
     time: float = 0.0,
     done: Callable[[], None] = lambda: None,
+    say: Callable[[str], None] = lambda _: None,
 ) -> Path:
-    """Write a contact sheet as a PNG, whole or not at all, and return its path."""
-    write_png(path, sheet(rows, _counted(pictures(engine, rows, size, time), done)))
+    """Write a contact sheet as a PNG, whole or not at all, and return its path.
+
+    ``done`` is called after each picture, ``say`` with a sentence where alpha was dropped.
+    """
+    dropped = 0
+
+    def told() -> Iterator[NDArray[np.uint8]]:
+        nonlocal dropped
+        for picture in _counted(pictures(engine, rows, size, time), done):
+            dropped += has_alpha(picture)
+            yield picture
+
+    write_png(path, sheet(rows, told()))
+    if note := alpha_note(dropped, sum(map(len, rows)), "a sheet"):
+        say(note)
     return Path(path)
 
 
@@ -119,11 +133,17 @@ def write_sweep_film(
     time: float = 0.0,
     quality: str = QUALITY,
     done: Callable[[], None] = lambda: None,
+    say: Callable[[str], None] = lambda _: None,
 ) -> Path:
-    """Write the pictures of a sweep as a video, one after another; arguments as for ``Video``."""
+    """Write the pictures of a sweep as a video, one after another.
+
+    Arguments as for ``Video`` and ``write_sheet``.
+    """
     with Video(path, size, fps, sum(map(len, rows)), quality=quality) as video:
         for picture in _counted(pictures(engine, rows, size, time), done):
             video.add(picture)
+    if note := alpha_note(video.dropped, video.count, "the video"):
+        say(note)
     return Path(path)
 
 

@@ -3,7 +3,7 @@
 PyAV brings FFmpeg's encoders. The pictures are sRGB: they become BT.709 Y'CbCr of limited
 range, and the file says so, which every player shows as it was drawn; each second pixel has
 a colour of its own, all have their brightness. A GIF has 256 colours a picture, chosen for
-each. Alpha is dropped: the pictures of a view are opaque.
+each. Alpha is dropped, and counted: ``Video.dropped``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.errors import ContextError, DataError, ParameterError, nearest
+from playground.errors import ContextError, DataError, ParameterError, counted, nearest
 from playground.images.endings import VIDEO_ENDINGS
 from playground.images.files import reason
 from playground.paths import shown
@@ -66,6 +66,7 @@ class Video:
         self.path = Path(path).expanduser()
         self.size, self.fps, self.count = size, fps, count
         self.added = 0
+        self.dropped = 0  # pictures so far whose alpha was below one somewhere
         self._ending = check_video(self.path, size, fps, quality)
         self._av = _pyav()
         self._temporary = self.path.with_name(f".{self.path.name[:40]}.{secrets.token_hex(6)}.part")
@@ -92,6 +93,7 @@ class Video:
 
     def add(self, picture: NDArray[np.uint8]) -> None:
         """Encode the next picture, (height, width, 3 or 4) bytes, top row first, sRGB."""
+        self.dropped += has_alpha(picture)
         frame = self._indexed(picture) if self._ending == ".gif" else self._yuv(picture)
         frame.pts, frame.time_base = self.added, 1 / self.fps
         self._mux(frame)
@@ -172,6 +174,19 @@ class Video:
         path = self.path.with_name(f"{self.path.stem}-first-{self.added}{self.path.suffix}")
         self._finish(path, self.added)
         return path
+
+
+def has_alpha(picture: NDArray[np.uint8]) -> bool:
+    """Say whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
+    return picture.shape[2] == 4 and bool((picture[..., 3] < 255).any())
+
+
+def alpha_note(dropped: int, count: int, what: str) -> str:
+    """Return a sentence on pictures whose alpha a film or sheet could not keep; "" for none."""
+    if not dropped:
+        return ""
+    some = "every picture" if dropped == count else f"{dropped} of {counted(count, 'picture')}"
+    return f"{what} is opaque: the alpha of {some} was dropped; PNG files keep it (--frames)"
 
 
 def check_video(path: Path, size: tuple[int, int], fps: Fraction, quality: str) -> str:

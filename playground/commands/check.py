@@ -21,7 +21,9 @@ HELP = help_text(
     "Check shaders and sketches.\n\n"
     "Compiles every kernel by both drivers, loads every sketch, draws a small frame of each. A folder is"
     " searched for .glsl, .comp, .frag and .toml. What hangs or crashes the driver is stopped and"
-    " reported. Where there are no compute shaders, they are skipped. Exit status 1 when anything fails.",
+    " reported, and so are NaN and infinity: any in a sketch; in a technique, which is drawn on"
+    " stand-ins, a texture of nothing else. Where there are no compute shaders, they are skipped. Exit"
+    " status 1 when anything fails.",
     "playground check my-land",
     "playground check land.glsl sketch.toml",
     "playground check --json glsl | jq 'select(.ok | not)'",

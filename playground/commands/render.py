@@ -258,6 +258,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         else:
             with busy(f"rendering {sketch.name}"):
                 _draw(engine, picture, moment, size, target)
+            _say_not_finite(engine)
         if picture.profile:
             _print_profile(engine)
     if picture.output != "-":
@@ -283,6 +284,14 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
         frame.save(target)
+
+
+def _say_not_finite(engine: Engine) -> None:
+    """Say which pass made NaN or infinity, if any did: the picture may show nothing of it."""
+    found = [one for one in engine.not_finite_by_pass() if one is not None]
+    if found:
+        more = f" (first of {len(found)} passes)" if len(found) > 1 else ""
+        note(f"{found[0]}{more}")
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path, piped: bool) -> None:

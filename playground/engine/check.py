@@ -4,6 +4,9 @@ A kernel is drawn on a stage of its own: stand-in textures for its inputs, a sta
 picture for files that nothing names, and a view that only copies, so that a mistake
 elsewhere cannot pass for one of its own. What is drawn is drawn in the trial child,
 where it can crash or hang.
+
+Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
+texture holds nothing else, for stand-ins may be what it has no answer to.
 """
 
 from __future__ import annotations
@@ -131,7 +134,7 @@ class _Check:
             view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
             graph = Graph(kernel.name, str(self.path), (view,))
             sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
-            self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch)))
+            self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
             raise SketchError(
                 f"a companion runs in place of {self.path.stem}.glsl, which is missing", file=shown(self.path)
@@ -155,7 +158,7 @@ class _Check:
             make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
             make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
-        self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch)))
+        self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any"))
 
     # ── trying ───────────────────────────────────────────────────────────────
 
@@ -187,7 +190,7 @@ class _Check:
         return read_technique(f"./{path.stem}", path.parent, self.root)
 
     def request(self, technique: Technique, drivers: tuple[str, ...]) -> TrySketch:
-        return TrySketch(self.stage(technique), _FRAME, drivers=drivers)
+        return TrySketch(self.stage(technique), _FRAME, drivers=drivers, refuses="all")
 
     def stage(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to stand-ins."""

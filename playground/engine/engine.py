@@ -270,8 +270,23 @@ class Engine:
         Ask before the next frame is drawn. What it costs, and what it leaves out: see
         ``engine.finite``.
         """
-        with self.borrowed():
-            return self._finite.first()
+        return self._finite.first()
+
+    def not_finite_by_pass(self) -> Iterator[NotFinite | None]:
+        """Look at the last frame's passes one by one, in the order in which they ran, as ``not_finite`` does.
+
+        Yields after each what is not finite in it, if anything; another frame ends it.
+        """
+        return self._finite.looks()
+
+    def recall(self, plan: Plan) -> None:
+        """Have ``plan`` and ``results`` be those of an earlier frame again; what is kept of it does not run.
+
+        What ran for the last frame, and what it took, stays as it was.
+        """
+        ran, texels, times = self.ran, self.texels, self.times
+        self._texture(plan, next(iter(plan.flat.outputs["view"].values())))
+        self.ran, self.texels, self.times = ran, texels, times
 
     def fingerprint(
         self,

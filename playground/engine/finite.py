@@ -24,7 +24,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.plan import Step, Turns, every_node
+from playground.engine.plan import Plan, Step, Turns, every_node
 from playground.engine.results import Result, Wired
 from playground.gpu.textures import read_raw, split_format
 from playground.gpu.wrap import FRAGMENT
@@ -58,6 +58,13 @@ class NotFinite:
         where = f"pass '{self.path}', output '{self.output}': {self.value} at texel ({x}, {y})"
         return f"{where} from the south-west corner; {self.count} of {whole} texels are not finite"
 
+    def everywhere(self) -> str:
+        """Say it of a texture in which no texel is finite."""
+        where = f"pass '{self.path}', output '{self.output}'"
+        return (
+            f"{where}: none of its {self.size[0] * self.size[1]} texels is finite; the first is {self.value}"
+        )
+
 
 class FiniteCheck:
     """Looks at the textures of an engine's frames; remembers which it has seen."""
@@ -70,23 +77,30 @@ class FiniteCheck:
         self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
 
     def first(self) -> NotFinite | None:
-        """Return what is not finite in the first such texture of the engine's last frame; None if all is.
+        """Return what is not finite in the first such texture of the engine's last frame; None if all is."""
+        return next((found for found in self.looks() if found is not None), None)
 
-        For ``Engine.not_finite``, which has the context current.
+    def looks(self) -> Iterator[NotFinite | None]:
+        """Look at the engine's last frame, a pass at a time: yield after each what is not finite in it.
+
+        Of a pass with several such outputs, the first. It ends early if another frame is drawn meanwhile.
         """
         self.looked_at = 0
-        results = self.engine.results
-        for step, within in _steps(self.engine):
+        engine, plan = self.engine, self.engine.plan
+        results = engine.results
+        for step, within in _steps(plan):
+            if engine.plan is not plan or engine.results is not results:
+                return
             result = results.get(step.path)
             if result is None:
                 continue
             turn, found = self._seen.get(result, (-1, None))
             if turn != result.turn:
-                found = self._look(step, result, within)
+                with engine.borrowed():
+                    found = self._look(step, result, within)
                 self._seen[result] = result.turn, found
-            if found is not None:
-                return found
-        return None
+            # Another sketch may have the same result under another name.
+            yield found if found is None else replace(found, path=step.path)
 
     def _look(self, step: Step, result: Result, within: bool) -> NotFinite | None:
         for output in result.outputs:
@@ -169,12 +183,12 @@ def _widened(form: str) -> str:
     return form if form.endswith("f") else {1: "r32f", 2: "rg32f", 4: "rgba32f"}[components]
 
 
-def _steps(engine: Engine) -> Iterator[tuple[Step, bool]]:
-    """Yield the steps of the last frame in order, and whether each is inside a loop."""
-    if engine.plan is None:
+def _steps(plan: Plan | None) -> Iterator[tuple[Step, bool]]:
+    """Yield the steps of a plan in order, and whether each is inside a loop."""
+    if plan is None:
         return
     inside: set[int] = set()
-    for node in every_node(engine.plan.nodes):
+    for node in every_node(plan.nodes):
         if isinstance(node, Turns):
             inside |= {id(step) for step in every_node(node.body)}
         else:

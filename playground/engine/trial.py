@@ -41,6 +41,7 @@ class TrySketch:
     size: tuple[int, int] = (64, 36)  # pixels
     time: float = 0.0  # [s]
     drivers: tuple[str, ...] = ("auto",)
+    refuses: str = ""  # numbers that are not finite: "any", "all" of a texture, or "": none are looked for
 
 
 @dataclass(frozen=True)

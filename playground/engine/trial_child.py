@@ -120,6 +120,20 @@ def _draw(engine: Engine, request: TrySketch) -> None:
     fault = engine.ctx.error
     if fault != "GL_NO_ERROR":
         raise ContextError(f"OpenGL reports {fault} after the frame")
+    if request.refuses:
+        _refuse(engine, request.refuses)
+
+
+def _refuse(engine: Engine, what: str) -> None:
+    """Raise ``ShaderError`` at the first pass that gives a number that is not finite, or nothing else."""
+    for found in engine.not_finite_by_pass():
+        if found is None or engine.plan is None:
+            continue
+        width, height = found.size
+        throughout = found.count == width * height
+        step = engine.plan.step(found.path)
+        if step is not None and (throughout or what == "any"):
+            raise step.kernel.error(found.everywhere() if throughout else str(found))
 
 
 def _limit(memory: int) -> None:

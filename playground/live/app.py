@@ -27,6 +27,7 @@ from playground.live.code_window import draw_code, unsaved
 from playground.live.drops import draw_drops, take_dropped
 from playground.live.editors import Opener
 from playground.live.errors_list import draw_errors
+from playground.live.finite import FiniteWatch, draw_not_finite
 from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
@@ -145,6 +146,7 @@ class Live:
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
+        self.finite = FiniteWatch()
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -203,6 +205,8 @@ class Live:
             return 0.0
         if self.session.hasty:
             return REST / 2
+        if self.finite.patience is not None:
+            return self.finite.patience
         if self.rememberer.waits:
             return QUIET / 2
         if self.actions.notices or imgui.get_io().want_text_input:
@@ -236,9 +240,11 @@ class Live:
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
+        self.finite.turn(actions, imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         self._say_reload()
         actions.take_notes()
         actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        draw_not_finite(self.finite, actions, window.theme, area)
         draw_errors(actions, window.theme, area)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
@@ -253,7 +259,7 @@ class Live:
         window.end()
         if not session.testing and self._settling == 0:
             self.warnings.look()
-        self.status.write(actions)
+        self.status.write(actions, self.finite.found)
         stands = self.place.geometry()
         self.rememberer.look((stands.width, stands.height))
 

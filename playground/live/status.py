@@ -9,9 +9,11 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from playground.engine.finite import NotFinite
 from playground.live.actions import Actions
 from playground.live.code_window import unsaved
 
@@ -31,7 +33,7 @@ class Status:
         """Return the status that the environment asks for."""
         return cls(os.environ.get(VARIABLE))
 
-    def write(self, actions: Actions) -> None:
+    def write(self, actions: Actions, not_finite: Sequence[NotFinite] = ()) -> None:
         """Add a line if anything is new."""
         if self.path is None:
             return
@@ -49,6 +51,7 @@ class Status:
             "steps": dict(session.steps),
             "saved": str(actions.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
+            "not_finite": [str(found) for found in not_finite],
             "runs": dict(session.engine.runs),
         }
         if now != self._last:

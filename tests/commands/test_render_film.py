@@ -182,3 +182,47 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
     assert err.startswith("stopped; the first ")
     (path,) = folder.glob("long-first-*.mp4")
     assert count_pictures(path)[0] == int(path.stem.rpartition("-")[2]) and len(left) == 2
+
+
+CLEAR = """// clear.glsl -- seen through where it is low
+#pragma kernel(output = "frame:rgba8")
+uniform float alpha = 1.0; //! slider(0, 1)
+vec4 kernel(ivec2 texel) { return vec4(0.5, 0.5, 0.5, texel.x == 0 ? alpha : 1.0); }
+"""
+CLEAR_SKETCH = """format = 1
+size = 9
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[view]
+use = "./clear"
+"""
+
+
+def test_what_drops_alpha_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("av")
+    (tmp_path / "clear.glsl").write_text(CLEAR)
+    (tmp_path / "sketch.toml").write_text(CLEAR_SKETCH)
+    name, size = str(tmp_path / "sketch.toml"), ["--size", "16x16"]
+    film = ["render", name, *size, "--video", str(tmp_path / "x.mp4"), "--seconds", "0.1"]
+    sweep = ["render", name, *size, "--sweep", "view.alpha=0,1"]
+    assert cli.main(film) == 0
+    assert "opaque" not in capfd.readouterr().err
+    (tmp_path / "clear.glsl").write_text(CLEAR.replace("alpha = 1.0", "alpha = 0.5"))
+    assert cli.main(film) == 0
+    assert "the video is opaque: the alpha of every picture was dropped" in capfd.readouterr().err
+    assert cli.main([*sweep, "-o", str(tmp_path / "x.png")]) == 0
+    assert "a sheet is opaque: the alpha of 1 of 2 pictures was dropped" in capfd.readouterr().err
+    assert cli.main([*sweep, "--video", str(tmp_path / "y.mp4")]) == 0
+    assert "the video is opaque: the alpha of 1 of 2 pictures was dropped" in capfd.readouterr().err
+
+
+def test_a_picture_with_nan_in_it_says_which_pass(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    kernel = '// k\n#pragma kernel(output = "height:r32f")\nuniform float root = -1.0; //! slider(-1, 1)\n'
+    kernel += "float kernel(ivec2 texel) { return texel == ivec2(3, 5) ? sqrt(root) : 0.5; }\n"
+    (tmp_path / "k.glsl").write_text(kernel)
+    name, out = str(tmp_path / "k.glsl"), str(tmp_path / "x.png")
+    assert cli.main(["render", name, "-o", out, "--size", "16x16"]) == 0
+    assert "pass 'height', output 'height': NaN at texel (3, 5) from the south-west" in capfd.readouterr().err
+    assert cli.main(["render", name, "-o", out, "--size", "16x16", "--set", "height.root=1"]) == 0
+    assert "NaN" not in capfd.readouterr().err

@@ -103,3 +103,27 @@ def test_a_shader_with_nothing_to_run_is_told_alike_by_check_and_by_opening_it(f
     assert caught.value.diagnostics[0].message == said
     bare = folder.write("bare.frag", "float x;\n")
     assert "ShaderToy" not in wrong(bare, trial).message
+
+
+HOLE = '// h\n#pragma kernel(output = "height:r32f")\nuniform float root = -1.0; //! slider(-1, 1)\n'
+ALL = HOLE + "float kernel(ivec2 texel) { return sqrt(root); }\n"
+SOME = HOLE + "float kernel(ivec2 texel) { return texel.x == 1 ? sqrt(root) : 0.5; }\n"
+
+
+def test_a_technique_of_nothing_but_nan_fails_and_one_hole_may_be_the_stand_ins_own(folder, trial):
+    found = wrong(folder.write("all.glsl", ALL), trial)
+    assert "output 'height': none of its 1089 texels is finite; the first is NaN" in found.message
+    assert (Path(found.file).name, found.line) == ("all.glsl", 2)
+    assert check_file(folder.write("some.glsl", SOME), trial).ok
+    assert check_file(folder.write("none.glsl", ALL.replace("= -1.0;", "= 1.0;")), trial).ok
+
+
+def test_a_sketch_may_have_no_hole_at_all(folder, trial):
+    folder.write("some.glsl", SOME)
+    text = 'format = 1\nsize = 33\n[[pass]]\nname = "height"\nuse = "./some"\n'
+    sketch = folder.write("sketch.toml", text)
+    found = wrong(sketch, trial)
+    assert "pass 'height', output 'height': NaN at texel (1, 0)" in found.message
+    assert (Path(found.file).name, found.line) == ("some.glsl", 2)
+    folder.write("sketch.toml", text + "set = { root = 1.0 }\n")
+    assert check_file(sketch, trial).ok
