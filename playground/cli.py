@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
-from playground.commands import check, doctor, export, fly, listing, live, new, reduce, render, shots
+from playground.commands import check, doctor, export, fly, listing, live, new, pack, reduce, render, shots
 from playground.commands.arguments import (
     DeviceOption,
     Renderer,
@@ -158,6 +158,7 @@ app.command("check", help=check.HELP)(check.check)
 app.command("reduce", help=reduce.HELP)(reduce.reduce)
 app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
+app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
 app.add_typer(shots.app)
 _COMMANDS = (*(str(command.name) for command in app.registered_commands), str(shots.app.info.name))

@@ -74,7 +74,8 @@ def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
 SketchArgument = Annotated[
     str,
     typer.Argument(
-        help="A shipped sketch's name, or the path of a sketch, of its folder, or of a shader."
+        help="A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
+        " a shader."
         " Without it, the default sketch.",
         metavar="SKETCH",
         show_default=False,

@@ -32,6 +32,7 @@ from playground.sketch.model import Graph, Input, Kernel, Output, PassSpec, Sket
 from playground.sketch.places import TEXTS, root_of
 from playground.sketch.source import Line, SourceText, read_text
 from playground.sketch.techniques import nothing_to_run, read_kernel, read_technique
+from playground.sketch.unpack import ENDING, is_pack, unpacked
 from playground.sketch.wiring import input_names
 
 BOTH = (FRAGMENT, COMPUTE)
@@ -73,8 +74,13 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
             for file in _inside(path):
                 found.setdefault(file.resolve(), path.resolve())
         elif path.is_file():
+            if is_pack(path):
+                sketch = unpacked(path)
+                for file in _inside(sketch.parent):
+                    found.setdefault(file.resolve(), sketch.parent.resolve())
+                continue
             if path.suffix not in TEXTS:
-                wanted = ", ".join(TEXTS)
+                wanted = ", ".join((*TEXTS, ENDING))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
         else:

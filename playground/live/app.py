@@ -24,7 +24,7 @@ from playground.gpu.said import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.live.actions import Actions
 from playground.live.code_window import draw_code, unsaved
-from playground.live.drops import draw_drops, take_dropped
+from playground.live.drops import draw_drops, opened_from, take_dropped
 from playground.live.editors import Opener
 from playground.live.errors_list import draw_errors
 from playground.live.finite import FiniteWatch, draw_not_finite
@@ -73,7 +73,7 @@ def run(
     can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
     value that does not fit; any other mistake in the sketch is shown in the window.
     """
-    path = find(sketch) if sketch else find_default()
+    path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
     if software:
         prefer_software()
@@ -94,7 +94,7 @@ def run(
             trial=trial,
             is_lost=lambda: window.lost,
         )
-        session.notes.extend(filter(None, [complaint]))
+        session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, rememberer)

@@ -6,12 +6,15 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import PlaygroundError
 from playground.live.actions import Actions
 from playground.live.listing import Listing
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
+from playground.sketch.find import find
 from playground.sketch.model import Parameter, Value
 from playground.sketch.places import SHADERS
+from playground.sketch.unpack import is_pack, unpacked_beside
 
 _TITLE = "dropped"
 
@@ -19,6 +22,9 @@ _TITLE = "dropped"
 def take_dropped(actions: Actions, paths: list[Path]) -> None:
     """Do what files dropped on the window ask for: the first sketch opens, images wait for a choice."""
     for path in paths:
+        if is_pack(path) and path.is_file():
+            _open_pack(actions, path)
+            return
         if (path / "sketch.toml").is_file() or path.suffix == ".toml" or path.suffix in SHADERS:
             actions.open(path)
             return
@@ -30,6 +36,25 @@ def take_dropped(actions: Actions, paths: list[Path]) -> None:
         actions.say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
     elif images:
         actions.dropped, actions.opening = images, _TITLE
+
+
+def opened_from(sketch: Path) -> tuple[Path, str]:
+    """Return the file of a sketch to be worked on, and what is to be said of it: a zip is unpacked beside it.
+
+    Raises ``SketchError`` or ``DataError`` for one that cannot be opened.
+    """
+    path = sketch.expanduser()
+    return unpacked_beside(path) if is_pack(path) and path.is_file() else (find(sketch), "")
+
+
+def _open_pack(actions: Actions, path: Path) -> None:
+    try:
+        file, sentence = unpacked_beside(path)
+    except PlaygroundError as error:
+        actions.say(str(error))
+        return
+    actions.say(sentence)
+    actions.open(file)
 
 
 def feeds(actions: Actions) -> list[tuple[str, Parameter, Value]]:

@@ -7,10 +7,14 @@ from pathlib import Path
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.places import SHADERS, TECHNIQUES, TEXTS, is_file, is_inside
+from playground.sketch.unpack import is_pack, unpacked
 
 
 def find(name: str | Path) -> Path:
-    """Return the file that a sketch's name or path stands for; raise ``SketchError`` if there is none."""
+    """Return the file that a sketch's name or path stands for; raise ``SketchError`` if there is none.
+
+    A zip is unpacked into the cache first: ``DataError`` says why one cannot be.
+    """
     path = Path(name)
     try:
         path = path.expanduser()
@@ -20,6 +24,8 @@ def find(name: str | Path) -> Path:
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
     if is_file(path):
+        if is_pack(path):
+            return unpacked(path)
         if path.suffix not in TEXTS:
             raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=shown(path))
         return path

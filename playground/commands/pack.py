@@ -1,0 +1,74 @@
+"""Pack a sketch into one file to hand on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands.arguments import SketchArgument, help_text
+from playground.errors import DataError
+from playground.terminal import busy, note
+
+if TYPE_CHECKING:
+    from playground.sketch.model import Sketch
+
+HELP = help_text(
+    "Put a sketch with all that it needs into one zip, and print its path.\n\n"
+    "In it are the sketch, its kernels and includes, its images and elevation files, its references, and a"
+    " README and a licence beside it. What ships with the playground is not: its names and the version are."
+    " The zip opens wherever a sketch does. A window opens a copy beside it, for edits; the zip stays.",
+    "playground pack my-land",
+    "playground pack my-land -o lesson-3.zip",
+    "playground live lesson-3.zip",
+    "playground render lesson-3.zip -o land.png",
+)
+
+
+def pack(
+    sketch: SketchArgument = "",
+    output: Annotated[
+        str,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The zip to write. Without it, a new name in this folder.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = "",
+) -> None:
+    """Pack a sketch into one zip."""
+    from playground.capture import pack as packing
+    from playground.images.files import new_name
+    from playground.sketch.load import load
+    from playground.sketch.unpack import ENDING, read_pack, said_of
+
+    loaded = load(sketch)
+    if output:
+        path = Path(output).expanduser()
+        if path.suffix.lower() != ENDING or path.is_dir():
+            raise DataError(f"a pack is written to a name ending in {ENDING}", file=output)
+        with busy(f"packing {loaded.name}"):
+            packing.pack(loaded, path, _references(loaded))
+    else:
+        with new_name(f"{loaded.name}{ENDING}") as path, busy(f"packing {loaded.name}"):
+            packing.pack(loaded, path, _references(loaded))
+    print(path)
+    note(said_of(read_pack(path)))
+
+
+def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:
+    """Yield the sketch's reference pictures, and where they go in its folder."""
+    from playground.shots.names import SCREENSHOTS
+    from playground.shots.references import home_of
+
+    try:
+        home = home_of(sketch)
+    except DataError:  # an installed package has none for what it ships
+        return
+    for path in sorted((home / sketch.name).glob("*/*.png")):
+        if path.is_file() and not path.is_symlink():
+            yield path, f"{SCREENSHOTS}/{path.relative_to(home).as_posix()}"
