@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
+from playground.live.capturing import Capturing
 from playground.live.editors import Opener
 from playground.live.edits import Edits
 from playground.live.history import History, State, applied, edits_of, state_of, steps_of
@@ -51,6 +52,7 @@ class Actions:
     searching: bool = False  # the panel is asked for its search
     offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
     opening: str = ""  # the question to be asked next: "offer" or "dropped"
+    capture: Capturing = field(default_factory=Capturing)
     held: bool = False  # a mouse button is down: what changes is one step
     problems: Problems = field(default_factory=Problems)
     opener: Opener = field(default_factory=Opener)  # starts the user's editor
@@ -119,9 +121,11 @@ class Actions:
         self.keymap_shown = not self.keymap_shown
 
     def escape(self) -> None:
-        """Put the key map away, or quit."""
+        """Put the key map or the capture's window away, or quit."""
         if self.keymap_shown:
             self.keymap_shown = False
+        elif self.capture.shown:
+            self.capture.shown = False
         else:
             self.quit()
 

@@ -23,6 +23,7 @@ from playground.gpu.context import prefer_software
 from playground.gpu.said import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.live.actions import Actions
+from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code, unsaved
 from playground.live.drops import draw_drops, opened_from, take_dropped
 from playground.live.editors import Opener
@@ -99,6 +100,7 @@ def run(
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, rememberer)
         stack.callback(live.release)
+        stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
         try:
             live.run(time_limit)
@@ -209,6 +211,8 @@ class Live:
             return self.finite.patience
         if self.rememberer.waits:
             return QUIET / 2
+        if self.actions.capture.working is not None:
+            return 0.1
         if self.actions.notices or imgui.get_io().want_text_input:
             return 0.1
         return IDLE
@@ -251,6 +255,8 @@ class Live:
         draw_notices(actions, window.theme, area)
         draw_drops(actions, window.theme)
         draw_keymap(actions, window.theme)
+        actions.capture.look(actions)
+        draw_capture(actions.capture, actions, window.theme)
         window.screen.use()
         window.screen.viewport = (0, 0, wide, high)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)

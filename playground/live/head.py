@@ -43,6 +43,10 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("PNG"):
         actions.save_picture()
     imgui.set_item_tooltip(f"Save the picture as a new file in {actions.folder} (S)")
+    imgui.same_line()
+    if imgui.button("Capture"):
+        actions.capture.shown = True
+    imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
     if session.animated:
         _time(actions, look)
     if sketch.presets:

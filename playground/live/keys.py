@@ -12,6 +12,11 @@ from playground.live.saving import save_values
 from playground.live.sources import edit_problem
 
 
+def toggle_capture(actions: Actions) -> None:
+    """Show the capture's window, or no longer."""
+    actions.capture.shown = not actions.capture.shown
+
+
 @dataclass(frozen=True)
 class Key:
     """A key and its meaning."""
@@ -33,6 +38,7 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
+    Key(imgui.Key.c, "C", "capture: large pictures, films, sheets", "", toggle_capture),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
     Key(imgui.Key.none, "/", "search the parameters", "", lambda a: a.search(), letter="/"),
     Key(imgui.Key.f11, "F11", "fill the screen, or no longer", "", lambda a: a.full_screen()),
