@@ -11,7 +11,7 @@ from playground.errors import PlaygroundError, counted
 from playground.live.capturing import Capturing
 from playground.live.editors import Opener
 from playground.live.edits import Edits
-from playground.live.history import History, State, applied, edits_of, state_of, steps_of
+from playground.live.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.problems import Problems
@@ -192,6 +192,11 @@ class Actions:
         if session.shown is None:
             return
         wanted = applied(state_of(self._asked(), session.steps), changes)
+        keyframes = wanted.pop((KEYFRAMES, ""), None)
+        if isinstance(keyframes, tuple):
+            from playground.live.keying import put_back  # it needs this module
+
+            put_back(self, keyframes)
         time = wanted.pop(("time", ""), None)
         if isinstance(time, float):
             session.clock.time = time

@@ -34,6 +34,8 @@ class Clock:
 
 def is_animated(sketch: Sketch) -> bool:
     """Say whether the picture may differ from moment to moment."""
+    if sketch.keyframes:
+        return True
     for _, kernel in kernels_of(sketch.graph):
         named = _MOVING if kernel.kind.startswith("plain") else {"time"}
         if any(kernel.reads(name) for name in named):

@@ -25,9 +25,11 @@ MOMENT = 0.7
 MOST = 200
 """Steps that are kept; the oldest go first."""
 
+KEYFRAMES = "keyframes"
+
 Key = tuple[str, str]
 """What can change: ("value", path), ("technique", pass), ("lock", path), ("step", path), ("camera", "")
-or ("time", "")."""
+("keyframes", "") or ("time", "")."""
 State = Mapping[Key, object]
 """What is set, by what it is; what is as the file says is not in it."""
 
@@ -123,6 +125,12 @@ class History:
     def jump(self, before: float, after: float, *, held: bool, now: float) -> None:
         """Take in that time was set, from one moment [s] to another."""
         self._add({("time", ""): before}, {("time", ""): after}, held=held, now=now)
+
+    def record(self, before: State, after: State, name: str, *, now: float) -> None:
+        """Take in a step that is more than what is set by hand; ``settle`` tells the state after it."""
+        self._close()
+        self._name = name
+        self._add(before, after, held=False, now=now)
 
     def undo(self) -> State:
         """Take a step back; return what has to be set, None for what is to be as the file says."""

@@ -16,6 +16,7 @@ from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.costs import draw_costs
 from playground.live.head import draw_head, draw_search
+from playground.live.keyframe_list import KeyframeList
 from playground.live.keys import KEYS
 from playground.live.paintbox import draw_paintbox
 from playground.live.panel_memory import Memory
@@ -34,6 +35,7 @@ class Panel:
 
     def __post_init__(self) -> None:
         self._sections = Sections(self.memory)
+        self._keyframes = KeyframeList()
 
     def draw(self, actions: Actions, look: Theme) -> float:
         """Draw the panel over the window's left side; return the width it takes, in the window's units."""
@@ -63,6 +65,7 @@ class Panel:
                 _map(actions, look)
             self._sections.draw(sketch, actions, look)
             if not self.memory.filter:
+                self._keyframes.draw(actions, look)
                 draw_costs(sketch, actions, look)
         imgui.end_child()
         _footer(look, actions.session.orbits)

@@ -1,0 +1,216 @@
+"""Write keyframes into a sketch's own TOML, and touch nothing else in it.
+
+A ``[[keyframe]]`` with the comments right above it is a block. What changes in a block is
+written over in its place; a block that moves in time takes its comments along to its new
+place among the others; a new one comes after the last, or at the end of the file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from itertools import pairwise
+from pathlib import Path
+
+from playground.errors import SketchError
+from playground.paths import shown
+from playground.sketch.keyframes import EASES
+from playground.sketch.model import Camera, Keyframe, Sketch
+from playground.sketch.save import _number, _said, _same_as, _write, _written
+from playground.sketch.toml_lines import TOKEN, Place
+from playground.sketch.toml_spans import drop, newline_of, put, text_of
+
+_LIST = re.compile(r"\[\[\s*[\"']?keyframe[\"']?\s*\]\]")
+_INSIDE = re.compile(r"\[\s*[\"']?keyframe[\"']?\s*\.")
+
+
+def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
+    """Write keyframes into the file that ``file`` was loaded from, in place of those that it has.
+
+    They are written by time. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save.save``
+    does; of times that are the same, and of keyframes that do not fit each other, too.
+    """
+    frames = tuple(sorted(wanted, key=lambda keyframe: keyframe.time))
+    for one, other in pairwise(frames):
+        if one.time == other.time:
+            raise SketchError(f"there is a keyframe at {one.time:g} s already", file=shown(file.file))
+    says_the_rest = _same_as(file)
+
+    def is_right(found: Sketch) -> bool:
+        shots = [replace(shot, line=0) for shot in file.shots]
+        return (
+            _plain(found.keyframes) == _plain(frames)
+            and says_the_rest(found)
+            and found.presets == file.presets
+            and [replace(shot, line=0) for shot in found.shots] == shots
+        )
+
+    _write(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
+
+
+def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
+    """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
+    if len(_blocks(text)) != len(file.keyframes):
+        message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
+        raise SketchError(message, file=shown(file.file))
+    before = _matched(file.keyframes, wanted)
+    for keyframe, index in zip(wanted, before, strict=True):
+        if index is not None:
+            text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
+    spans = _blocks(text)
+    blocks = [text[start:end] for start, end in spans]
+    newline = newline_of(text)
+    made = [
+        blocks[index] if index is not None else newline.join(_lines(file, keyframe)) + newline
+        for keyframe, index in zip(wanted, before, strict=True)
+    ]
+    if not spans:
+        head = text if text.endswith("\n") or not text else text + newline
+        return head + "".join(newline + block for block in made)
+    return _placed(text, spans, made, newline)
+
+
+def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
+    """Return the text with blocks in the places of its own: one each, what is left after the last."""
+    found, at = "", 0
+    for number, (start, end) in enumerate(spans):
+        found += text[at:start]
+        at = end
+        here = made[number:] if number == len(spans) - 1 else made[number : number + 1]
+        for further, block in enumerate(here):
+            found += newline if further else ""
+            found += block if block.endswith("\n") else block + newline
+        if not here and found.endswith(newline * 2):
+            # No two empty lines where a block was, and none at the end.
+            if text[at:].startswith(newline):
+                at += len(newline)
+            elif not text[at:].strip():
+                found = found[: -len(newline)]
+    return found + text[at:]
+
+
+def _blocks(text: str) -> list[tuple[int, int]]:
+    """Return where each keyframe's block begins and ends, without the empty lines after it."""
+    headers = _headers(text)
+    found = []
+    for number, (start, line) in enumerate(headers):
+        if not _LIST.match(line):
+            continue
+        following = (s for s, other in headers[number + 1 :] if not _INSIDE.match(other))
+        end = next((_above(text, s) for s in following), len(text))
+        body = text[start:end]
+        found.append((_above(text, start), start + len(body.rstrip()) + _line_end(body)))
+    return found
+
+
+def _line_end(body: str) -> int:
+    """Return how long the end of the last line that is not empty is."""
+    rest = body[len(body.rstrip()) :]
+    return rest.find("\n") + 1 if "\n" in rest else len(rest)
+
+
+def _above(text: str, start: int) -> int:
+    """Return where the comments right above a line begin; the line itself, where there are none."""
+    while start > 0:
+        before = text.rfind("\n", 0, start - 1) + 1
+        if not text[before:start].lstrip().startswith("#"):
+            break
+        start = before
+    return start
+
+
+def _headers(text: str) -> list[tuple[int, str]]:
+    """Return every table's header: where its line begins, and the line without what is before it."""
+    found, depth, fresh = [], 0, True
+    for match in TOKEN.finditer(text):
+        token = match.group()
+        if token == "\n":
+            fresh = fresh or depth == 0
+            continue
+        if token.isspace() or token.startswith("#"):
+            continue
+        if token == "[" and fresh and depth == 0:
+            start = text.rfind("\n", 0, match.start()) + 1
+            end = text.find("\n", start)
+            found.append((start, text[match.start() : end if end >= 0 else len(text)]))
+        depth += (token in "[{") - (token in "]}")
+        fresh = False
+    return found
+
+
+def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int | None]:
+    """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
+    left = dict(enumerate(_plain(known)))
+    found: list[int | None] = [None] * len(wanted)
+    for same in (_whole, _moment, _content):
+        for number, keyframe in enumerate(_plain(wanted)):
+            if found[number] is None:
+                hit = next((i for i, other in left.items() if same(other) == same(keyframe)), None)
+                if hit is not None:
+                    found[number] = hit
+                    del left[hit]
+    return found
+
+
+def _whole(keyframe: Keyframe) -> object:
+    return keyframe
+
+
+def _moment(keyframe: Keyframe) -> object:
+    return keyframe.time
+
+
+def _content(keyframe: Keyframe) -> object:
+    return keyframe.camera, keyframe.values
+
+
+def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
+    """Return keyframes by what they say, wherever and in whatever order it is written."""
+    return [
+        replace(k, line=0, camera=tuple(sorted(k.camera)), values=tuple(sorted(k.values, key=lambda v: v[0])))
+        for k in keyframes
+    ]
+
+
+def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe) -> str:
+    """Return the text with what differs between two keyframes written over in the first one's table."""
+    if now.time != was.time:
+        text = put(text, place, "time", repr(float(now.time)))
+    if now.ease != was.ease:
+        text = put(text, place, "ease", text_of(now.ease))
+    cameras, values = dict(was.camera), dict(was.values)
+    for name, seen in now.camera:
+        if name not in cameras or cameras[name] != seen:
+            text = put(text, (*place, "camera"), name, _camera_value(seen))
+    for name, value in now.values:
+        if name not in values or values[name] != value:
+            table = (*place, "set")
+            text = put(text, table, name, _written(file, name, value, _said(text, table, name)))
+    for name in cameras.keys() - dict(now.camera).keys():
+        text = drop(text, (*place, "camera"), name)
+    for name in values.keys() - dict(now.values).keys():
+        text = drop(text, (*place, "set"), name)
+    return text
+
+
+def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
+    """Return a new keyframe as TOML writes it."""
+    lines = ["[[keyframe]]", f"time = {float(keyframe.time)!r}"]
+    given = dict(keyframe.camera)
+    if given:
+        order = [part.name for part in fields(Camera) if part.name in given]
+        pairs = ", ".join(f"{name} = {_camera_value(given[name])}" for name in order)
+        lines.append(f"camera = {{ {pairs} }}")
+    if keyframe.values:
+        pairs = ", ".join(f"{text_of(p)} = {_written(file, p, v, '')}" for p, v in keyframe.values)
+        lines.append(f"set = {{ {pairs} }}")
+    if keyframe.ease != EASES[0]:
+        lines.append(f"ease = {text_of(keyframe.ease)}")
+    return lines
+
+
+def _camera_value(value: float | tuple[float, ...]) -> str:
+    numbers = value if isinstance(value, tuple) else (value,)
+    written = ", ".join(map(_number, numbers))
+    return f"[{written}]" if isinstance(value, tuple) else written
