@@ -1,0 +1,61 @@
+"""NaN as a person meets it: the words over the picture lead to the texture, and go when it is mended."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from .screen import ON_LINUX, Program, Screen
+
+WIDTH, HEIGHT = 800, 500
+SHOW_IT = 386, 52  # the button, at scale 1
+RUN = """
+import sys
+from playground.live.app import run
+sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
+"""
+LAND = """// land.glsl -- hills with a hole
+#pragma kernel(output = "height:r32f")
+uniform float root = -1.0; //! slider(-1, 1)
+float kernel(ivec2 texel) { return texel / 4 == ivec2(3, 5) ? sqrt(root) : 0.5; }
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+
+pytestmark = [*ON_LINUX, pytest.mark.slow]
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
+    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH, HEIGHT)
+    yield made
+    made.close()
+
+
+def test_the_words_lead_to_the_texels_in_magenta(screen: Screen, tmp_path: Path) -> None:
+    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    program = Program(screen, tmp_path, [sys.executable, "-c", RUN, str(tmp_path)], tmp_path)
+    try:
+        found = program.wait(lambda now: now["not_finite"])["not_finite"]
+        assert "pass 'height', output 'height': NaN at texel (12, 20)" in found[0]
+        screen.do("mousemove", *SHOW_IT, "sleep", 1, "click", 1)
+        program.wait(lambda now: now["map"] == "height:height")
+        pixels = screen.pixels()[:, 340:]
+        magenta = (pixels == np.array([255, 0, 255])).all(axis=2).sum()
+        assert magenta > 1000, "sixteen texels of a map of 33, on half a thousand pixels"
+        (tmp_path / "land.glsl").write_text(LAND.replace("= -1.0", "= 1.0"), encoding="utf-8")
+        program.wait(lambda now: not now["not_finite"])
+    finally:
+        program.close()
