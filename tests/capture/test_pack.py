@@ -239,7 +239,7 @@ def test_overlapping_files_are_refused(tmp_path: Path) -> None:
     tail[8:10] = tail[10:12] = (9).to_bytes(2, "little")
     tail[12:16] = (int.from_bytes(tail[12:16], "little") + len(again)).to_bytes(4, "little")
     path.write_bytes(data[:end] + again + tail)
-    with pytest.raises(DataError, match="overlap"):
+    with pytest.raises(DataError, match="its files overlap"):
         load(path)
 
 
