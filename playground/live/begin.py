@@ -7,15 +7,15 @@ from dataclasses import replace
 
 from playground.errors import PlaygroundError
 from playground.live.edits import Draft, Edits
-from playground.sketch.assign import resolve, values_of
-from playground.sketch.model import Sketch, Value
+from playground.live.words import Said, newer_word, notice, said_by_files
+from playground.sketch.model import Sketch
 
 
-def first_draft(loaded: Sketch, edits: Edits, in_file: Mapping[str, Value]) -> tuple[Draft, list[str]]:
+def first_draft(loaded: Sketch, edits: Edits, in_file: Mapping[str, Said]) -> tuple[Draft, list[str]]:
     """Return the draft to begin with, and a sentence for each edit that gave way.
 
-    ``in_file`` is what the files said of a value when it was set: where they say another
-    now, they are the newer word.
+    ``in_file`` is what the files said of a value when it was last shown: see ``words`` for
+    where what they say now goes before it.
     """
     draft = Draft(loaded, loaded, replace(edits, techniques=()))
     notes = []
@@ -24,23 +24,12 @@ def first_draft(loaded: Sketch, edits: Edits, in_file: Mapping[str, Value]) -> t
             draft = draft.choose(name, use)
         except PlaygroundError as error:
             notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
-    now = said_by_files(draft.base, edits)
+    now = said_by_files(draft.base, [path for path, _ in edits.values])
     kept = []
     for path, value in edits.values:
-        if path in now and path in in_file and now[path] != in_file[path]:
-            notes.append(f"{path}: the file says another value than when it was set; the file's is taken")
-        else:
+        said = newer_word(path, in_file, now, edits.locked)
+        if said is None:
             kept.append((path, value))
+        else:
+            notes += filter(None, [notice(draft.base, path, value, said)])
     return draft.with_edits(replace(draft.edits, values=tuple(kept))), notes
-
-
-def said_by_files(sketch: Sketch, edits: Edits) -> dict[str, Value]:
-    """Return what the files say of each value that is set by hand, by its path as it was set."""
-    known = values_of(sketch) if edits.values else {}
-    found = {}
-    for path, _ in edits.values:
-        try:
-            found[path] = known[resolve(sketch.graph, path)[0].path]
-        except (PlaygroundError, KeyError):
-            continue  # it is gone, or of the land: it stays as it was set
-    return found

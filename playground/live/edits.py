@@ -9,8 +9,8 @@ What is set by hand outlives a reload. In full, for a parameter that is set by h
 * it keeps its value while the files change elsewhere, and also where its declaration
   changes: another default, label, step or wider range;
 * where the sketch's own ``set`` (or the land's size, extent, relief or base elevation)
-  now says another value than it said, the file is the newer word: it is taken, and a
-  notice says so, unless it is the very value that the hand had set;
+  now says another value than it said, the file is the newer word (see ``words``): it is
+  taken, and a notice says so, unless it is the very value that the hand had set;
 * where its range no longer holds the value, the nearest end of the range is taken, and
   a notice says so;
 * where its type is another now, or its menu has lost the choice, it goes back to the
@@ -31,6 +31,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
+from playground.live.words import newer_word, notice, said_by_files
 from playground.sketch.assign import LAND, check_value, resolve, values_of
 from playground.sketch.choose import with_technique
 from playground.sketch.model import Camera, Parameter, Sketch, Value
@@ -139,15 +140,9 @@ def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
     return found if _shape(found) == _shape(value) else None
 
 
-def reload_draft(old: Draft | None, loaded: Sketch, edits: Edits = Edits()) -> tuple[Draft, list[str]]:
-    """Return the draft after its files changed, and a sentence for each edit that gave way.
-
-    ``edits`` are those to begin with when there is no old draft.
-    """
+def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
+    """Return the draft after its files changed, and a sentence for each edit that gave way."""
     notes: list[str] = []
-    if old is None:
-        base, techniques = _with_techniques(None, loaded, edits.techniques, notes)
-        return Draft(loaded, base, replace(edits, techniques=techniques)), notes
     edits = old.edits
     if loaded.camera != old.file.camera and edits.camera is not None:
         if edits.camera != loaded.camera:
@@ -159,12 +154,12 @@ def reload_draft(old: Draft | None, loaded: Sketch, edits: Edits = Edits()) -> t
 
 
 def _with_techniques(
-    before: Sketch | None, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
+    before: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
 ) -> tuple[Sketch, tuple[tuple[str, str], ...]]:
     """Return the sketch with the techniques that still can be chosen, and which they are."""
     base, stay = loaded, []
     for name, use in chosen:
-        was, now = before.graph.find(name) if before else None, loaded.graph.find(name)
+        was, now = before.graph.find(name), loaded.graph.find(name)
         if now is not None and now.use == use:
             continue  # it has become the file's own
         if now is None or (was is not None and was.use != now.use):
@@ -180,30 +175,24 @@ def _with_techniques(
 
 def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
     """Return the values by hand after a reload; add a sentence to the notes for each that gave way."""
-    said, says = _said(old.base), _said(base)
-    before, after = values_of(old.base), values_of(base)
-    locked = set(old.edits.locked)
+    values = _with_locked(old, values_of(base))
+    before, after = (said_by_files(sketch, [p for p, _ in values]) for sketch in (old.base, base))
     kept: list[tuple[str, Value]] = []
-    for path, value in _with_locked(old, after):
+    for path, value in values:
         was, now = _parameter(old.base, path), _parameter(base, path)
-        if path in LAND:
-            same = path in locked or getattr(old.base, path) == getattr(base, path)
-            if same:
-                kept.append((path, value))
-            elif getattr(base, path) != value:
-                notes.append(f"{path}: the file's new value is taken")
-            continue
-        if now is None or taken(old.base, path, value) is None:
+        if path not in LAND and (now is None or taken(old.base, path, value) is None):
             kept.append((path, value))  # it waits
             if now is None and was is not None:
                 notes.append(f"{path} is gone; what was set here is kept in case it returns")
             continue
-        assert was is not None
-        leaf = resolve(base.graph, path)[0].path
-        if path not in locked and said.get(leaf) != says.get(leaf) and before.get(leaf) != after[leaf]:
-            if after[leaf] != value:
-                notes.append(f"{path}: the file's new value, {write(now, after[leaf])}, is taken")
+        said = newer_word(path, before, after, old.edits.locked)
+        if said is not None:
+            notes += filter(None, [notice(base, path, value, said)])
             continue
+        if path in LAND:
+            kept.append((path, value))
+            continue
+        assert was is not None and now is not None
         stays, note = _moved(was, now, value, path, base)
         if stays is not None:
             kept.append((path, stays))
@@ -254,17 +243,6 @@ def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Val
     held = [min(max(float(n), low), high) for n in numbers]
     found = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
     return found if isinstance(value, tuple) else found[0]
-
-
-def _said(sketch: Sketch) -> dict[str, Value]:
-    """Return what the sketch's own passes set, by the path of the parameter inside."""
-    found: dict[str, Value] = {}
-    for spec in sketch.graph.passes:
-        for path, value in spec.values:
-            for target in resolve(spec.technique, path):
-                key = f"{spec.name}.{target.path}"
-                found[key] = value
-    return found
 
 
 def _leaves(sketch: Sketch, path: str) -> set[str]:

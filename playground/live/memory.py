@@ -19,6 +19,7 @@ from typing import IO, Any
 from playground.errors import DataError
 from playground.images.files import replacing
 from playground.live.edits import Edits
+from playground.live.words import Said
 from playground.sketch.model import Camera, Value
 
 FORMAT = 1
@@ -30,7 +31,7 @@ class Remembered:
     """What is remembered of one sketch."""
 
     edits: Edits = field(default_factory=Edits)
-    in_file: tuple[tuple[str, Value], ...] = ()  # what the files said of each value set by hand
+    in_file: tuple[tuple[str, Said], ...] = ()  # what the files said of each value set by hand
     time: float = 0.0  # [s]
     playing: bool = True
     speed: float = 1.0
@@ -130,7 +131,10 @@ def _locked(file: IO[bytes]) -> bool:
 
 def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
     edits, known = remembered.edits, dict(remembered.in_file)
-    values = {path: {"value": value, "file": known.get(path)} for path, value in edits.values}
+    values: dict[str, dict[str, Any]] = {path: {"value": value} for path, value in edits.values}
+    for path, said in known.items():
+        if path in values:
+            values[path] |= {"file": said.value, "own": said.own}
     return {
         "format": FORMAT,
         "sketch": sketch,
@@ -159,9 +163,9 @@ def _read(table: Any) -> Remembered:
         raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
     values = tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items())
     in_file = tuple(
-        (str(path), _value(entry["file"]))
+        (str(path), Said(None if entry["file"] is None else _value(entry["file"]), bool(entry.get("own"))))
         for path, entry in table["values"].items()
-        if entry["file"] is not None
+        if "file" in entry
     )
     camera = table["camera"]
     edits = Edits(

@@ -14,12 +14,11 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, TrialError
 from playground.folders import state_folder
-from playground.live.begin import said_by_files
 from playground.live.edits import Draft
 from playground.live.maps import Map
 from playground.live.memory import Memory, Remembered
 from playground.live.session import Session
-from playground.sketch.model import Value
+from playground.live.words import Said, said_by_files
 
 QUIET = 0.5  # [s] without another change after which a change is written
 TIME = 5.0  # [s] after which a change of time alone is written
@@ -49,7 +48,7 @@ class Rememberer:
         self._seen_at = 0.0
         self._written_at = now()
         self._is_told = False
-        self._in_file: tuple[Draft | None, tuple[tuple[str, Value], ...]] = (None, ())
+        self._in_file: tuple[Draft | None, tuple[tuple[str, Said], ...]] = (None, ())
         found = found or Remembered()
         self._recalled = not found.is_nothing
         clock = session.clock
@@ -108,7 +107,8 @@ class Rememberer:
     def _snapshot(self, draft: Draft, window: tuple[int, int]) -> Remembered:
         session = self.session
         if self._in_file[0] is not draft:
-            self._in_file = draft, tuple(said_by_files(draft.base, draft.edits).items())
+            paths = [path for path, _ in draft.edits.values]
+            self._in_file = draft, tuple(said_by_files(draft.base, paths).items())
         return Remembered(
             draft.edits,
             self._in_file[1],

@@ -31,6 +31,7 @@ from playground.live.maps import Map, fitted, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained, has_draws
 from playground.live.sunlight import suns_of, turned
+from playground.live.words import Said
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
@@ -55,7 +56,7 @@ class Session:
         *,
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
-        in_file: Mapping[str, Value] | None = None,
+        in_file: Mapping[str, Said] | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,

@@ -15,6 +15,7 @@ from playground.live.edits import Edits
 from playground.live.memory import Memory, Remembered
 from playground.live.remember import QUIET, TIME, Rememberer
 from playground.live.session import Session
+from playground.live.words import Said
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 
@@ -41,7 +42,7 @@ FULL = Remembered(
         (("height", "./other"),),
         Camera(azimuth=10.5, elevation=20.0, distance=900.0, target=(1.0, 2.0, 3.0)),
     ),
-    (("height.level", 0.25), ("height.slope", (1.0, 2.0))),
+    (("height.level", Said(0.25, True)), ("height.slope", Said((1.0, 2.0), False))),
     12.5,
     False,
     2.0,
@@ -171,7 +172,73 @@ def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
     again, _ = place.start()
     values = values_of(again.sketch)
     assert values["height.level"] == 0.5 and values["height.slope"] == (0.5, 0.25)
-    assert any(note.startswith("height.level: the file says another value") for note in again.notes)
+    assert "height.level: the file's new value, 0.5, is taken" in again.notes
+
+
+def test_a_new_default_is_no_newer_word_than_what_was_set(place: Place) -> None:
+    session, rememberer = place.start()
+    change_everything(session)
+    rememberer.look((900, 600))
+    rememberer.close()
+    text = LAND.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
+    (place.sketch / "land.glsl").write_text(text, encoding="utf-8")
+    again, _ = place.start()
+    values = values_of(again.sketch)
+    assert values["height.level"] == 0.75 and values["height.slope"] == (0.5, 0.25)
+    assert not again.notes
+
+
+SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.75, and afterwards
+    "another default": ("", 0.25, "", 0.5),
+    "the same": ("level = 0.5", 0.25, "level = 0.5", 0.25),
+    "set anew": ("", 0.25, "level = 0.5", 0.25),
+    "set to what it was": ("", 0.25, "level = 0.25", 0.25),
+    "set otherwise": ("level = 0.125", 0.25, "level = 0.5", 0.25),
+    "set no more": ("level = 0.125", 0.25, "", 0.25),
+    "set no more, the default as it was set": ("level = 0.25", 0.125, "", 0.25),
+    "set to the hand's": ("", 0.25, "level = 0.75", 0.25),
+}
+
+
+@pytest.mark.parametrize("locked", [False, True])
+@pytest.mark.parametrize("what", SAYS)
+def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: bool) -> None:
+    def save(own: str, default: float) -> None:
+        text = SKETCH.replace('use = "./land"', f'use = "./land"\nset = {{ {own} }}')
+        (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
+        land = LAND.replace("level = 0.25", f"level = {default}")
+        (place.sketch / "land.glsl").write_text(land, encoding="utf-8")
+
+    own, default, then, later = SAYS[what]
+    save(own, default)
+    session, rememberer = place.start()
+    session.set("height.level", 0.75)
+    session.lock("height.level", locked)
+    rememberer.look((900, 600))
+    rememberer.close()
+    save(then, later)
+    session.reload()
+    session.frame(SIZE)
+    again, _ = place.start()
+    assert again.shown.edits == session.shown.edits
+    assert list(again.notes) == list(session.notes)
+    stays = locked or what in ("another default", "the same", "set to what it was") or "as it was" in what
+    assert again.shown.edits.has("height.level") == stays
+
+
+@pytest.mark.parametrize("locked", [False, True])
+def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> None:
+    session, rememberer = place.start()
+    session.set("relief", 500.0)
+    session.lock("relief", locked)
+    rememberer.look((900, 600))
+    rememberer.close()
+    (place.sketch / "sketch.toml").write_text(SKETCH.replace("size = 33", "size = 33\nrelief = 700.0"))
+    session.reload()
+    session.frame(SIZE)
+    again, _ = place.start()
+    assert again.shown.edits == session.shown.edits
+    assert again.sketch.relief == (500.0 if locked else 700.0)
 
 
 def test_what_the_command_line_sets_goes_before_all(place: Place) -> None:
