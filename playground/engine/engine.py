@@ -258,11 +258,7 @@ class Engine:
 
         The same on every machine: see ``engine.drawn``.
         """
-        plan = self._plan
-        if plan is None:
-            return ""
-        ref = next(iter(plan.flat.outputs["view"].values()))
-        return self._drawn.hash_of(plan, ref, self.form_of, self._given_for, _continued(plan))
+        return "" if self._plan is None else self._hash_of(self._plan)
 
     def not_finite(self) -> NotFinite | None:
         """Return the first number that is not finite among what the last frame was made from, if any.
@@ -301,12 +297,13 @@ class Engine:
         They stand for all that it depends on, the renderer included.
         """
         plan = self.plan_for(sketch, size, time, steps, largest=LARGEST_PICTURE)
-        self.runner.begin(plan)
-        self._plan = plan
-        keys = self._keys.keys_of(plan, self.form_of, self._given_for, _continued(plan))
-        shown = next(iter(plan.flat.outputs["view"].values()))
-        made = f"{keys.steps[shown.path]} {shown.output} {self.info.renderer} {self.info.opengl}"
+        with self._supposing(plan):
+            made = f"{self._hash_of(plan)} {self.info.renderer} {self.info.opengl}"
         return blake2b(made.encode(), digest_size=16).hexdigest()
+
+    def _hash_of(self, plan: Plan) -> str:
+        shown = next(iter(plan.flat.outputs["view"].values()))
+        return self._drawn.hash_of(plan, shown, self.form_of, self._given_for, _continued(plan))
 
     def forget_unused(self) -> None:
         """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
@@ -322,12 +319,22 @@ class Engine:
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
         plan = self.plan_for(sketch, size, time, steps)
-        before, self._plan = self._plan, plan
-        try:
+        with self._supposing(plan):
             keys = self._keys.keys_of(plan, self.form_of, self._given_for, _continued(plan))
+        return would_run(keys, self.cache, needed(plan.nodes, next(iter(plan.flat.outputs["view"].values()))))
+
+    @contextmanager
+    def _supposing(self, plan: Plan) -> Iterator[None]:
+        """Suppose that a plan were being drawn; afterwards the last frame's is the last frame's again."""
+        before = self._plan
+        self._plan = plan
+        self.runner.look_at(plan)
+        try:
+            yield
         finally:
             self._plan = before
-        return would_run(keys, self.cache, needed(plan.nodes, next(iter(plan.flat.outputs["view"].values()))))
+            if before is not None:
+                self.runner.look_at(before)
 
     # ── running ──────────────────────────────────────────────────────────────
 

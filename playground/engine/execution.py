@@ -14,7 +14,7 @@ from playground.engine.plan import PlanNode, Step, Turns, walk
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
-from playground.sketch.flatten import Fed, Source
+from playground.sketch.flatten import Fed, Ref, Source
 
 Turn = tuple[int, int]
 """A turn of a loop, and its turns in all."""
@@ -155,11 +155,22 @@ class Execution:
 
 def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode]) -> list[str]:
     """Return the paths of the steps that an execution would run: those that the cache does not keep."""
+    wanted = tuple(nodes)
+    steps = {step.path: step for step in walk(wanted)}
     found: list[str] = []
-    for node in nodes:
+    for node in wanted:
         if isinstance(node, Turns):
             if not cache.holds(keys.loops[node.path], node.repeat):
                 found += [step.path for step in walk((node,))]
-        elif keys.steps[node.path] not in cache:
+        elif keys.steps[node.path] not in cache and not _draws_nothing(node, steps):
             found.append(node.path)
     return found
+
+
+def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
+    """Say whether an earlier draw will stand for a step: see ``Execution``."""
+    start = dict(step.inputs).get("initial")
+    earlier = steps.get(start.path) if isinstance(start, Ref) else None
+    if step.kernel.kind != "draw" or step.repeat or earlier is None:
+        return False
+    return earlier.kernel.kind == "draw" and earlier.size == step.size

@@ -54,8 +54,12 @@ class Runner:
 
     def begin(self, plan: Plan) -> None:
         """Begin a frame."""
-        self._plan = plan
+        self.look_at(plan)
         self.programs.begin()
+
+    def look_at(self, plan: Plan) -> None:
+        """Take land, time and camera from a plan."""
+        self._plan = plan
         eye = plan.eye
         self._given = {
             "time": plan.time,

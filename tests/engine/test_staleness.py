@@ -10,6 +10,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
+from playground.sketch.model import Camera
 
 LAND = """#pragma kernel(output = "height:r32f")
 uniform float bumps = 3.0;   //! slider(0, 10) How many
@@ -249,3 +250,27 @@ def test_keys_and_plan_take_little_time(any_engine, four):
         spent.append(time.process_time() - start)
     assert any_engine.ran == []
     assert min(spent) < 0.02, "a second of Python in every frame would be felt"
+
+
+CHANGES = {
+    "relief": lambda four: replace(four, relief=150.0),
+    "extent": lambda four: replace(four, extent=(2000.0, 1000.0)),
+    "camera": lambda four: four.with_camera(Camera(azimuth=77.0)),
+    "a value": lambda four: four.with_values({"light.sun": (90.0, 10.0)}),
+    "nothing": lambda four: four,
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_would_run_is_what_runs_and_asking_changes_nothing(engine, folder, four, what):
+    four = folder.sketch(f'{FOUR}[view]\nuse = "view/terrain"\n')
+    engine.draw(four, size=(32, 18))
+    plan, drawn = engine.plan, engine.drawn()
+    changed = CHANGES[what](four)
+    would = engine.stale(changed, size=(32, 18))
+    fingerprint = engine.fingerprint(changed, size=(32, 18))
+    assert engine.plan is plan and engine.drawn() == drawn
+    assert (fingerprint == engine.fingerprint(four, size=(32, 18))) == (what == "nothing")
+    engine.draw(changed, size=(32, 18))
+    assert engine.ran == would
+    assert bool(would) == (what != "nothing")
