@@ -11,13 +11,14 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, cast
+from typing import IO, TYPE_CHECKING
 
 from playground.engine.engine import Engine
 from playground.engine.mistakes import all_mistakes
 from playground.engine.plan import smallest_land
 from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch
-from playground.engine.trial_process import Doing, Ready, receive, send
+from playground.engine.trial_process import Doing, Ready, receive_bytes, send
+from playground.engine.trial_wire import Reader
 from playground.errors import ContextError, PlaygroundError, ShaderError, TrialCrash
 from playground.gpu.context import open_context
 from playground.gpu.program import compile_library
@@ -63,13 +64,15 @@ def main() -> None:
     tell = Teller(answers)
     engines: dict[str, Engine] = {}
     send(answers, Ready())
-    while (request := receive(requests)) is not None:
+    reader = Reader()
+    while (data := receive_bytes(requests)) is not None:
         start = time.perf_counter()
+        request: Request = reader.read(data)
         _end_yourself_after(longest)
         if ctx is None:
             report = TrialReport(False, failure)
         else:
-            report = _try(ctx, engines, cast("Request", request), tell)
+            report = _try(ctx, engines, request, tell)
         _end_yourself_after(0.0)
         send(answers, replace(report, seconds=time.perf_counter() - start))
 

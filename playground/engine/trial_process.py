@@ -22,6 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Generic, TypeVar
 
+from playground.engine.trial_wire import Writer
+
 Answer = TypeVar("Answer")
 
 _WINDOWS = {0xC0000005: "an access violation", 0xC00000FD: "a stack overflow", 0xC0000409: "an abort"}
@@ -149,8 +151,9 @@ class Process(Generic[Answer]):
         self.answers.put(None)
 
     def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
+        writer = Writer()
         while (request := self._requests.get()) is not None:
-            send(requests, request)
+            send_bytes(requests, writer.write(request))
             while isinstance(answer := receive(answers), Doing):
                 self.doing = answer
             if answer is None:
@@ -174,16 +177,26 @@ def _signal_name(number: int) -> str:
 
 def send(stream: IO[bytes], message: object) -> None:
     """Write one message, its length before it."""
-    data = pickle.dumps(message)
+    send_bytes(stream, pickle.dumps(message))
+
+
+def send_bytes(stream: IO[bytes], data: bytes) -> None:
+    """Write one message that is bytes already."""
     stream.write(struct.pack("<Q", len(data)) + data)
     stream.flush()
 
 
 def receive(stream: IO[bytes]) -> object | None:
     """Read one message of ``send``; None at the end. Only ever from our own child or parent."""
+    data = receive_bytes(stream)
+    return None if data is None else pickle.loads(data)
+
+
+def receive_bytes(stream: IO[bytes]) -> bytes | None:
+    """Read one message of ``send_bytes``; None at the end."""
     head = stream.read(8)
     if len(head) < 8:
         return None
     (length,) = struct.unpack("<Q", head)
     data = stream.read(length)
-    return pickle.loads(data) if len(data) == length else None
+    return data if len(data) == length else None

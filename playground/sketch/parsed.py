@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel
@@ -18,6 +20,8 @@ from playground.sketch.source import Origin, read_source_and_origin
 _MOST = 256
 
 _kept: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
+# What each was made of is held too, so that identities stay their own.
+_replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Kernel]] = OrderedDict()
 
 
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
@@ -31,3 +35,15 @@ def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None
             _kept.popitem(last=False)
     _kept.move_to_end(key)
     return known[0]
+
+
+def replaced(kernel: Kernel, **changes: Any) -> Kernel:
+    """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
+    key = (id(kernel), *((name, id(v) if isinstance(v, Kernel) else v) for name, v in changes.items()))
+    known = _replaced.get(key)
+    if known is None:
+        known = _replaced[key] = (kernel, changes, replace(kernel, **changes))
+        while len(_replaced) > _MOST:
+            _replaced.popitem(last=False)
+    _replaced.move_to_end(key)
+    return known[2]

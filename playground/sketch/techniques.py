@@ -9,7 +9,7 @@ from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.find import shipped_names
 from playground.sketch.model import Graph, Kernel, Output, Technique
-from playground.sketch.parsed import parsed_kernel
+from playground.sketch.parsed import parsed_kernel, replaced
 from playground.sketch.places import TECHNIQUES, is_file, is_inside, leads_outside, names_below
 from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
@@ -33,7 +33,8 @@ def read_kernel(path: Path, folder: Path) -> Kernel | None:
     _check_files(kernel, folder)
     beside = path.with_suffix(".comp")
     if path.suffix == ".glsl" and kernel.kind == "kernel" and is_file(beside):
-        kernel = replace(kernel, companion=_read_companion(beside, folder, kernel, kernel.outputs))
+        companion = _read_companion(beside, folder, kernel, kernel.outputs)
+        kernel = replaced(kernel, companion=companion)
     return kernel
 
 
@@ -183,7 +184,7 @@ def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple
         held = next((b.type for b in companion.buffers if b.name == output.name), "")
         if held and not (output.format.endswith("32f") and held in floats[output.components]):
             raise companion.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
-    return replace(companion, outputs=outputs, accepts=_accepts(of))
+    return replaced(companion, outputs=outputs, accepts=_accepts(of))
 
 
 def _accepts(technique: Kernel | Graph) -> str:

@@ -8,6 +8,7 @@ import pytest
 
 from playground.errors import ShaderError
 from playground.sketch.parsed import parsed_kernel
+from playground.sketch.techniques import read_kernel
 
 KERNEL = """#include "part.glsl"
 #pragma kernel(output = "height:r32f")
@@ -68,3 +69,21 @@ def test_a_link_that_leads_elsewhere_is_seen_though_the_text_is_the_same(files):
     (files / "part.glsl").unlink()
     (files / "part.glsl").symlink_to("two.glsl")
     assert any(file.endswith("two.glsl") for file in read(files).source.files)
+
+
+COMPANION = """#pragma compute(groups = "(size.x + 7) / 8, (size.y + 7) / 8")
+void main() {}
+"""
+
+
+def test_a_kernel_and_its_companion_stay_one_object_until_either_changes(files):
+    path = files / "inner" / "k.glsl"
+    path.with_suffix(".comp").write_text(COMPANION)
+    first = read_kernel(path, files)
+    assert first.companion is not None and read_kernel(path, files) is first
+    path.with_suffix(".comp").write_text(COMPANION.replace("{}", "{ }"))
+    second = read_kernel(path, files)
+    assert second.companion.source.code != first.companion.source.code
+    (files / "part.glsl").write_text(PART.replace("1.0", "2.0"))
+    third = read_kernel(path, files)
+    assert third.companion == second.companion and "2.0" in third.source.code

@@ -1,0 +1,90 @@
+"""A sketch comes over to the trial's process whole, and a kernel that is there already comes no more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from playground.engine.trial import TryLibrary, TrySketch
+from playground.engine.trial_wire import Reader, Writer
+from playground.sketch.load import load
+from playground.sketch.model import Kernel, Sketch, kernels_of
+
+LAND = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.5; }
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "./land"
+[[pass]]
+name = "again"
+use = "./land"
+[[pass]]
+name = "light"
+use = "lighting/ray_cast"
+inputs = { height = "height" }
+[view]
+use = "view/terrain"
+"""
+
+
+@dataclass
+class Ends:
+    """Both ends, and what went over last."""
+
+    writer: Writer
+    reader: Reader
+    bytes: int = 0
+
+    def over(self, message: object) -> object:
+        data = self.writer.write(message)
+        self.bytes = len(data)
+        return self.reader.read(data)
+
+
+@pytest.fixture
+def ends() -> Ends:
+    return Ends(Writer(), Reader())
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "land.glsl").write_text(LAND)
+    (tmp_path / "sketch.toml").write_text(SKETCH)
+    return tmp_path
+
+
+def kernels(sketch: Sketch) -> dict[str, Kernel]:
+    return dict(kernels_of(sketch.graph))
+
+
+def test_what_comes_over_is_what_was_sent(ends, folder):
+    for edit in ("0.5", "0.25", "0.5"):
+        (folder / "land.glsl").write_text(LAND.replace("0.5", edit))
+        request = TrySketch(load(folder), time=1.0, drivers=("fragment",))
+        assert ends.over(request) == request
+    library = TryLibrary("a", "b")
+    assert ends.over(library) == library
+    assert ends.over(request) == request, "nothing of it was kept at either end"
+
+
+def test_only_what_changed_goes_over(ends, folder):
+    before = kernels(ends.over(TrySketch(load(folder))).sketch)
+    whole = ends.bytes
+    (folder / "land.glsl").write_text(LAND.replace("0.5", "0.25"))
+    after = kernels(ends.over(TrySketch(load(folder))).sketch)
+    assert ends.bytes < whole / 4
+    assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
+    assert after["height"] is after["again"], "one object stays one"
+
+
+def test_neither_end_keeps_what_is_no_longer_used(ends, folder):
+    for number in range(20):
+        (folder / "land.glsl").write_text(LAND.replace("0.5", f"0.{number + 1}"))
+        sketch = load(folder)
+        ends.over(TrySketch(sketch))
+        distinct = len({id(kernel) for kernel in kernels(sketch).values()})
+        assert len(ends.writer._known) == len(ends.reader._known) == distinct
