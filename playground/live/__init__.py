@@ -3,12 +3,14 @@
     clock.py      the sketch's own time: runs, rests, never jumps
     files.py      which files a sketch stands on
     watch.py      which of them have changed
+    words.py      whether the hand's value or the file's counts
     edits.py      what a person changed by hand, and how it survives a change of the files
     picture.py    the last good picture, and a texture put on a screen
     maps.py       any texture of a sketch, shown from above
     begin.py      what was set by hand in an earlier session, over the files of now
     stages.py     the stages a saved sketch goes through, and who tries it
-    session.py    what is shown, what was changed, what is wrong; knows of no window
+    drafts.py     what the files say, what was changed, what is wrong; draws nothing
+    session.py    the sketch as it is seen: its picture, a map, time; knows of no window
     follow.py     a session and its files kept together
     memory.py     the file that remembers one sketch
     remember.py   what a session shows, remembered as one goes

@@ -1,0 +1,264 @@
+"""The drafts of a sketch being worked on: what its files say, what was set by hand, what is wrong.
+
+There are at most two. ``shown`` is the last one that drew well; ``coming`` is what was
+saved or chosen since: it is tried (in the trial child, where there is one), then drawn,
+and only then takes the place of ``shown``. If it fails, its error is kept and ``shown``
+stays. Who draws them is ``live.session``.
+"""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from playground.engine.trial import TrySketch
+from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.live.begin import first_draft
+from playground.live.clock import Clock
+from playground.live.edits import Draft, Edits, reload_draft, taken
+from playground.live.files import watched
+from playground.live.stages import Stage, Tester, explained
+from playground.live.sunlight import suns_of, turned
+from playground.live.words import Said
+from playground.sketch.find import find
+from playground.sketch.load import load
+from playground.sketch.model import Camera, Sketch, Value
+from playground.sketch.places import Signature, noting_places
+
+
+class Drafts(ABC):
+    """What is shown of a sketch's files, what is coming, and what was set by hand."""
+
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        driver: str,
+        values: Mapping[str, Value] | None = None,
+        edits: Edits | None = None,
+        in_file: Mapping[str, Said] | None = None,
+        trial: Tester | None = None,
+        now: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self.path = find(path) if path else find("")
+        self.clock = Clock()
+        self.shown: Draft | None = None
+        self.coming: Draft | None = None
+        self.stage = Stage.NONE
+        self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them takes them out
+        self.read_at = 0.0  # [s since the epoch] when the files were last read
+        self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
+        edits = edits or Edits()
+        for name, value in (values or {}).items():
+            edits = edits.with_value(name, value)
+        self._initial = edits  # set by hand in an earlier session; the values, on the command line
+        self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
+        self._another = False  # what is coming is another sketch than the one that is shown
+        self._driver = driver
+        self._trial = trial
+        self._now = now
+        self._started = 0.0  # when what is coming began to be read
+        self._trial_seconds = 0.0
+        self._coming_notes: list[str] = []
+        self._file_error: PlaygroundError | None = None  # of what is coming
+        self._draw_error: PlaygroundError | None = None  # of what is shown
+        self._revision = 0  # of what is to be seen
+
+    # ── what they are ────────────────────────────────────────────────────────
+
+    @property
+    def sketch(self) -> Sketch | None:
+        """The sketch that is shown; None before the first good one."""
+        return self.shown.sketch if self.shown else None
+
+    @property
+    def error(self) -> PlaygroundError | None:
+        """What is wrong just now."""
+        return self._file_error or self._draw_error
+
+    @property
+    def testing(self) -> bool:
+        """Whether an answer of the trial is awaited."""
+        return self.stage is Stage.TRIAL
+
+    @property
+    def files(self) -> frozenset[Path]:
+        """Every file worth watching: of the drafts, those that an error points at, and where others may come.
+
+        See ``files.watched``.
+        """
+        drafts = [draft for draft in (self.shown, self.coming) if draft is not None]
+        errors = [error for error in (self._file_error, self._draw_error) if error is not None]
+        sketches = [sketch for draft in drafts for sketch in (draft.sketch, draft.file)]
+        return watched(self.path, sketches, errors, self.places)
+
+    # ── files ────────────────────────────────────────────────────────────────
+
+    def reload(self) -> None:
+        """Read the files again; what is new in them is shown once it has proved good."""
+        self.read_at = time.time()
+        self._started = self._now()
+        try:
+            with noting_places() as self.places:
+                loaded = load(self.path)
+            old = None if self._another else self.shown or self.coming
+            draft, notes = (
+                reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
+            )
+        except Exception as error:
+            self._drop_coming()
+            self._file_error = explained(error)
+            return
+        if self.shown is not None and loaded == self.shown.file:
+            self._drop_coming()
+            self._file_error = self._draw_error = None
+            self._revision += 1  # the texts are the same, but an image may be another
+            return
+        self._propose(draft, notes)
+
+    def open(self, path: Path, *, keep: bool = False) -> None:
+        """Open another sketch; the picture stays until that one has proved good.
+
+        ``keep``: it is a copy of this one, and what is set by hand goes on.
+        """
+        self.path = find(path)
+        if not keep:
+            self._initial, self._in_file, self._another = Edits(), {}, True
+            self._forget_view()
+        self.reload()
+
+    def choose(self, pass_name: str, use: str) -> None:
+        """Fill a pass with another technique, once that has proved good."""
+        if self.shown is None:
+            return
+        self._started = self._now()
+        try:
+            self._propose(self.shown.choose(pass_name, use), [])
+        except PlaygroundError as error:
+            self._file_error = error
+
+    def dismiss(self) -> None:
+        """Put what failed away; a save brings it back."""
+        if self.stage is Stage.FAILED:
+            self._drop_coming()
+        self._file_error = self._draw_error = None
+
+    def _propose(self, draft: Draft, notes: list[str]) -> None:
+        self.coming, self._coming_notes = draft, notes
+        self._file_error, self._trial_seconds = None, 0.0
+        if self._trial is None or not self._draws_anew(draft.sketch):
+            self.stage = Stage.DRAW
+            return
+        self.stage = Stage.TRIAL
+        self._trial.submit(TrySketch(draft.sketch, time=self.clock.time, drivers=(self._driver,)))
+
+    @abstractmethod
+    def _draws_anew(self, sketch: Sketch) -> bool:
+        """Say whether the driver would be given anything that it has not drawn already."""
+
+    @abstractmethod
+    def _forget_view(self) -> None:
+        """Forget what was shown of the sketch before: another one is opened."""
+
+    def _drop_coming(self) -> None:
+        self.coming, self.stage, self._coming_notes = None, Stage.NONE, []
+
+    # ── edits by hand ────────────────────────────────────────────────────────
+
+    def set(self, path: str, value: object) -> None:
+        """Set a parameter by its path; one that it does not take becomes a note."""
+        if self.sketch is None:
+            return
+        try:
+            changed = self.sketch.with_values({path: value})
+        except ParameterError as error:
+            self.notes.append(str(error))
+            return
+        kept = dict(changed.overrides).get(path, value)
+        self._edit(lambda edits: edits.with_value(path, kept))  # type: ignore[arg-type]
+
+    def set_all(self, values: Mapping[str, Value]) -> None:
+        """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
+        if self.shown is not None:
+            free = [(p, v) for p, v in values.items() if p not in self.shown.edits.locked]
+            fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
+            others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
+            self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+
+    def unset(self, *paths: str) -> None:
+        """Give parameters back the file's values."""
+        draft = self.shown
+        if draft is not None:
+            for path in paths:
+                draft = draft.without(path)
+            left = draft.edits.values
+            self._edit(lambda edits: replace(edits, values=left))
+
+    def lock(self, path: str, locked: bool) -> None:
+        """Lock a parameter against presets, chance and reloads, or let it go."""
+        self._edit(lambda edits: edits.with_lock(path, locked))
+
+    def restore(self, edits: Edits) -> None:
+        """Take other edits for those of now: values and camera at once, techniques once they proved good."""
+        if self.shown is None:
+            return
+        if edits.techniques == self.shown.edits.techniques:
+            self._edit(lambda old: replace(edits, techniques=old.techniques))
+            return
+        self._started = self._now()
+        try:
+            self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
+        except PlaygroundError as error:
+            self._file_error = error
+
+    def look(self, camera: Camera) -> None:
+        """See the land from another camera."""
+        self._edit(lambda edits: replace(edits, camera=camera))
+
+    def apply_preset(self, name: str) -> None:
+        """Set the values of one of the sketch's presets."""
+        for preset in self.sketch.presets if self.sketch else ():
+            if preset.name == name:
+                self.set_all(dict(preset.values))
+
+    def turn_suns(self, across: float, up: float) -> None:
+        """Move every sun of the sketch by so much of the picture's height, to the right and upwards."""
+        if self.sketch is not None:
+            for path, sun in suns_of(self.sketch).items():
+                self.set(path, turned(sun, across, up))
+
+    def reset_camera(self) -> None:
+        """See the land as the file says."""
+        self._edit(lambda edits: replace(edits, camera=None))
+
+    def reset_values(self) -> None:
+        """Give all that is not locked, and every pass, back what the file says."""
+        if self.shown is not None:
+            locked = set(self.shown.edits.locked)
+            left = tuple(v for v in self.shown.edits.values if v[0] in locked)
+            self.restore(replace(self.shown.edits, values=left, techniques=()))
+
+    def _edit(self, change: Callable[[Edits], Edits]) -> None:
+        self._revision += 1
+        if self.shown is not None:
+            self.shown = self.shown.with_edits(change(self.shown.edits))
+        if self.coming is not None:
+            self.coming = self.coming.with_edits(change(self.coming.edits))
+
+    def _hear_trial(self) -> None:
+        if self.stage is not Stage.TRIAL or self._trial is None:
+            return
+        report = self._trial.poll()
+        if report is None:
+            return
+        # Without a context the child can try nothing; this one may well have what it takes.
+        if report.ok or isinstance(report.error, ContextError):
+            self.stage = Stage.DRAW
+            self._trial_seconds = report.seconds
+            return
+        self.stage = Stage.FAILED
+        self._file_error = report.error or PlaygroundError("the trial failed without saying why")
