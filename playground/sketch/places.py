@@ -29,6 +29,7 @@ Signature = tuple[int, int, int]
 """Inode, time of change [ns] and size of a file: what differs when it was saved since."""
 
 _noted: ContextVar[dict[Path, Signature | None] | None] = ContextVar("noted", default=None)
+_led: ContextVar[dict[Path, Path | None] | None] = ContextVar("led", default=None)
 
 
 @contextmanager
@@ -36,14 +37,16 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
     """Note every place where a file was looked for, and the signature of what was there, None for nothing.
 
     The same places give the same sketch: whoever follows them misses no file that comes,
-    goes or changes, also one that would stand before another from then on.
+    goes or changes, also one that would stand before another from then on. Meanwhile links
+    are followed once each: hundreds of places share a few folders.
     """
     found: dict[Path, Signature | None] = {}
-    token = _noted.set(found)
+    noted, led = _noted.set(found), _led.set({})
     try:
         yield found
     finally:
-        _noted.reset(token)
+        _noted.reset(noted)
+        _led.reset(led)
 
 
 def note(path: Path) -> None:
@@ -64,10 +67,16 @@ def signature(path: Path) -> Signature | None:
 
 def real(path: Path) -> Path | None:
     """Return a path with its links followed; None for what can name no file (a NUL, links in a circle)."""
+    led = _led.get()
+    if led is not None and path in led:
+        return led[path]
     try:
-        return path.resolve()
+        found = path.resolve()
     except (OSError, ValueError, RuntimeError):
-        return None
+        found = None
+    if led is not None:
+        led[path] = found
+    return found
 
 
 def is_file(path: Path) -> bool:

@@ -1,4 +1,4 @@
-"""Which folder a technique opened alone may read from: one rule, whoever opens it."""
+"""Which folder a technique opened alone may read from, and where links lead: one rule, whoever asks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from playground.errors import ShaderError
 from playground.paths import GLSL
 from playground.sketch.load import load
-from playground.sketch.places import root_of
+from playground.sketch.places import noting_places, real, root_of
 
 KERNEL = """#include "../lib.glsl"
 #pragma kernel(output = "height:r32f")
@@ -53,3 +53,25 @@ def test_a_technique_of_several_passes_does_too(hills: Path):
     whole = hills / "parts" / "whole.toml"
     whole.write_text('[[pass]]\nname = "height"\nuse = "./k"\n[outputs]\nheight = "height"\n')
     assert str(hills / "lib.glsl") in load(whole).files
+
+
+def test_links_are_followed_once_in_a_reading_and_anew_in_the_next(tmp_path):
+    first, second, link = tmp_path / "first", tmp_path / "second", tmp_path / "link"
+    first.mkdir()
+    second.mkdir()
+    link_to(link, first)
+    with noting_places():
+        assert real(link) == first
+        link.unlink()
+        link_to(link, second)
+        assert real(link) == first, "one reading sees one state"
+        with noting_places():
+            assert real(link) == second
+    assert real(link) == second
+
+
+def link_to(link: Path, target: Path) -> None:
+    try:
+        link.symlink_to(target, target_is_directory=True)
+    except OSError:
+        pytest.skip("this system makes no links")
