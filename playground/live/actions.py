@@ -12,6 +12,7 @@ from playground.live.edits import Edits
 from playground.live.history import History, State, applied, edits_of, state_of, steps_of
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
+from playground.live.see.state import See
 from playground.live.session import Session
 from playground.live.stages import Stage
 from playground.paths import shown
@@ -52,6 +53,7 @@ class Actions:
 
     def __post_init__(self) -> None:
         self.painting = Painting(self.session, self.folder)
+        self.see = See(self.session)
 
     def say(self, text: str) -> None:
         """Put a sentence on the screen; the same one again only stays longer."""

@@ -32,6 +32,7 @@ from playground.live.panel import Panel
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.remember import QUIET, Rememberer, memory_of
+from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
@@ -159,6 +160,7 @@ class Live:
 
     def release(self) -> None:
         """Give back all that was made in the window's context."""
+        self.actions.see.release()
         self.painter.release()
         self.session.release()
         self.session.engine.release()
@@ -221,6 +223,7 @@ class Live:
             draw_error(session.error, actions, window.theme, area)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
+        draw_see(actions, picture, window.theme, area, window.density)
         draw_notices(actions, window.theme, area)
         draw_drops(actions, window.theme)
         draw_keymap(actions, window.theme)

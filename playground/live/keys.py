@@ -30,6 +30,13 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
     Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
+    Key(
+        imgui.Key.i,
+        "I",
+        "every pass's number at a pixel; Shift: of those inside, too",
+        "",
+        lambda a: a.see.inspector.toggle(),
+    ),
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),

@@ -1,0 +1,10 @@
+"""What the live window shows beside the picture: numbers, costs, comparisons, time.
+
+    ground.py     the place of the land under a pixel, found by the graphics card
+    inspector.py  what every pass has under the mouse
+    state.py      all of it that a key or a button switches
+    glass.py      the box at the mouse that shows what the inspector found
+    view.py       draws all that is on over the picture
+
+Nothing here draws the sketch, and what is not shown costs nothing.
+"""
