@@ -205,6 +205,7 @@ class Live:
         window, session, actions = self.window, self.session, self.actions
         take_dropped(actions, self.place.dropped())
         window.begin()
+        actions.see.begin()
         left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
         act_on_keys(actions)
         room = imgui.get_main_viewport().size

@@ -155,6 +155,7 @@ class Bare:
 
     def draw(self) -> None:
         """Draw the panel, and what stands over the window."""
+        self.actions.see.begin()
         left = self.panel.draw(self.actions, self.theme)
         room = imgui.get_io().display_size
         area = left, 0.0, max(room.x - left, 1.0), room.y

@@ -19,6 +19,7 @@ def draw_see(
     actions: Actions, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
 ) -> None:
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
+    actions.see.look()
     if picture is not None:
         _inspect(actions, picture, look, area, density)
 
