@@ -32,6 +32,7 @@ from playground.live.panel import Panel
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.remember import QUIET, Rememberer, memory_of
+from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
@@ -221,7 +222,8 @@ class Live:
         self._say_reload()
         actions.take_notes()
         if session.error is not None:
-            draw_error(session.error, actions, window.theme, area)
+            above = (*area[:3], area[3] - height_of_timeline(actions, window.theme))
+            draw_error(session.error, actions, window.theme, above)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
         draw_see(actions, picture, window.theme, area, window.density)

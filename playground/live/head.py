@@ -43,8 +43,6 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("PNG"):
         actions.save_picture()
     imgui.set_item_tooltip(f"Save the picture as a new file in {actions.folder} (S)")
-    if session.animated:
-        _time(actions, look)
     if sketch.presets:
         _presets(sketch, memory, actions)
     _shown(actions)
@@ -243,22 +241,6 @@ def _saves(memory: Memory, actions: Actions) -> None:
 
 
 # ── rows ─────────────────────────────────────────────────────────────────────
-
-
-def _time(actions: Actions, look: Theme) -> None:
-    clock = actions.session.clock
-    wide = 64 * look.scale
-    if imgui.button("Pause" if clock.playing else "Play", ImVec2(wide, 0)):
-        clock.toggle()
-    imgui.set_item_tooltip("Space")
-    imgui.same_line()
-    imgui.set_next_item_width(-wide - imgui.get_style().item_spacing.x)
-    changed, time = imgui.drag_float("##time", clock.time, 0.05, 0.0, 1e6, "time %.2f s")
-    if changed:
-        actions.seek(time)
-    imgui.same_line()
-    if imgui.button("To 0", ImVec2(-1, 0)):
-        actions.rewind()
 
 
 def _presets(sketch: Sketch, memory: Memory, actions: Actions) -> None:

@@ -27,6 +27,9 @@ class Key:
 
 KEYS: tuple[Key, ...] = (
     Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
+    Key(imgui.Key.none, ",", "a frame of time back", "", lambda a: a.step_time(-1), letter=","),
+    Key(imgui.Key.none, ".", "a frame of time on", "", lambda a: a.step_time(1), letter="."),
+    Key(imgui.Key.l, "L", "time goes round, or no longer", "", lambda a: a.toggle_loop()),
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
     Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),

@@ -3,9 +3,11 @@
     ground.py     the place of the land under a pixel, found by the graphics card
     inspector.py  what every pass has under the mouse
     record.py     what the last pictures cost
+    time.py       how long a sketch's time is, and its frames
     state.py      all of it that a key or a button switches
     plots.py      ImPlot, made ready when the first plot is shown
     glass.py      the box at the mouse that shows what the inspector found
+    timeline.py   the bar of time under the picture
     view.py       draws all that is on over the picture
 
 Nothing here draws the sketch, and what is not shown costs nothing.

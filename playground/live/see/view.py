@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from playground.live.actions import Actions
 from playground.live.overlay import Area
 from playground.live.see.glass import draw_glass
+from playground.live.see.timeline import draw_timeline
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ def draw_see(
 ) -> None:
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
     actions.see.look()
+    draw_timeline(actions, look, area)
     if picture is not None:
         _inspect(actions, picture, look, area, density)
 
