@@ -180,7 +180,7 @@ class Live:
         """Say how long nothing needs to be done [s]."""
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
-        if self._settling > 0:
+        if self._settling > 0 or self.actions.see.waits:
             return 0.0
         if self.session.testing:
             return _TRIAL

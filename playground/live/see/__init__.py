@@ -2,11 +2,14 @@
 
     ground.py     the place of the land under a pixel, found by the graphics card
     inspector.py  what every pass has under the mouse
+    histogram.py  how a texture's numbers are spread, counted a piece a turn
+    legend.py     the colours of a map's ramp
     record.py     what the last pictures cost
     time.py       how long a sketch's time is, and its frames
     state.py      all of it that a key or a button switches
     plots.py      ImPlot, made ready when the first plot is shown
     glass.py      the box at the mouse that shows what the inspector found
+    spread.py     a map's legend and histogram, in the panel
     timeline.py   the bar of time under the picture
     view.py       draws all that is on over the picture
 

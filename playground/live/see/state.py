@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from playground.live.see.histogram import Counter
 from playground.live.see.inspector import Inspector
+from playground.live.see.legend import Colour, colours_of
 from playground.live.see.record import Record
 from playground.live.session import Session
 
@@ -17,14 +19,24 @@ class See:
     inspector: Inspector = field(init=False)
     record: Record = field(default_factory=Record)
     costs_shown: bool = False  # the costs are on the screen in this turn
+    counter: Counter = field(init=False)
+    spread_shown: bool = False  # the histogram is on the screen in this turn
+    logarithmic: bool = False
+    _colours: dict[int, tuple[Colour, ...]] = field(default_factory=dict)  # of each ramp that was shown
     _recorded: int = -1  # the picture that was taken in last
 
     def __post_init__(self) -> None:
         self.inspector = Inspector(self.session)
+        self.counter = Counter(self.session)
+
+    @property
+    def waits(self) -> bool:
+        """Whether there is work left that the next turn goes on with."""
+        return self.spread_shown and self.counter.waits
 
     def begin(self) -> None:
         """Begin a turn: nothing is on the screen yet."""
-        self.costs_shown = False
+        self.costs_shown = self.spread_shown = False
 
     def look(self) -> None:
         """Take in the turn's picture; passes are timed only while somebody looks at the times."""
@@ -37,7 +49,19 @@ class See:
             self.record.clear()
             session.times.clear()
         engine.profiling = self.costs_shown
+        if self.spread_shown:
+            self.counter.go_on()
+        else:
+            self.counter.stop()
+
+    def colours(self, ramp: int) -> tuple[Colour, ...]:
+        """Return the colours of a map's ramp, asked of the graphics card once."""
+        if ramp not in self._colours:
+            with self.session.engine.borrowed():
+                self._colours[ramp] = colours_of(self.session.engine.ctx, ramp)
+        return self._colours[ramp]
 
     def release(self) -> None:
         """Give back what was made in the engine's context; it is made again where it is needed."""
         self.inspector.release()
+        self.counter.stop()
