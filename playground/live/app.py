@@ -32,6 +32,7 @@ from playground.live.panel import Panel
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.remember import QUIET, Rememberer, memory_of
+from playground.live.see.ab import drag_line, paint_both
 from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
@@ -145,7 +146,7 @@ class Live:
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
         while self.window.open:
-            patience = self._patience()
+            patience = min(self._patience(), self.actions.see.patience(self.actions.now()))
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -180,7 +181,7 @@ class Live:
         """Say how long nothing needs to be done [s]."""
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
-        if self._settling > 0 or self.actions.see.waits:
+        if self._settling > 0:
             return 0.0
         if self.session.testing:
             return _TRIAL
@@ -211,7 +212,8 @@ class Live:
         act_on_keys(actions)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
-        self.hand.act(area, window.density)
+        if not drag_line(actions.see.compare, area):
+            self.hand.act(area, window.density)
         actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
@@ -234,7 +236,9 @@ class Live:
         window.screen.viewport = (0, 0, wide, high)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)
         if picture is not None:
-            self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
+            room_left = (skipped, 0, wide - skipped, high)
+            if not paint_both(actions.see.compare, picture, window.screen, room_left, actions.now()):
+                self.painter.paint(picture, window.screen, room_left)
         window.end()
         self.status.write(actions)
         stands = self.place.geometry()

@@ -43,6 +43,10 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("PNG"):
         actions.save_picture()
     imgui.set_item_tooltip(f"Save the picture as a new file in {actions.folder} (S)")
+    imgui.same_line()
+    if imgui.button("A/B"):
+        actions.see.compare.toggle()
+    imgui.set_item_tooltip("Keep this as A, go on with B, and compare the two; or no longer (C)")
     if sketch.presets:
         _presets(sketch, memory, actions)
     _shown(actions)

@@ -2,6 +2,8 @@
 
     ground.py     the place of the land under a pixel, found by the graphics card
     inspector.py  what every pass has under the mouse
+    beside.py     two pictures painted over one another
+    compare.py    a state that is kept as A beside what is worked on
     histogram.py  how a texture's numbers are spread, counted a piece a turn
     legend.py     the colours of a map's ramp
     record.py     what the last pictures cost
@@ -10,6 +12,7 @@
     plots.py      ImPlot, made ready when the first plot is shown
     glass.py      the box at the mouse that shows what the inspector found
     spread.py     a map's legend and histogram, in the panel
+    ab.py         A and B on the screen
     timeline.py   the bar of time under the picture
     view.py       draws all that is on over the picture
 

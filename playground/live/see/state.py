@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
+from playground.live.see.compare import PERIOD, Compare, Mode
 from playground.live.see.histogram import Counter
 from playground.live.see.inspector import Inspector
 from playground.live.see.legend import Colour, colours_of
@@ -20,6 +22,7 @@ class See:
     record: Record = field(default_factory=Record)
     costs_shown: bool = False  # the costs are on the screen in this turn
     counter: Counter = field(init=False)
+    compare: Compare = field(init=False)
     spread_shown: bool = False  # the histogram is on the screen in this turn
     logarithmic: bool = False
     _colours: dict[int, tuple[Colour, ...]] = field(default_factory=dict)  # of each ramp that was shown
@@ -28,11 +31,15 @@ class See:
     def __post_init__(self) -> None:
         self.inspector = Inspector(self.session)
         self.counter = Counter(self.session)
+        self.compare = Compare(self.session)
 
-    @property
-    def waits(self) -> bool:
-        """Whether there is work left that the next turn goes on with."""
-        return self.spread_shown and self.counter.waits
+    def patience(self, now: float) -> float:
+        """Say how long nothing needs to be done here [s], at a moment of the clock that flickers."""
+        if self.spread_shown and self.counter.waits:
+            return 0.0
+        if self.compare.on and self.compare.mode is Mode.FLICKER:
+            return PERIOD - now % PERIOD
+        return math.inf
 
     def begin(self) -> None:
         """Begin a turn: nothing is on the screen yet."""
@@ -65,3 +72,4 @@ class See:
         """Give back what was made in the engine's context; it is made again where it is needed."""
         self.inspector.release()
         self.counter.stop()
+        self.compare.release()

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 
 from playground.live.actions import Actions
 from playground.live.overlay import Area
+from playground.live.see.ab import draw_ab
 from playground.live.see.glass import draw_glass
 from playground.live.see.timeline import draw_timeline
 from playground.live.theme import Theme
@@ -20,7 +21,10 @@ def draw_see(
     actions: Actions, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
 ) -> None:
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
+    if picture is not None:
+        actions.see.compare.follow(picture)
     actions.see.look()
+    draw_ab(actions, look, area)
     draw_timeline(actions, look, area)
     if picture is not None:
         _inspect(actions, picture, look, area, density)
