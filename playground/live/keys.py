@@ -41,6 +41,7 @@ KEYS: tuple[Key, ...] = (
         lambda a: a.see.inspector.toggle(),
     ),
     Key(imgui.Key.c, "C", "keep this as A and compare; or no longer", "", lambda a: a.see.compare.toggle()),
+    Key(imgui.Key.g, "G", "the passes as a graph, or no longer", "", lambda a: a.see.graph.toggle()),
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),

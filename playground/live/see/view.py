@@ -10,6 +10,7 @@ from playground.live.actions import Actions
 from playground.live.overlay import Area
 from playground.live.see.ab import draw_ab
 from playground.live.see.glass import draw_glass
+from playground.live.see.graph import draw_graph
 from playground.live.see.timeline import draw_timeline
 from playground.live.theme import Theme
 
@@ -23,11 +24,13 @@ def draw_see(
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
     if picture is not None:
         actions.see.compare.follow(picture)
-    actions.see.look()
+    actions.see.graph.look(actions.now())  # before anything of it is drawn: what is given back is not shown
+    draw_graph(actions, look, area)
     draw_ab(actions, look, area)
     draw_timeline(actions, look, area)
     if picture is not None:
         _inspect(actions, picture, look, area, density)
+    actions.see.look()
 
 
 def _inspect(actions: Actions, picture: moderngl.Texture, look: Theme, area: Area, density: float) -> None:
