@@ -109,6 +109,12 @@ def test_all_of_it_by_keys_and_by_mouse(screen: Screen, program: Program) -> Non
         return bool(left and (now[:, middle + 40 :] != before[:, middle + 40 :]).any(axis=2).mean() > 0.3)
 
     until(program, halves)
+    line = (PANEL + WIDTH) // 2
+    screen.do("mousemove", line, 400, "sleep", 0.3, "mousedown", 1, "sleep", 0.3)
+    screen.do("mousemove", line + 60, 400, "sleep", 0.3, "mousemove", line + 120, 400, "sleep", 0.3)
+    screen.do("mouseup", 1, "mousemove", 620, 300)  # the mouse itself is on the screen as well
+    moved = middle + 80
+    until(program, lambda: (picture(screen)[:, :moved] == before[:, :moved]).all())
     screen.do("key", "c")
 
     # The bar of time: a click there goes to that moment, and a full stop a picture on.
