@@ -248,6 +248,7 @@ def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
     painter.paint((a, b), framebuffer, (4, 0, 20, 10), gain=3.0)
     wanted = np.minimum(3 * np.abs(one.astype(int) - two), 255)[..., :3]
     np.testing.assert_array_equal(read_picture(target)[::-1, 4:, :3], wanted)
+    ctx.detect_framebuffer(0).use()  # what stays bound is bound again by later calls
     for made in (painter, framebuffer, target, a, b):
         made.release()
 
