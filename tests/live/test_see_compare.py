@@ -233,6 +233,7 @@ def test_another_sketch_ends_it(
 
 
 def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
+    ctx.detect_framebuffer(0).use()  # nothing is bound that another test has taken away
     random = np.random.default_rng(2)
     a, b = (make_texture(ctx, (20, 10), "rgba8") for _ in range(2))
     one, two = (random.integers(0, 256, (10, 20, 4), dtype=np.uint8) for _ in range(2))

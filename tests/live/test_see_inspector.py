@@ -78,6 +78,7 @@ def inspector(session: Session) -> Iterator[Inspector]:
 def test_a_texel_is_the_one_of_a_whole_reading(any_engine: Engine, form: str) -> None:
     from playground.gpu.textures import make_texture, write_texture
 
+    any_engine.ctx.detect_framebuffer(0).use()  # nothing is bound that another test has taken away
     texture = make_texture(any_engine.ctx, (7, 5), form)
     values = np.random.default_rng(1).random((5, 7, texture.components), np.float32)
     write_texture(texture, values)
