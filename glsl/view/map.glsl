@@ -12,10 +12,11 @@
 
 uniform sampler2D shown;              //! input("linear", "mipmap")
 uniform int channel = 0;              //! menu("colour", "red", "green", "blue", "alpha") What is shown: all channels as a colour, or one as a number
-uniform int ramp = 0;                 //! menu("grey", "false colour") How a number is shown
+uniform int ramp = 0;                 //! menu("grey", "false colour", "viridis", "cividis", "cool and warm") How a number is shown: all but grey are told apart by colour-blind eyes; the last goes away from a middle to both sides
 uniform int shrunk = 0;               //! menu("mean", "nearest") How a texture larger than the picture is shown: each pixel the mean of its texels, or one of them
-uniform float lowest = 0.0;           //! slider(-2, 2) step(0.01) group("Range") The number shown darkest
-uniform float highest = 1.0;          //! slider(-2, 2) step(0.01) group("Range") The number shown brightest
+uniform float lowest = 0.0;           //! step(0.01) group("Range") The number shown darkest
+uniform float highest = 1.0;          //! step(0.01) group("Range") The number shown brightest
+uniform float middle = 0.5;           //! step(0.01) group("Range") The number that "cool and warm" shows grey; both sides have the same scale
 
 vec4 kernel(ivec2 texel) {
     ivec2 shown_size = textureSize(shown, 0);
@@ -33,6 +34,10 @@ vec4 kernel(ivec2 texel) {
     vec4 share = (value - lowest) / (abs(span) < 1e-20 ? 1e-20 : span);
     if (channel == 0) return vec4(srgb_from_linear(share.rgb), 1.0);
     float number = channel == 1 ? share.r : channel == 2 ? share.g : channel == 3 ? share.b : share.a;
-    if (ramp == 1) return vec4(ramp_blue_yellow(number), 1.0);
-    return vec4(vec3(clamp(number, 0.0, 1.0)), 1.0);
+    if (ramp == 4) {
+        float from_middle = lowest + number * span - middle;
+        float farthest = max(max(abs(highest - middle), abs(lowest - middle)), 1e-20);
+        number = 0.5 + 0.5 * from_middle / farthest;
+    }
+    return vec4(ramp_colour(ramp, number), 1.0);
 }

@@ -51,6 +51,7 @@ class Draws:
         limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
         self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
         self.triangles = 0  # of the last draw of a mesh that is chosen from
+        self.drawn = 0  # triangles of every draw that ran, since whoever counts put it back to 0
 
     def release(self) -> None:
         """Give back every mesh and surface kept."""
@@ -82,8 +83,10 @@ class Draws:
                 job.count(program, iteration, kernel.repeat, step.whole)
                 if chosen is None:
                     array.render(ctx.TRIANGLES)
+                    self.drawn += loaded.triangles
                 else:
                     self.triangles = loaded.render(array, chosen)
+                    self.drawn += self.triangles
         finally:
             _enable(ctx, "none", "none")
         result = self.kernels.pool.take(step.size, kernel.outputs)
@@ -238,6 +241,7 @@ class _Loaded:
             for name, array in mesh.attributes.items()
         ]
         self._indices = ctx.buffer(mesh.indices.astype(np.uint32).tobytes())
+        self.triangles = mesh.indices.size // 3
         # Of a mesh that is chosen from: the tiles of the piece being drawn.
         self.places = ctx.buffer(reserve=16, dynamic=True) if key[0] in CHOOSERS else None
 

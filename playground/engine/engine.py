@@ -92,6 +92,11 @@ class Engine:
         return self._timer_of().clock
 
     @property
+    def triangles(self) -> int:
+        """How many triangles were drawn for the last frame; of what is kept, none."""
+        return self.runner.draws.drawn
+
+    @property
     def plan(self) -> Plan | None:
         """The plan of the last frame."""
         return self._plan
@@ -343,6 +348,7 @@ class Engine:
         self._make_current()
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
+        self.runner.draws.drawn = 0
         self.cache.begin()
         self.runner.begin(plan)
         continued = _continued(plan)

@@ -127,6 +127,25 @@ def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
     return values
 
 
+def read_texels(
+    texture: moderngl.Texture, corner: tuple[int, int], size: tuple[int, int]
+) -> NDArray[np.float32]:
+    """Read a block of texels as float32, (ny, nx, components), row 0 south: what ``read_texture`` has there.
+
+    ``corner``: the south-west texel of the block, which must lie inside the texture.
+    """
+    framebuffer = make_framebuffer(texture.ctx, [texture])
+    try:
+        data = framebuffer.read((*corner, *size), texture.components, alignment=1, dtype=texture.dtype)
+    finally:
+        framebuffer.release()
+    raw: NDArray[Any] = np.frombuffer(data, _NUMPY[texture.dtype])
+    values = raw.astype(np.float32)
+    if raw.dtype.kind == "u":
+        values /= np.float32(np.iinfo(raw.dtype).max)
+    return values.reshape(size[1], size[0], texture.components)
+
+
 def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:
     """Read a texture as a picture, (height, width, 4) bytes, top row first.
 

@@ -18,6 +18,7 @@
     brush.py      a stroke on a mask
     canvas.py     a mask that is painted on, and its file
     painting.py   the brush over the picture: which mask, which place of the land
+    see/          what the window shows beside the picture: numbers, costs, comparisons, time
     actions.py    what a button or a key asks for that is more than one call of the session
     status.py     what the window shows, as JSON lines for another program
 

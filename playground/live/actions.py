@@ -15,6 +15,8 @@ from playground.live.history import KEYFRAMES, History, State, applied, edits_of
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.problems import Problems
+from playground.live.see.state import See
+from playground.live.see.time import stepped, toggle_loop
 from playground.live.session import Session
 from playground.live.stages import Stage
 from playground.live.texts import Editing
@@ -62,6 +64,7 @@ class Actions:
 
     def __post_init__(self) -> None:
         self.painting = Painting(self.session, self.folder)
+        self.see = See(self.session)
 
     def say(self, text: str) -> None:
         """Put a sentence on the screen; the same one again only stays longer."""
@@ -218,6 +221,17 @@ class Actions:
         before, self.session.clock.time = self.session.clock.time, max(time, 0.0)
         if before != self.session.clock.time:
             self.history.jump(before, self.session.clock.time, held=self.held, now=self.now())
+
+    def step_time(self, frames: int) -> None:
+        """Rest, and go so many frames on or back, where time shows."""
+        if self.session.animated:
+            self.session.clock.playing = False
+            self.seek(stepped(self.session.clock.time, frames))
+
+    def toggle_loop(self) -> None:
+        """Have time go round, or no longer, where time shows."""
+        if self.session.sketch is not None and self.session.animated:
+            toggle_loop(self.session.sketch, self.session.clock)
 
     # ── many values at once ──────────────────────────────────────────────────
 

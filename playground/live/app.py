@@ -40,6 +40,9 @@ from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
+from playground.live.see.ab import drag_line, paint_both
+from playground.live.see.timeline import height_of_timeline
+from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.watch import Watcher
@@ -155,7 +158,7 @@ class Live:
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
         while self._stays():
-            patience = self._patience()
+            patience = min(self._patience(), self.actions.see.patience(self.actions.now()))
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -181,6 +184,7 @@ class Live:
 
     def release(self) -> None:
         """Give back all that was made in the window's context."""
+        self.actions.see.release()
         self.painter.release()
         self.session.release()
         self.session.engine.release()
@@ -231,12 +235,14 @@ class Live:
         window, session, actions = self.window, self.session, self.actions
         take_dropped(actions, self.place.dropped())
         window.begin()
+        actions.see.begin()
         left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         draw_code(actions, window.theme, area)
         act_on_keys(actions)
-        self.hand.act(area, window.density)
+        if not drag_line(actions.see.compare, area):
+            self.hand.act(area, window.density)
         actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
@@ -248,10 +254,12 @@ class Live:
         self._say_reload()
         actions.take_notes()
         actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
-        draw_not_finite(self.finite, actions, window.theme, area)
-        draw_errors(actions, window.theme, area)
+        above = (*area[:3], area[3] - height_of_timeline(actions, window.theme))
+        draw_not_finite(self.finite, actions, window.theme, above)
+        draw_errors(actions, window.theme, above)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
+        draw_see(actions, picture, window.theme, area, window.density)
         draw_notices(actions, window.theme, area)
         draw_drops(actions, window.theme)
         draw_keymap(actions, window.theme)
@@ -261,7 +269,9 @@ class Live:
         window.screen.viewport = (0, 0, wide, high)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)
         if picture is not None:
-            self.painter.paint(picture, window.screen, (skipped, 0, wide - skipped, high))
+            room_left = (skipped, 0, wide - skipped, high)
+            if not paint_both(actions.see.compare, picture, window.screen, room_left, actions.now()):
+                self.painter.paint(picture, window.screen, room_left)
         window.end()
         if not session.testing and self._settling == 0:
             self.warnings.look()

@@ -9,6 +9,9 @@ from playground.sketch.model import Graph, Sketch, Technique, kernels_of
 
 _MOVING = frozenset(n for meaning in ("time", "frame", "delta", "date") for n in PLAIN_UNIFORMS[meaning])
 
+LEAST_LOOP = 0.05
+"""[s] that a loop lasts at least."""
+
 
 @dataclass
 class Clock:
@@ -17,19 +20,31 @@ class Clock:
     time: float = 0.0  # [s] 0 or more
     playing: bool = True
     speed: float = 1.0  # seconds of the sketch in a second of the wall
+    loop: tuple[float, float] | None = (
+        None  # [s] the times between which it goes round; the second is the later
+    )
 
     def advance(self, seconds: float) -> None:
         """Let so many seconds of the wall pass."""
-        if self.playing:
-            self.time += seconds * self.speed
+        if not self.playing:
+            return
+        before, self.time = self.time, self.time + seconds * self.speed
+        if self.loop is not None and before <= self.loop[1] < self.time:
+            start, end = self.loop
+            self.time = start + (self.time - end) % (end - start)
+
+    def go_round(self, start: float, end: float) -> None:
+        """Go round between two times [s], in whichever order; at one time there is nothing to go round."""
+        low, high = sorted((max(start, 0.0), max(end, 0.0)))
+        self.loop = (low, high) if high - low >= LEAST_LOOP else None
 
     def toggle(self) -> None:
         """Play if it rests, rest if it plays."""
         self.playing = not self.playing
 
     def rewind(self) -> None:
-        """Go back to 0."""
-        self.time = 0.0
+        """Go back to 0, and round no loop: it is another sketch's."""
+        self.time, self.loop = 0.0, None
 
 
 def is_animated(sketch: Sketch) -> bool:

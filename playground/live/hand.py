@@ -50,7 +50,10 @@ class Hand:
             panning=right or (left and io.key_shift),
         )
         if gesture.acts and session.orbits:
-            session.look(steered(session.sketch.camera, session.plan.eye, gesture))
+            by_hand = session.shown is not None and session.shown.edits.camera is not None
+            # Keyframes move the camera; a drag begins where it stood in the picture that is seen.
+            camera = session.sketch.camera if by_hand else session.plan.sketch.camera
+            session.look(steered(camera, session.plan.eye, gesture))
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density

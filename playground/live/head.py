@@ -34,6 +34,10 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     _undo(memory, actions, look)
     imgui.same_line()
     _chance(memory, actions, look)
+    imgui.same_line()
+    if imgui.button("A/B"):
+        actions.see.compare.toggle()
+    imgui.set_item_tooltip("Keep this as A, go on with B, and compare the two; or no longer (A)")
     _resets(actions)
     imgui.same_line()
     _copies(memory, actions)
@@ -47,8 +51,6 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("Capture"):
         actions.capture.shown = True
     imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
-    if session.animated:
-        _time(actions, look)
     if sketch.presets:
         _presets(sketch, memory, actions)
     _shown(actions)
@@ -247,22 +249,6 @@ def _saves(memory: Memory, actions: Actions) -> None:
 
 
 # ── rows ─────────────────────────────────────────────────────────────────────
-
-
-def _time(actions: Actions, look: Theme) -> None:
-    clock = actions.session.clock
-    wide = 64 * look.scale
-    if imgui.button("Pause" if clock.playing else "Play", ImVec2(wide, 0)):
-        clock.toggle()
-    imgui.set_item_tooltip("Space")
-    imgui.same_line()
-    imgui.set_next_item_width(-wide - imgui.get_style().item_spacing.x)
-    changed, time = imgui.drag_float("##time", clock.time, 0.05, 0.0, 1e6, "time %.2f s")
-    if changed:
-        actions.seek(time)
-    imgui.same_line()
-    if imgui.button("To 0", ImVec2(-1, 0)):
-        actions.rewind()
 
 
 def _presets(sketch: Sketch, memory: Memory, actions: Actions) -> None:

@@ -33,9 +33,21 @@ class Key:
 
 KEYS: tuple[Key, ...] = (
     Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
+    Key(imgui.Key.none, ",", "a frame of time back", "", lambda a: a.step_time(-1), letter=","),
+    Key(imgui.Key.none, ".", "a frame of time on", "", lambda a: a.step_time(1), letter="."),
+    Key(imgui.Key.l, "L", "time goes round, or no longer", "", lambda a: a.toggle_loop()),
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
     Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
+    Key(
+        imgui.Key.i,
+        "I",
+        "every pass's number at a pixel; Shift: of those inside, too",
+        "",
+        lambda a: a.see.inspector.toggle(),
+    ),
+    Key(imgui.Key.a, "A", "keep this as A and compare; or no longer", "", lambda a: a.see.compare.toggle()),
+    Key(imgui.Key.g, "G", "the passes as a graph, or no longer", "", lambda a: a.see.graph.toggle()),
     Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
     Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
     Key(imgui.Key.c, "C", "capture: large pictures, films, sheets", "", toggle_capture),

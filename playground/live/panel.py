@@ -22,6 +22,7 @@ from playground.live.paintbox import draw_paintbox
 from playground.live.panel_memory import Memory
 from playground.live.rows import row
 from playground.live.sections import Sections
+from playground.live.see.spread import draw_spread
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
 
@@ -88,6 +89,7 @@ def _map(actions: Actions, look: Theme) -> None:
             session.set_map(parameter.name, changed)
     if imgui.button("Fit to the values"):
         session.fit_map()
+    draw_spread(actions, look)
 
 
 def _footer_height() -> float:

@@ -24,14 +24,10 @@ def ground_under(
     land's sides, east and north. Steps are as long as a texel, so that a needle between two may
     be missed; between steps the ground is halved in.
     """
-    origin, way = _ray(eye, place)
-    entry, leave = _over_land(origin, way, extent)
-    if not entry < leave:
+    found = walk_over(eye, place, heights.shape[::-1], extent)
+    if found is None:
         return None
-    ny, nx = heights.shape
-    texel = min(extent[0] / max(nx - 1, 1), extent[1] / max(ny - 1, 1))
-    level = float(np.hypot(way[0], way[1]))
-    steps = int(np.clip((leave - entry) * level / texel, 64, 16_384))
+    origin, way, entry, leave, steps = found
     along = np.linspace(entry, leave, steps + 1)
     below = _over_ground(origin, way, along, heights, extent, relief) <= 0
     if not below.any():
@@ -46,6 +42,23 @@ def ground_under(
             low = middle
     x, y = (origin + high * way)[:2] / np.asarray(extent, np.float64)
     return float(np.clip(x, 0.0, 1.0)), float(np.clip(y, 0.0, 1.0))
+
+
+def walk_over(
+    eye: Eye, place: tuple[float, float], size: tuple[int, ...], extent: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float, int] | None:
+    """Return how to look for the ground under a place of the picture; None where its ray meets no land.
+
+    Where the ray begins [m], its unit vector, from where to where along it [m] it is over a land of
+    ``size`` texels (nx, ny), and in how many steps, each no longer than a texel, to walk that way.
+    """
+    origin, way = _ray(eye, place)
+    entry, leave = _over_land(origin, way, extent)
+    if not entry < leave:
+        return None
+    texel = min(extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1))
+    level = float(np.hypot(way[0], way[1]))
+    return origin, way, entry, leave, int(np.clip((leave - entry) * level / texel, 64, 16_384))
 
 
 def seen_from(

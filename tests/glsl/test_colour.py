@@ -45,6 +45,58 @@ def test_the_ramp_holds_its_ends(on_gpu):
     np.testing.assert_array_equal(ends[2], ends[3])
 
 
+# From the authors' own tables of 256: places, and their colours of 0..255 rounded.
+PUBLISHED = {
+    "viridis": {
+        0: (68, 1, 84),
+        64: (59, 82, 139),
+        128: (33, 145, 140),
+        192: (94, 201, 98),
+        255: (253, 231, 37),
+    },
+    "cividis": {0: (0, 34, 78), 128: (125, 124, 120), 255: (254, 232, 56)},
+    "cool_warm": {0: (59, 76, 192), 64: (141, 176, 254), 127.5: (221, 221, 221), 255: (180, 4, 38)},
+}
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_published_ramps_have_their_colours(on_gpu, name):
+    places = np.array(list(PUBLISHED[name])) / 255
+    found = on_gpu("colour/ramp.glsl", f"ramp_{name}(t)", t=places).astype(float) * 255
+    np.testing.assert_allclose(found, list(PUBLISHED[name].values()), atol=3.0)
+
+
+@pytest.mark.parametrize("name", ["viridis", "cividis"])
+def test_published_ramps_grow_lighter_at_every_step(on_gpu, name):
+    colours = on_gpu("colour/ramp.glsl", f"ramp_{name}(t)", t=np.linspace(0, 1, 257)).astype(float)
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    assert (np.diff(luminance(linear)) > 0).all()
+
+
+def test_the_diverging_ramp_is_lightest_in_the_middle_and_its_sides_differ(on_gpu):
+    colours = on_gpu("colour/ramp.glsl", "ramp_cool_warm(t)", t=np.linspace(0, 1, 257)).astype(float)
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    light = luminance(linear)
+    assert (np.diff(light[:129]) > 0).all() and (np.diff(light[128:]) < 0).all()
+    # Blue is what people with red-green blindness keep: it tells the two sides apart.
+    cool, warm = colours[:96, 2], colours[:160:-1, 2]
+    assert (cool > warm + 0.2).all()
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_a_ramp_by_its_number_is_the_one_of_its_name(on_gpu, number):
+    names = [
+        "vec3(clamp(t, 0.0, 1.0))",
+        "ramp_blue_yellow(t)",
+        "ramp_viridis(t)",
+        "ramp_cividis(t)",
+        "ramp_cool_warm(t)",
+    ]
+    places = np.linspace(-0.2, 1.2, 50)
+    found = on_gpu("colour/ramp.glsl", f"ramp_colour({number}, t)", t=places)
+    np.testing.assert_array_equal(found, on_gpu("colour/ramp.glsl", names[number], t=places))
+
+
 @pytest.mark.parametrize("white", [1.0, 3.0, 16.0])
 def test_reinhard_brings_white_to_one_and_keeps_hues(on_gpu, white):
     light = np.random.default_rng(4).uniform(0, 8, (300, 3))

@@ -16,6 +16,7 @@ from playground.live.drops import draw_drops
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
+from playground.live.see.view import draw_see
 from playground.live.session import Session
 from playground.live.theme import Theme
 
@@ -93,7 +94,7 @@ class Bare:
         for _ in range(count):
             self.time += 1 / 60
             imgui.get_io().delta_time = 1 / 60
-            self.session.frame((48, 32))
+            self.picture = self.session.frame((48, 32))
             imgui.new_frame()
             if around is None:
                 self.draw()
@@ -154,7 +155,11 @@ class Bare:
 
     def draw(self) -> None:
         """Draw the panel, and what stands over the window."""
-        self.panel.draw(self.actions, self.theme)
+        self.actions.see.begin()
+        left = self.panel.draw(self.actions, self.theme)
+        room = imgui.get_io().display_size
+        area = left, 0.0, max(room.x - left, 1.0), room.y
+        draw_see(self.actions, self.picture, self.theme, area, 48 / area[2])
         draw_drops(self.actions, self.theme)
         draw_keymap(self.actions, self.theme)
 
@@ -164,5 +169,6 @@ class Bare:
             setattr(owner, name, draw)
         for table, before in self._tables:
             table.update(before)
+        self.actions.see.release()
         self.session.release()
         imgui.destroy_context(self.context)
