@@ -10,12 +10,12 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import cast
 
 from playground.api import headless
 from playground.capture.job import Job, do
 from playground.capture.working import Finished, Progress
-from playground.engine.trial_process import Ready, receive, send
+from playground.engine.trial_process import Ready, receive_bytes, send
+from playground.engine.trial_wire import Reader
 from playground.errors import PlaygroundError
 
 
@@ -30,9 +30,10 @@ def main() -> None:
     os.dup2(2, 1)  # whatever a driver prints must not get between the answers
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the window's, which then stops the job
     send(answers, Ready())
-    job = cast("Job | None", receive(sys.stdin.buffer))
-    if job is None:
+    asked = receive_bytes(sys.stdin.buffer)
+    if asked is None:
         return
+    job: Job = Reader().read(asked)
     notes: list[str] = []
 
     def tell(done: int, of: int) -> None:
