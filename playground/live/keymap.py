@@ -29,6 +29,9 @@ def draw_keymap(actions: Actions, look: Theme) -> None:
     imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
     imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(room.x - 16, room.y - 16))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 8 * look.scale)
+    imgui.push_style_var(
+        imgui.StyleVar_.cell_padding, ImVec2(4 * look.scale, 0)
+    )  # a small window has room for all
     imgui.push_style_color(imgui.Col_.window_bg, theme.colour((0.125, 0.135, 0.145), 0.98))
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
     flags |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
@@ -48,7 +51,7 @@ def draw_keymap(actions: Actions, look: Theme) -> None:
         actions.keymap_shown = False
     imgui.end()
     imgui.pop_style_color()
-    imgui.pop_style_var()
+    imgui.pop_style_var(2)
 
 
 def _joined() -> list[tuple[str, str]]:

@@ -40,7 +40,7 @@ use = "./mesh"
 def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
     for name, text in {"land.glsl": LAND, "mesh.glsl": MESH, "sketch.toml": SKETCH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    made = Bare(any_engine, tmp_path)
+    made = Bare(any_engine, tmp_path, (1280, 1400))
     yield made
     made.close()
 
