@@ -33,6 +33,7 @@ class _View:
     marked: tuple[Diagnostic, ...] = ()
     clash: str = ""  # why it could not be saved; the question is asked
     closing: bool = False  # whether to save is asked
+    held: int = 0  # turns for which the keys have been its own
 
     @property
     def changed(self) -> bool:
@@ -80,6 +81,11 @@ def unsaved(actions: Actions) -> list[str]:
     return [e.text.path.name for e in actions.editing if _view_of(e).changed]
 
 
+def typing(actions: Actions) -> list[str]:
+    """Return the name of the open file that takes what is typed, once it does; none where no file does."""
+    return [e.text.path.name for e in actions.editing if _view_of(e).held > 1]
+
+
 def _view_of(editing: Editing) -> _View:
     if not isinstance(editing.view, _View):
         editor = text_edit.TextEditor()
@@ -114,6 +120,8 @@ def _draw(editing: Editing, view: _View, actions: Actions, look: Theme, area: Ar
     imgui.push_style_color(imgui.Col_.title_bg_active, theme.colour(theme.RAISED))
     star = " *" if view.changed else ""
     _, stays = imgui.begin(f"{shown(path)}{star}###{path}", True, flags)
+    focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows) and not editing.asked
+    view.held = view.held + 1 if focused else 0
     if imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
         io = imgui.get_io()
         # In a slow turn Ctrl may come up again together with the key that it was held for.

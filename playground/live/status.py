@@ -15,7 +15,7 @@ from typing import Any
 
 from playground.engine.finite import NotFinite
 from playground.live.actions import Actions
-from playground.live.code_window import unsaved
+from playground.live.code_window import typing, unsaved
 
 VARIABLE = "PLAYGROUND_STATUS"
 
@@ -45,7 +45,7 @@ class Status:
             "stage": session.stage.name,
             "notices": [n.text for n in actions.notices],
             "playing": session.clock.playing,
-            "editing": [e.text.path.name for e in actions.editing],
+            "typing": typing(actions),
             "unsaved": unsaved(actions),
             "map": session.map.ref if session.map else "",
             "steps": dict(session.steps),

@@ -82,7 +82,7 @@ def test_the_editor_in_the_window_mends_the_file(
         (tmp_path / "land.glsl").write_text(LAND.replace("sin(", "in("), encoding="utf-8")
         window.wait(lambda now: now["error"])
         screen.do("key", "e")
-        window.wait(lambda now: now["editing"] == ["land.glsl"])
+        window.wait(lambda now: now["typing"] == ["land.glsl"])
         screen.do("key", "s")  # the cursor stands before "in"
         window.wait(lambda now: now["unsaved"] == ["land.glsl"])
         screen.do("keydown", "ctrl", "sleep", 0.3, "key", "s", "sleep", 0.3, "keyup", "ctrl")
