@@ -84,7 +84,7 @@ class Video:
     ) -> None:
         try:
             if kind is None:
-                self._finish(self.path, self.count)
+                self._finish()
             elif issubclass(kind, KeyboardInterrupt):
                 raise Stopped(self._shorter(), self.added) from None
         finally:
@@ -152,27 +152,42 @@ class Video:
         except OSError as error:
             raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
-    def _finish(self, path: Path, count: int) -> None:
+    def _finish(self) -> None:
+        """Give the video its name, if all the pictures that were asked for are in it."""
+        found, rate = self._closed()
+        if found != self.count or rate != self.fps:
+            raise DataError(
+                f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
+                f"{float(self.fps):g}",
+                file=self.path,
+            )
+        self._name(self.path)
+
+    def _closed(self) -> tuple[int, Fraction]:
+        """Write what the encoder still holds; return how many pictures are in the file, and their rate."""
         self._mux(None)
         try:
             self._container.close()
-            found, rate = count_pictures(self._temporary)
-            if found != count or rate != self.fps:
-                raise DataError(
-                    f"the encoder wrote {found} pictures at {float(rate):g} a second, not {count} at "
-                    f"{float(self.fps):g}",
-                    file=path,
-                )
+            return count_pictures(self._temporary)
+        except OSError as error:
+            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
+
+    def _name(self, path: Path) -> None:
+        try:
             self._temporary.replace(path)
         except OSError as error:
             raise DataError(f"cannot be written: {reason(error)}", file=path) from None
 
     def _shorter(self) -> Path | None:
-        """Return where the pictures so far are, once they are a video; None for none."""
+        """Return where the pictures so far are, once they are a video; None for none.
+
+        They are counted in the file: one may be in it that was interrupted before it was counted.
+        """
         if not self.added:
             return None
+        self.added, _ = self._closed()
         path = self.path.with_name(f"{self.path.stem}-first-{self.added}{self.path.suffix}")
-        self._finish(path, self.added)
+        self._name(path)
         return path
 
 

@@ -174,7 +174,7 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
     time.sleep(1.0)
     film.send_signal(signal.SIGINT)
     out, err = film.communicate(timeout=120)
-    assert film.returncode == 130 and out == "" and "Traceback" not in err
+    assert (film.returncode, out) == (130, "") and "Traceback" not in err, err
     left = sorted(path.name for path in folder.iterdir())
     if "before the first" in err:  # on a machine so slow that no picture was drawn in time
         assert left == ["land.toml"]

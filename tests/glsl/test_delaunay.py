@@ -59,7 +59,7 @@ def truth(made: Triangulation, size) -> np.ndarray:
 # ── the land ─────────────────────────────────────────────────────────────────
 
 
-@pytest.mark.parametrize("points", [1, 2, 60, 1000])
+@pytest.mark.parametrize("points", [1, 2, 60, pytest.param(1000, marks=pytest.mark.slow)])
 def test_heights_are_scipy_s(any_engine, land, points):
     """Every texel, those on the land's border too: one that no triangle covered would be 0."""
     values = {"points": points, "weights": "random", "corners": (0.9, 0.7, 0.6, 0.8)}
@@ -72,7 +72,10 @@ def test_heights_are_scipy_s(any_engine, land, points):
 
 @pytest.mark.parametrize(
     ("points", "weights", "proportion", "size"),
-    [(10_000, "random", 0.125, (257, 129)), (1000, "equal", 1.0, (1000, 1000))],
+    [
+        pytest.param(10_000, "random", 0.125, (257, 129), marks=pytest.mark.slow),
+        (1000, "equal", 1.0, (1000, 1000)),
+    ],
 )
 def test_slivers(any_engine, land, points, weights, proportion, size):
     """Along the border triangles are thousands of times longer than high."""

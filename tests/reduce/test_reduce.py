@@ -286,6 +286,7 @@ float kernel(ivec2 texel) {{
 MAP = f'{PASS}[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\n{SHOT}'
 
 
+@pytest.mark.slow
 def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, tmp_path, capsys):
     path = sketch(BANDS, MAP)
     shot = load(path).shots[0]
