@@ -42,7 +42,15 @@ class Watched:
             found |= self.watcher.take()
         return set(wanted) <= found
 
-    def sees_nothing(self, seconds: float = 0.7) -> bool:
+    def rests(self) -> bool:
+        """Wait until nothing is told for a while: a file may be told of half-written, and again when whole."""
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
+            if self.sees_nothing():
+                return True
+        return False
+
+    def sees_nothing(self, seconds: float = 1.0) -> bool:
         time.sleep(seconds)
         return not self.watcher.take()
 
@@ -138,7 +146,7 @@ def test_what_is_followed_may_change_at_any_time(watched: Watched) -> None:
     save_in_place(other, "one")
     watched.watcher.follow([watched.file, other])
     save_in_place(other, "two")
-    assert watched.sees(other)
+    assert watched.sees(other) and watched.rests()
     save_in_place(watched.include, "nobody follows it any more")
     assert watched.sees_nothing()
     save_in_place(watched.file, "two")
