@@ -43,7 +43,7 @@ class Watched:
         return set(wanted) <= found
 
     def rests(self) -> bool:
-        """Wait until nothing is told for a while: a file may be told of half-written, and again when whole."""
+        """Wait until nothing is told for a while: a file may be told of half-written and again when whole."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
             if self.sees_nothing():
