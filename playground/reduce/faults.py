@@ -8,6 +8,7 @@ what came of a candidate what it found there, and whether that is the same.
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -39,16 +40,16 @@ class Side:
     driver: str = "auto"
 
 
-class Fault:
+class Fault(ABC):
     """A kind of failure; ``sides`` are the ways in which a candidate must be drawn to see it."""
 
     sides: tuple[Side, ...] = (Side(),)
     literals: Sequence[str] = LITERALS
     as_picture = False  # whether the picture's bytes are looked at, not a pass's values
 
+    @abstractmethod
     def found(self, seen: Sequence[Seen]) -> Finding | None:
         """Return what is wrong with a candidate; None where nothing of this kind is."""
-        raise NotImplementedError
 
     def same(self, before: Finding, after: Finding) -> bool:
         """Say whether a candidate fails as the one before did, and at no texel that was good."""
