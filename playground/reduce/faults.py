@@ -224,6 +224,10 @@ class Commanded(Fault):
     def __init__(self, command: str) -> None:
         self.command = command
 
+    def found(self, seen: Sequence[Seen]) -> Finding | None:
+        """Return None: nothing is drawn, and the command's exit status tells."""
+        return None
+
 
 def _short(message: str) -> str:
     """Return a message's first clause: what follows lists candidates, or advises."""
