@@ -15,7 +15,6 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "playground"
 
 # Each may import from those on its own line and on the lines below.
-# Nothing of lessons is written yet: their place is kept.
 LAYERS = (
     ("__main__",),
     ("cli",),
