@@ -30,12 +30,12 @@ _LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis):([^)]*)\)")
 
 
 def notebook_text(lesson: Lesson, numbers: Mapping[str, Number]) -> str:
-    """Return the notebook of a lesson, not run yet, with its numbers; raise ``DataError`` without nbformat."""
+    """Return a lesson's notebook, not run yet, with its numbers; raise ``DataError`` without nbformat."""
     try:
         import nbformat
     except ModuleNotFoundError:
         raise DataError(
-            "notebooks need nbformat, which is not installed: pip install 'terrain-shader-playground[notebook]'"
+            "nbformat is not installed: pip install 'terrain-shader-playground[notebook]'"
         ) from None
     form: Any = nbformat  # its functions have no types
     make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
@@ -45,7 +45,7 @@ def notebook_text(lesson: Lesson, numbers: Mapping[str, Number]) -> str:
         cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
         cells.append(cell)
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    found: Any = new_notebook(
+    found: Any = form.v4.new_notebook(
         cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}}
     )
     form.validate(found)
