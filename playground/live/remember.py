@@ -15,10 +15,10 @@ from pathlib import Path
 from playground.errors import PlaygroundError, TrialError
 from playground.folders import state_folder
 from playground.live.edits import Draft
-from playground.live.maps import Map
 from playground.live.memory import Memory, Remembered
 from playground.live.session import Session
 from playground.live.words import Said, said_by_files
+from playground.sketch.maps import Map
 
 QUIET = 0.5  # [s] without another change after which a change is written
 TIME = 5.0  # [s] after which a change of time alone is written

@@ -20,10 +20,11 @@ from playground.errors import ContextError, PlaygroundError
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
-from playground.live.maps import Map, fitted, refs_of
+from playground.live.maps import fitted, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained, has_draws
 from playground.live.words import Said
+from playground.sketch.maps import Map
 from playground.sketch.model import Sketch, Value, kernels_of
 
 if TYPE_CHECKING:

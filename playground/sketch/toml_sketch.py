@@ -142,7 +142,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 read_set(file, sketch, table, place, f"shot '{name}'"),
                 preset,
                 _samples(file, table, sketch.samples, place) if "samples" in table else None,
-                _steps(file, sketch, table, place),
+                read_steps(file, sketch, table, place),
                 _marks(file, table, place),
                 file.line(*place),
             )
@@ -158,9 +158,10 @@ def _marks(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str,
     return tuple(marks)
 
 
-def _steps(
+def read_steps(
     file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place
 ) -> tuple[tuple[str, int], ...]:
+    """Return what a table's ``steps`` says of repeated passes: turns by path; raise ``SketchError``."""
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
         nodes = flatten(sketch, compute=False).nodes

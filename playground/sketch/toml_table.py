@@ -30,14 +30,17 @@ _NOUNS = {
 class TomlFile:
     """One TOML file being read; a place in it is keys and numbers, as ``"pass", 0, "use"``."""
 
-    def __init__(self, path: Path, root: Path) -> None:
+    def __init__(self, path: Path, root: Path, text: str | None = None, before: int = 0) -> None:
         """Read ``path``; ``root`` is the folder that what it names must stay in.
 
-        Raises ``SketchError`` if it cannot be read or is not TOML.
+        ``text`` is the part of the file that is TOML, where not all of it is, and ``before`` how
+        many lines stand before that part. Raises ``SketchError`` if it cannot be read or is not TOML.
         """
         self.path = path.resolve()
         self.root = root
-        text = read_text(self.path)
+        self._before = before
+        if text is None:
+            text = read_text(self.path)
         self._lines = key_lines(text)
         try:
             self.table: dict[str, Any] = tomllib.loads(text)
@@ -53,17 +56,23 @@ class TomlFile:
         place = _AT.search(message)
         if place is None:
             last = text.count("\n") + 1
-            return SketchError(f"not TOML: {message.split(' (at')[0]}", file=shown(self.path), line=last)
+            message = f"not TOML: {message.split(' (at')[0]}"
+            return SketchError(message, file=shown(self.path), line=self._before + last)
         line, column = int(place.group(1)), int(place.group(2))
         excerpt = text.split("\n")[line - 1]
         cause = message[: place.start()]
         return SketchError(
-            f"not TOML: {cause}", file=shown(self.path), line=line, column=column, excerpt=excerpt
+            f"not TOML: {cause}",
+            file=shown(self.path),
+            line=self._before + line,
+            column=column,
+            excerpt=excerpt,
         )
 
     def line(self, *place: str | int) -> int:
         """Return the line of a place, or of the nearest table around it; 0 if none is known."""
-        return line_of(self._lines, place)
+        found = line_of(self._lines, place)
+        return self._before + found if found or self._before else 0
 
     def error(self, message: str, *place: str | int) -> SketchError:
         """Return an error that points at a place."""

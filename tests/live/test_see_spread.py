@@ -12,11 +12,11 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.gpu.textures import make_texture, write_texture
-from playground.live.maps import Map
 from playground.live.see import histogram
 from playground.live.see.histogram import BINS, Counter, Histogram, count
 from playground.live.see.legend import STEPS, colours_of, ends_of, ticks
 from playground.live.session import Session
+from playground.sketch.maps import Map
 
 from .desk import Bare
 

@@ -13,7 +13,7 @@ from playground.paths import GLSL
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.live.maps import Map
+    from playground.sketch.maps import Map
 
 STEPS = 64
 _VERTEX = """#version 330

@@ -9,12 +9,12 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from playground.live import theme
 from playground.live.actions import Actions
-from playground.live.maps import Map
 from playground.live.rows import fitting
 from playground.live.see import plots
 from playground.live.see.histogram import BINS, Histogram
 from playground.live.see.legend import STEPS, ends_of, ticks
 from playground.live.theme import Theme
+from playground.sketch.maps import Map
 
 _HIGH = 120.0
 _CHANNELS = ("red", "green", "blue", "alpha")

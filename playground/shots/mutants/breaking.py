@@ -6,7 +6,7 @@ takes the place of the kernels that were made of those files.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,10 @@ from playground.errors import DataError, ParameterError
 from playground.paths import GLSL, shown
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.header import PLAIN_UNIFORMS, parse_kernel
+from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
-from playground.sketch.source import read_source, read_text
+from playground.sketch.reread import with_texts
+from playground.sketch.source import read_text
 from playground.sketch.wiring import input_names
 
 _CAMERA = "camera."
@@ -65,49 +66,6 @@ def edited_texts(edits: tuple[Edit, ...], sketch: Sketch, name: str) -> dict[str
             )
         texts[str(path)] = text.replace(edit.find, edit.put)
     return texts
-
-
-def with_texts(sketch: Sketch, texts: Mapping[str, str], same: bool = False) -> Sketch:
-    """Return the sketch with texts, by absolute path, in place of those of its shaders' files.
-
-    A companion would run instead, by a text of its own where nothing is broken: it is left
-    out, unless the texts say the ``same`` as those before.
-    """
-    if not texts:
-        return sketch
-    return replace(sketch, graph=_Reread(texts, Path(sketch.folder), same).technique(sketch.graph))
-
-
-class _Reread:
-    """Parses anew what is made of some texts."""
-
-    def __init__(self, texts: Mapping[str, str], folder: Path, same: bool) -> None:
-        self.texts = texts
-        self.folder = folder
-        self.same = same
-        self.known: dict[int, Any] = {}  # one technique may stand in several passes
-
-    def technique(self, technique: Any) -> Any:
-        """Return the technique itself where none of the texts is in it."""
-        if not any(file in self.texts for file in technique.files):
-            return technique
-        if id(technique) not in self.known:
-            companion = technique.companion if self.same else None
-            if isinstance(technique, Graph):
-                passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
-                found: Technique = replace(technique, passes=passes, companion=companion)
-            else:
-                found = replace(self.kernel(technique), companion=companion)
-            self.known[id(technique)] = found
-        return self.known[id(technique)]
-
-    def kernel(self, kernel: Kernel) -> Kernel:
-        path = Path(kernel.path)
-        root = self.folder if not path.is_relative_to(GLSL) else GLSL
-        found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
-        if found is None:
-            raise DataError("no kernel is left of this text", file=shown(path))
-        return found
 
 
 def _rewired(technique: Technique, path: str, source: str, whole: str) -> Any:

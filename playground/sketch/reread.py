@@ -1,0 +1,64 @@
+"""A sketch with other texts in place of its shaders' files'; nothing is written.
+
+What the texts declare takes the place of the kernels that were made of those files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from playground.errors import DataError
+from playground.paths import GLSL, shown
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Graph, Kernel, Sketch, Technique
+from playground.sketch.source import read_source
+
+
+def with_texts(sketch: Sketch, texts: Mapping[str, str], same: bool = False) -> Sketch:
+    """Return the sketch with texts, by absolute path, in place of those of its shaders' files.
+
+    Texts of files that the sketch does not use change nothing. A companion would run instead
+    of what was read again, by a text of its own that does not say what the new one says: it is
+    left out, unless the texts say the ``same`` as those before.
+
+    Raises ``DataError`` where a text leaves no kernel of its file, and ``ShaderError`` where
+    a text's declarations or includes are wrong.
+    """
+    if not texts:
+        return sketch
+    return replace(sketch, graph=_Reread(texts, Path(sketch.folder), same).technique(sketch.graph))
+
+
+class _Reread:
+    """Parses anew what is made of some texts."""
+
+    def __init__(self, texts: Mapping[str, str], folder: Path, same: bool) -> None:
+        self.texts = texts
+        self.folder = folder
+        self.same = same
+        self.known: dict[int, Any] = {}  # one technique may stand in several passes
+
+    def technique(self, technique: Any) -> Any:
+        """Return the technique itself where none of the texts is in it."""
+        if not any(file in self.texts for file in technique.files):
+            return technique
+        if id(technique) not in self.known:
+            companion = technique.companion if self.same else None
+            if isinstance(technique, Graph):
+                passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
+                found: Technique = replace(technique, passes=passes, companion=companion)
+            else:
+                found = replace(self.kernel(technique), companion=companion)
+            self.known[id(technique)] = found
+        return self.known[id(technique)]
+
+    def kernel(self, kernel: Kernel) -> Kernel:
+        path = Path(kernel.path)
+        root = self.folder if not path.is_relative_to(GLSL) else GLSL
+        found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
+        if found is None:
+            raise DataError("no kernel is left of this text", file=shown(path))
+        return found

@@ -1,0 +1,85 @@
+"""A sketch with other texts in place of its files': what follows the texts, and what stays itself."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.errors import DataError, ShaderError
+from playground.sketch.model import kernels_of
+from playground.sketch.reread import with_texts
+from tests.sketch.conftest import LAND, VIEW
+
+NESTED = """\
+[[pass]]
+name = "height"
+use = "./hill"
+"""
+HILL = """\
+title = "A hill"
+[[pass]]
+name = "slope"
+use = "./land"
+"""
+
+
+def kernels(sketch):
+    return {kernel.name.rpartition("/")[2]: kernel for _, kernel in kernels_of(sketch.graph)}
+
+
+def test_a_text_is_read_in_place_of_its_file_and_declares_what_it_declares(folder):
+    sketch = folder.sketch()
+    steep = LAND.replace("rise", "climb").replace("0.5", "0.75")
+    found = with_texts(sketch, {str(folder.path / "land.glsl"): steep})
+    before, after = kernels(sketch), kernels(found)
+    assert [(p.name, p.default) for p in before["land"].parameters] == [("rise", 0.5)]
+    assert [(p.name, p.default) for p in after["land"].parameters] == [("climb", 0.75)]
+    assert "climb * float" in after["land"].source.code
+    assert after["look"] is before["look"], "what no text is of stays itself"
+    assert (folder.path / "land.glsl").read_text(encoding="utf-8") == LAND
+
+
+def test_an_included_text_changes_every_kernel_that_includes_it(folder):
+    file = folder.write("share.glsl", "const float SHARE = 0.5;\n")
+    folder.write("land.glsl", '#include "share.glsl"\n' + LAND)
+    folder.write("look.glsl", '#include "share.glsl"\n' + VIEW)
+    found = with_texts(folder.sketch(), {str(file): "const float SHARE = 0.25;\n"})
+    assert ["SHARE = 0.25;" in kernel.source.code for kernel in kernels(found).values()] == [True, True]
+
+
+def test_a_text_is_found_inside_a_technique_of_several_passes(folder):
+    folder.write("hill.toml", HILL)
+    sketch = folder.sketch(NESTED)
+    found = with_texts(sketch, {str(folder.path / "land.glsl"): LAND.replace("0.5", "0.75")})
+    assert kernels(found)["land"].parameters[0].default == 0.75
+    assert kernels(sketch)["land"].parameters[0].default == 0.5
+
+
+def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
+    sketch = folder.sketch()
+    assert with_texts(sketch, {}) is sketch
+    assert with_texts(sketch, {str(folder.path / "other.glsl"): "not GLSL"}) == sketch
+
+
+def test_a_companion_is_left_out_unless_the_texts_say_the_same(folder, tmp_path):
+    folder.write(
+        "land.comp",
+        """\
+        #pragma compute(groups = "size.x, size.y", local = "1, 1")
+        uniform float rise = 0.5;
+        layout(r32f) uniform writeonly image2D height;
+        void kernel() { }
+        """,
+    )
+    sketch = folder.sketch()
+    assert kernels(sketch)["land"].companion is not None
+    texts = {str(folder.path / "land.glsl"): LAND + "// the same\n"}
+    assert kernels(with_texts(sketch, texts))["land"].companion is None
+    assert kernels(with_texts(sketch, texts, same=True))["land"].companion is not None
+
+
+def test_a_text_that_is_no_kernel_is_refused_in_a_sentence(folder):
+    sketch, file = folder.sketch(), str(folder.path / "land.glsl")
+    with pytest.raises(DataError, match="no kernel is left of this text"):
+        with_texts(sketch, {file: "float f() { return 1.0; }\n"})
+    with pytest.raises(ShaderError, match=r"no file 'nowhere\.glsl' to include"):
+        with_texts(sketch, {file: '#include "nowhere.glsl"\n' + LAND})
