@@ -119,6 +119,19 @@ class Techniques:
         return graph
 
 
+class WithLibrary(Techniques):
+    """Reads a sketch's own techniques anew, and those of ``glsl/`` once for all who share ``library``."""
+
+    def __init__(self, library: Techniques) -> None:
+        super().__init__()
+        self._library = library
+
+    def read(self, use: str, folder: Path, root: Path) -> Technique:
+        """Return what ``use`` names, as ``read_technique`` does."""
+        own = use.startswith("./") and not folder.is_relative_to(GLSL)
+        return super().read(use, folder, root) if own else self._library.read(use, folder, root)
+
+
 def refuse_monster(graph: Graph) -> None:
     """Raise ``SketchError`` for more kernels than any land needs: a few lines can nest millions."""
     count = _count(graph, {})
