@@ -77,26 +77,23 @@ class Techniques:
     """Reads techniques for one sketch, each file once."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[Path, str], Technique] = {}
+        self._known: dict[tuple[str, Path, Path], Technique] = {}
         self._open: list[Path] = []
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
-        path, limit = _locate(use, folder, root)
-        if (path, use) in self._known:
-            return self._known[path, use]
-        found: Technique
+        named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
+        if named not in self._known:
+            self._known[named] = self._read(*_locate(use, folder, root), use)
+        return self._known[named]
+
+    def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
-            found = self.graph(path, use, limit)
-        else:
-            kernel = read_kernel(path, limit)
-            if kernel is None:
-                raise SketchError(
-                    f"'{use}' is a library file: it has no #pragma kernel, source or draw to run"
-                )
-            found = kernel
-        self._known[path, use] = found
-        return found
+            return self.graph(path, use, limit)
+        kernel = read_kernel(path, limit)
+        if kernel is None:
+            raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
+        return kernel
 
     def graph(self, path: Path, name: str, root: Path) -> Graph:
         """Return a technique of several passes, by the path of its TOML."""
