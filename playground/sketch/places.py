@@ -38,7 +38,7 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
 
     The same places give the same sketch: whoever follows them misses no file that comes,
     goes or changes, also one that would stand before another from then on. Meanwhile links
-    are followed once each: hundreds of places share a few folders.
+    are followed once each.
     """
     found: dict[Path, Signature | None] = {}
     noted, led = _noted.set(found), _led.set({})
@@ -46,6 +46,19 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
         yield found
     finally:
         _noted.reset(noted)
+        _led.reset(led)
+
+
+@contextmanager
+def following_links_once() -> Iterator[None]:
+    """Follow the links of each path once, from here on until the outermost of these ends.
+
+    A sketch names hundreds of places in a few folders, most of them several times.
+    """
+    led = _led.set({} if (known := _led.get()) is None else known)
+    try:
+        yield
+    finally:
         _led.reset(led)
 
 
