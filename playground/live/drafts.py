@@ -143,12 +143,6 @@ class Drafts(ABC):
         except PlaygroundError as error:
             self._file_error = error
 
-    def dismiss(self) -> None:
-        """Put what failed away; a save brings it back."""
-        if self.stage is Stage.FAILED:
-            self._drop_coming()
-        self._file_error = self._draw_error = None
-
     def _propose(self, draft: Draft, notes: list[str]) -> None:
         self.coming, self._coming_notes = draft, notes
         self._file_error, self._trial_seconds = None, 0.0
