@@ -92,8 +92,12 @@ def local_maxima(values: Values, grid: Grid) -> float:
 
 def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
     """Return which share of the local maxima has a row and a column that ``every`` divides, 0..1."""
-    places = np.argwhere(_peaks(values)) + 1
-    return float((places % int(every) == 0).all(axis=1).mean()) if places.size else 0.0
+    rows, columns = np.nonzero(_peaks(values))
+    return (
+        float((((rows + 1) % int(every) == 0) & ((columns + 1) % int(every) == 0)).mean())
+        if rows.size
+        else 0.0
+    )
 
 
 def _peaks(values: Values) -> NDArray[np.bool_]:

@@ -7,7 +7,7 @@ that the user types are the user's own affair and are not judged here.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path, PurePosixPath, PureWindowsPath
@@ -60,6 +60,26 @@ def following_links_once() -> Iterator[None]:
         yield
     finally:
         _led.reset(led)
+
+
+@contextmanager
+def noting_part() -> Iterator[dict[Path, Signature | None]]:
+    """Note what a part of a reading looks for by itself; whoever notes the whole notes it too."""
+    found: dict[Path, Signature | None] = {}
+    noted = _noted.set(found)
+    try:
+        yield found
+    finally:
+        _noted.reset(noted)
+        note_again(found)
+
+
+def note_again(places: Mapping[Path, Signature | None]) -> None:
+    """Note places with what is known to be there; what is noted already stays as it is."""
+    noted = _noted.get()
+    if noted is not None:
+        for path, seen in places.items():
+            noted.setdefault(path, seen)
 
 
 def note(path: Path) -> None:

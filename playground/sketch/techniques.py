@@ -77,15 +77,20 @@ class Techniques:
     """Reads techniques for one sketch, each file once."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[str, Path, Path], Technique] = {}
-        self._open: list[Path] = []
+        self.known: dict[tuple[str, Path, Path], Technique] = {}
+        self.open: list[Path] = []  # techniques of several passes that are being read, outermost first
+        self.deepest = 0  # the most that were open at once
+
+    def has_room_for(self, depth: int) -> bool:
+        """Say whether techniques nested so deep may stand where the reading is."""
+        return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
         named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
-        if named not in self._known:
-            self._known[named] = self._read(*_locate(use, folder, root), use)
-        return self._known[named]
+        if named not in self.known:
+            self.known[named] = self._read(*_locate(use, folder, root), use)
+        return self.known[named]
 
     def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
@@ -98,17 +103,18 @@ class Techniques:
     def graph(self, path: Path, name: str, root: Path) -> Graph:
         """Return a technique of several passes, by the path of its TOML."""
         path = path.resolve()
-        if path in self._open:
-            circle = [*self._open[self._open.index(path) :], path]
+        if path in self.open:
+            circle = [*self.open[self.open.index(path) :], path]
             raise SketchError("techniques use each other in a circle: " + " → ".join(map(shown, circle)))
-        if len(self._open) >= _MAX_NESTING:
+        if not self.has_room_for(1):
             raise SketchError(f"techniques nest more than {_MAX_NESTING} deep")
-        self._open.append(path)
+        self.open.append(path)
+        self.deepest = max(self.deepest, len(self.open))
         try:
             graph = read_graph(TomlFile(path, root), name, self.read)
             refuse_monster(graph)
         finally:
-            self._open.pop()
+            self.open.pop()
         beside = path.with_suffix(".comp")
         if is_file(beside):
             companion = _read_companion(beside, root, graph, outputs_with_formats(graph))
