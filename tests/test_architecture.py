@@ -15,7 +15,6 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "playground"
 
 # Each may import from those on its own line and on the lines below.
-# Nothing of lessons is written yet: their place is kept.
 LAYERS = (
     ("__main__",),
     ("cli",),
@@ -32,7 +31,7 @@ LAYERS = (
     ("terrain",),
     ("images",),
     ("sketch",),
-    ("errors", "folders", "paths", "_version"),
+    ("errors", "folders", "markup", "paths", "_version"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

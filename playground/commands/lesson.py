@@ -1,0 +1,308 @@
+"""Lessons: list them, check them, keep translations up to date."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands.arguments import (
+    FAILED,
+    JsonOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
+from playground.errors import PlaygroundError, SketchError, counted, nearest
+from playground.terminal import complain, note, painted, print_table, progress
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+    from playground.lessons.model import Lesson
+
+HELP = help_text(
+    "Lessons on terrain, to read beside the window, in a browser or as notebooks.",
+    "playground lesson list",
+    "playground lesson open diamond_square",
+    "playground lesson build -o book",
+    "playground lesson status",
+)
+LIST_HELP = help_text(
+    "List the lessons, in their order.\n\nIn a pipe, the columns are parted by tabs.",
+    "playground lesson list",
+    "playground lesson list --lang fr",
+    "playground lesson list --json",
+)
+STATUS_HELP = help_text(
+    "Say which translations have gone stale.\n\n"
+    "A translation holds a hash of each English block that it was made from. Listed are the blocks whose"
+    " English has changed since, or is new. Exit status 1 where there are any.",
+    "playground lesson status",
+    "playground lesson status --json",
+)
+CHECK_HELP = help_text(
+    "Check lessons: what they name, what they keep to, what they claim.\n\n"
+    "Draws every deliberate fault, which must show, and computes every number, which must be as claimed."
+    " Exit status 1 when anything is wrong.",
+    "playground lesson check",
+    "playground lesson check diamond_square shadows",
+)
+PICTURES_HELP = help_text(
+    "Draw every picture of a lesson into a folder, as PNG.",
+    "playground lesson pictures diamond_square -o pictures",
+)
+TRANSLATED_HELP = help_text(
+    "Note that a translation says what the English says today.\n\n"
+    "Writes the hashes of the English blocks into it. It must have as many blocks, of the same kinds.",
+    "playground lesson translated diamond_square --lang fr",
+)
+
+BUILD_HELP = help_text(
+    "Build the lessons as a book, a folder of pages that need no network, or as notebooks.\n\n"
+    "In English and French, or in the language of --lang. Built again into the same folder, pages and"
+    " pictures that are no more are removed, and nothing else is touched.",
+    "playground lesson build -o book",
+    "playground lesson build -o livre --lang fr",
+    "playground lesson build diamond_square -o one-lesson",
+    "playground lesson build --notebooks -o notebooks",
+)
+
+app = typer.Typer(
+    name="lesson",
+    help=HELP,
+    short_help="Lessons on terrain: read them, build them as a book or notebooks.",
+    invoke_without_command=True,
+    rich_markup_mode="rich",
+)
+
+
+def complete_lesson(incomplete: str) -> list[str]:
+    """Complete the name of a lesson."""
+    from playground.lessons.library import lesson_files
+
+    return [name for name in lesson_files() if name.startswith(incomplete)]
+
+
+def complete_language(incomplete: str) -> list[str]:
+    """Complete the code of a language."""
+    from playground.lessons.library import LANGUAGES
+
+    return [code for code in LANGUAGES if code.startswith(incomplete)]
+
+
+LanguageOption = Annotated[
+    str,
+    typer.Option(
+        "--lang",
+        help="Language: en or fr; that of the system by default.",
+        metavar="CODE",
+        show_default=False,
+        autocompletion=complete_language,
+    ),
+]
+NameArgument = Annotated[
+    str, typer.Argument(help="A lesson.", metavar="NAME", autocompletion=complete_lesson)
+]
+NamesArgument = Annotated[
+    list[str] | None,
+    typer.Argument(
+        help="Lessons; all by default.", metavar="NAME", show_default=False, autocompletion=complete_lesson
+    ),
+]
+
+
+@app.callback()
+def _group(ctx: typer.Context) -> None:
+    if ctx.invoked_subcommand is None:
+        print(ctx.get_help())
+
+
+@app.command("list", help=LIST_HELP)
+def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
+    """List the lessons, in their order."""
+    from playground.lessons.read import summaries
+
+    found = summaries(read_language(lang))
+    if as_json:
+        rows = [
+            {
+                "number": one.number,
+                "name": one.name,
+                "title": one.title,
+                "goal": one.goal,
+                "minutes": one.minutes,
+            }
+            for one in found
+        ]
+        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        return
+    table = [(str(one.number), one.name, one.title, f"{one.minutes} min") for one in found]
+    print_table("Lessons (playground lesson open NAME)", ("", "lesson", "title", "time"), table)
+
+
+@app.command("status", help=STATUS_HELP)
+def status(as_json: JsonOption = False) -> None:
+    """Say which translations have gone stale."""
+    from playground.lessons.library import LANGUAGES, SOURCE
+    from playground.lessons.read import summaries
+    from playground.lessons.status import status_of
+
+    names = [one.name for one in summaries(SOURCE)]
+    found = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
+    if as_json:
+        print(json.dumps([one.as_json() for one in found], indent=2, ensure_ascii=False))
+    else:
+        rows = [(one.name, one.language, one.word, "; ".join(one.sentences)) for one in found]
+        print_table("Translations", ("lesson", "language", "state", "what"), rows)
+    if any(one.word != "current" for one in found):
+        raise typer.Exit(FAILED)
+
+
+@app.command("check", help=CHECK_HELP)
+def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOption = False) -> None:
+    """Check lessons: what they name, what they keep to, what they claim."""
+    from playground.lessons.library import LANGUAGES
+    from playground.lessons.read import read_lesson
+    from playground.lessons.rules import broken_rules, wrong_pictures
+    from playground.lessons.scenes import Sketches
+    from playground.paths import shown
+
+    chosen = _chosen(names)
+    wrong, sketches = 0, Sketches()
+    with _engine(ctx, software) as engine, progress("checking", len(chosen)) as advance:
+        for name in chosen:
+            for language in LANGUAGES:
+                try:
+                    lesson = read_lesson(name, language, sketches)
+                except PlaygroundError as error:
+                    wrong += len(error.diagnostics)
+                    for diagnostic in error.diagnostics:
+                        complain(str(diagnostic), diagnostic.severity)
+                    continue
+                found = list(broken_rules(lesson))
+                found += wrong_pictures(engine, lesson) if language == "en" else []
+                for line, sentence in found:
+                    complain(f"{shown(lesson.file)}:{line}: {language}: {sentence}")
+                wrong += len(found)
+            advance()
+    if wrong:
+        note(f"{counted(wrong, 'thing')} to mend")
+        raise typer.Exit(FAILED)
+    print(painted(f"{counted(len(chosen), 'lesson')}: well", "32", sys.stdout))
+
+
+@app.command("pictures", help=PICTURES_HELP)
+def pictures(
+    ctx: typer.Context,
+    name: NameArgument,
+    output: Annotated[Path, typer.Option("-o", "--output", help="The folder.", metavar="FOLDER")] = Path(),
+    software: SoftwareOption = False,
+) -> None:
+    """Draw every picture of a lesson into a folder."""
+    from playground.images.files import write_png
+    from playground.lessons.pictures import draw, pictures_of
+    from playground.lessons.read import read_lesson
+
+    found = pictures_of(read_lesson(name))
+    output.mkdir(parents=True, exist_ok=True)
+    with _engine(ctx, software) as engine, progress("drawing", len(found)) as advance:
+        for picture in found:
+            path = output / f"{name}-{picture.name}.png"
+            write_png(path, draw(engine, picture.scene).array)
+            print(path)
+            advance()
+
+
+@app.command("build", help=BUILD_HELP)
+def build(
+    ctx: typer.Context,
+    names: NamesArgument = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="The folder of the book.", metavar="FOLDER")
+    ] = Path("book"),
+    lang: LanguageOption = "",
+    notebooks: Annotated[
+        bool, typer.Option("--notebooks", metavar="", help="Write Jupyter notebooks, not pages.")
+    ] = False,
+    software: SoftwareOption = False,
+) -> None:
+    """Build the lessons as a book, or as notebooks."""
+    from playground.lessons.library import LANGUAGES
+    from playground.lessons.read import read_lessons
+
+    languages = [read_language(lang)] if lang else list(LANGUAGES)
+    chosen = _chosen(names)
+    lessons = {code: [one for one in read_lessons(code) if one.name in chosen] for code in languages}
+    if notebooks:
+        with _engine(ctx, software) as engine:
+            _write_notebooks(output, lessons, engine)
+        return
+    from playground.lessons.book.build import prepare, write_book
+
+    made = prepare(output, lessons, gallery=not names)
+    with _engine(ctx, software) as engine, progress("drawing", len(made.names)) as advance:
+        front = write_book(made, engine, advance)
+    print(front)
+
+
+@app.command("translated", help=TRANSLATED_HELP)
+def translated(name: NameArgument, lang: LanguageOption = "") -> None:
+    """Note that a translation says what the English says today."""
+    from playground.lessons.library import SOURCE, lesson_file
+    from playground.lessons.read import part, read_lesson
+    from playground.lessons.translate import write_hashes
+    from playground.paths import shown
+
+    if not lang or lang == SOURCE:
+        raise SketchError("say which translation: --lang fr")
+    path = lesson_file(name, lang)
+    write_hashes(part(lesson_file(name)), part(path))
+    read_lesson(name, lang)  # says what is wrong with it
+    print(shown(path))
+
+
+def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
+    from playground.images.files import replacing
+    from playground.lessons.measuring import numbers_of
+    from playground.lessons.notebook.build import notebook_text
+
+    for in_languages in zip(*lessons.values(), strict=True):
+        numbers = numbers_of(engine, in_languages[0])
+        for lesson in in_languages:
+            path = folder / lesson.language / f"{lesson.name}.ipynb"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(path) as handle:
+                handle.write(notebook_text(lesson, numbers).encode())
+            print(path)
+
+
+def read_language(text: str) -> str:
+    """Return the language that is asked for, or the system's; raise ``SketchError`` for one there is not."""
+    from playground.lessons.library import LANGUAGES, preferred_language
+
+    if text and text not in LANGUAGES:
+        raise SketchError(f"--lang {text}: no such language{nearest(text, LANGUAGES)}")
+    return text or preferred_language()
+
+
+def _chosen(names: list[str] | None) -> list[str]:
+    from playground.lessons.library import SOURCE, lesson_file
+    from playground.lessons.read import summaries
+
+    for name in names or []:
+        lesson_file(name)  # says which there are
+    return names or [one.name for one in summaries(SOURCE)]
+
+
+@contextmanager
+def _engine(ctx: typer.Context, software: bool) -> Iterator[Engine]:
+    from playground.api import headless
+
+    renderer: Renderer = ctx.obj.or_else(software)
+    with headless(software=renderer.software, device=renderer.device) as engine:
+        yield engine

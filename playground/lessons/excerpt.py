@@ -1,0 +1,69 @@
+"""Quote a shader by a named anchor: the lines between ``// anchor: name`` and ``// end: name``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from playground.errors import SketchError, nearest
+from playground.paths import GLSL
+from playground.sketch.source import read_text
+
+_MARK = re.compile(r"^\s*//\s*(anchor|end):\s*(\S+)\s*$")
+
+
+@dataclass(frozen=True, slots=True)
+class Excerpt:
+    """Lines of a shader."""
+
+    file: str  # in glsl/
+    line: int  # of the first of them, from 1
+    text: str  # without the indentation that all have
+
+
+def excerpt(file: str, anchor: str, text: str | None = None) -> Excerpt:
+    """Return what an anchor marks in a file of ``glsl/``; the marks of other anchors are left out.
+
+    ``text`` stands in for what is in the file. Raises ``SketchError`` where there is no such
+    anchor, or where it has no end.
+    """
+    found = anchors(file, read_text(GLSL / file) if text is None else text)
+    if anchor not in found:
+        hint = nearest(anchor, found) or "; it has none"
+        raise SketchError(f"no anchor '{anchor}'{hint}", file=GLSL / file)
+    return found[anchor]
+
+
+def anchors(file: str, text: str) -> dict[str, Excerpt]:
+    """Return what each anchor of a text marks, by name."""
+    open_at: dict[str, int] = {}
+    found: dict[str, Excerpt] = {}
+    lines = text.split("\n")
+    for number, line in enumerate(lines, 1):
+        mark = _MARK.match(line)
+        if mark is None:
+            continue
+        word, name = mark.groups()
+        if word == "anchor":
+            if name in open_at or name in found:
+                raise SketchError(f"a second anchor '{name}'", file=GLSL / file, line=number)
+            open_at[name] = number
+        elif name not in open_at:
+            raise SketchError(f"anchor '{name}' ends before it begins", file=GLSL / file, line=number)
+        else:
+            first = open_at.pop(name)
+            inside = [each for each in lines[first : number - 1] if not _MARK.match(each)]
+            found[name] = Excerpt(file, first + 1, _dedented(inside))
+    for name, number in open_at.items():
+        raise SketchError(f"anchor '{name}' has no end", file=GLSL / file, line=number)
+    return found
+
+
+def _dedented(lines: list[str]) -> str:
+    """Take from lines the indentation that all have, and the empty ones at both ends."""
+    while lines and not lines[0].strip():
+        lines = lines[1:]
+    while lines and not lines[-1].strip():
+        lines = lines[:-1]
+    common = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+    return "\n".join(line[common:].rstrip() for line in lines)

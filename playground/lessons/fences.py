@@ -1,0 +1,349 @@
+"""Read a fenced block of a lesson: its first word is what it is, its second its name, its lines TOML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from playground.errors import PlaygroundError, SketchError, nearest
+from playground.lessons.markdown import Piece
+from playground.lessons.measures import MEASURES
+from playground.lessons.model import (
+    Break,
+    Code,
+    Compare,
+    Exercise,
+    Figure,
+    Measure,
+    Named,
+    Question,
+    Scene,
+    Slider,
+    Steps,
+)
+from playground.lessons.scenes import FRAME, PICTURE, STATE, Sketches, read_scene, with_steps, with_value
+from playground.paths import GLSL
+from playground.sketch.assign import check_value, resolve
+from playground.sketch.model import Value
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import spell
+
+_NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+
+
+@dataclass(frozen=True)
+class Fence:
+    """A fenced block, opened: its kind, its name, and its lines as TOML."""
+
+    kind: str
+    name: str
+    piece: Piece
+    line: int  # in the file, from 1
+    file: TomlFile
+    sketches: Sketches
+
+    def only(self, *own: str) -> None:
+        """Raise ``SketchError`` for a key that such a block has not."""
+        self.file.only(self.file.table, own)
+
+    def take(self, key: str, kind: type, default: Any) -> Any:
+        """Return what a key has, checked to be of a kind."""
+        return self.file.take(self.file.table, key, kind, default)
+
+    def words(self, key: str, *, needed: bool = True) -> str:
+        """Return the words that a key has; raise ``SketchError`` if they are needed and not there."""
+        found: str = self.take(key, str, "")
+        if needed and not found.strip():
+            raise self.error(f'a {self.kind} block needs {key} = "…"')
+        return found.strip()
+
+    def list_of_words(self, key: str) -> tuple[str, ...]:
+        """Return the list of words that a key has."""
+        found = self.take(key, list, [])
+        if not all(isinstance(item, str) for item in found):
+            raise self.error(f"{key} = {spell(found)}: expected texts in quotes", key)
+        return tuple(item.strip() for item in found)
+
+    def scene(self, pixels: tuple[int, int] = PICTURE) -> Scene:
+        """Return the picture that the block's own keys say."""
+        table = {key: value for key, value in self.file.table.items() if key in STATE}
+        return read_scene(self.file, table, (), self.sketches, pixels)
+
+    def error(self, message: str, *place: str | int) -> SketchError:
+        """Return an error at a place in the block."""
+        return self.file.error(message, *place)
+
+
+def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence:
+    """Return the fence that a piece of a file is; raise ``SketchError`` if its head or its TOML is wrong."""
+    kind, _, name = piece.info.partition(" ")
+    if kind not in READERS:
+        hint = nearest(kind, READERS)
+        raise SketchError(f"no block of a lesson is called '{kind}'{hint}", file=path, line=line)
+    if not _NAME.fullmatch(name):
+        message = f"{kind} '{name}': behind its kind a block has a name of small letters, digits and -"
+        raise SketchError(message, file=path, line=line)
+    file = TomlFile(path, GLSL / "sketches", piece.inside, line)
+    return Fence(kind, name, piece, line, file, sketches)
+
+
+def read_fence(fence: Fence) -> Named:
+    """Return the block that a fence describes; raise ``SketchError`` at the key that is wrong."""
+    return READERS[fence.kind](fence)
+
+
+def _figure(fence: Fence) -> Figure:
+    fence.only(*STATE, "sliders", "caption", "alt")
+    scene = fence.scene()
+    sliders = fence.list_of_words("sliders")
+    for path in sliders:
+        _check_path(fence, scene, path, "sliders")
+    return Figure(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        scene,
+        sliders,
+        fence.words("caption"),
+        fence.words("alt"),
+    )
+
+
+def _steps(fence: Fence) -> Steps:
+    from playground.engine.plan import repeated_in, repeats_of  # it needs what is loaded by then only
+
+    fence.only(*STATE, "passes", "turns", "caption", "alt", "captions")
+    scene = fence.scene(FRAME)
+    passes = fence.list_of_words("passes")
+    if not passes:
+        raise fence.error('a step block needs passes = ["…"]: the repeated passes that it stops')
+    try:
+        repeated = [repeated_in(scene.sketch, path) for path in passes]
+        most = min(repeats_of(scene.sketch, frame_size=scene.pixels, time=scene.time)[p] for p in repeated)
+    except PlaygroundError as error:
+        raise fence.error(error.diagnostics[0].message, "passes") from None
+    turns = fence.take("turns", list, list(range(most + 1)))
+    if not turns or not all(type(turn) is int and 0 <= turn <= most for turn in turns):
+        raise fence.error(f"turns = {spell(turns)}: expected whole numbers from 0 to {most}", "turns")
+    captions = fence.list_of_words("captions")
+    if captions and len(captions) != len(turns):
+        raise fence.error(f"captions: {len(captions)} for {len(turns)} turns", "captions")
+    return Steps(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        tuple(with_steps(scene, dict.fromkeys(passes, turn)) for turn in turns),
+        passes,
+        tuple(turns),
+        fence.words("caption"),
+        fence.words("alt"),
+        captions,
+    )
+
+
+def _slider(fence: Fence) -> Slider:
+    fence.only(*STATE, "parameter", "values", "from", "to", "frames", "caption", "alt", "label")
+    scene = fence.scene(FRAME)
+    parameter = fence.words("parameter")
+    _check_path(fence, scene, parameter, "parameter")
+    values = _swept(fence, scene, parameter)
+    return Slider(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        tuple(with_value(scene, parameter, value) for value in values),
+        parameter,
+        values,
+        fence.words("caption"),
+        fence.words("alt"),
+        fence.words("label", needed=False),
+    )
+
+
+def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
+    given = fence.take("values", list, None)
+    if given is None:
+        low, high = (fence.take(key, float, None) for key in ("from", "to"))
+        frames = fence.take("frames", int, 9)
+        if low is None or high is None or low == high or not 2 <= frames <= 64:
+            raise fence.error("a slider needs values = […], or from, to and frames (2 to 64)")
+        whole = _type_of(scene, parameter) in ("int", "uint")
+        given = [low + (high - low) * i / (frames - 1) for i in range(frames)]
+        given = [round(v) if whole else float(f"{v:.6g}") for v in given]
+    if len(given) < 2:
+        raise fence.error("values: a slider has two or more", "values")
+    try:
+        return tuple(check_value(scene.sketch, parameter, value) for value in given)
+    except PlaygroundError as error:
+        raise fence.error(error.diagnostics[0].message, "values") from None
+
+
+def _compare(fence: Fence) -> Compare:
+    fence.only(*STATE, "variant", "caption", "alt", "labels")
+    under = {key: value for key, value in fence.file.table.items() if key in STATE}
+    tables = fence.file.tables("variant")
+    if len(tables) < 2:
+        raise fence.error("a compare block has two or more [[variant]]")
+    scenes = []
+    for index, table in enumerate(tables):
+        place = ("variant", index)
+        fence.file.only(table, STATE, *place)
+        scenes.append(read_scene(fence.file, table, place, fence.sketches, under=under))
+    labels = fence.list_of_words("labels")
+    if len(labels) != len(scenes):
+        raise fence.error(f"labels: {len(labels)} for {len(scenes)} variants", "labels")
+    if len({scene.pixels for scene in scenes}) > 1:
+        raise fence.error("pictures that are compared have one size: set pixels")
+    return Compare(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        tuple(scenes),
+        labels,
+        fence.words("caption"),
+        fence.words("alt"),
+    )
+
+
+def _code(fence: Fence) -> Code:
+    fence.only("file", "anchor", "caption")
+    return Code(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        _shader(fence),
+        fence.words("anchor"),
+        fence.words("caption", needed=False),
+    )
+
+
+def _break(fence: Fence) -> Break:
+    fence.only(*STATE, "file", "find", "put", "ask", "hint", "mend", "alt", "caption")
+    return Break(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        fence.scene(),
+        _shader(fence),
+        fence.take("find", str, ""),
+        fence.take("put", str, ""),
+        fence.words("ask"),
+        fence.words("hint"),
+        fence.words("mend"),
+        fence.words("alt"),
+        fence.words("caption", needed=False),
+    )
+
+
+def _question(fence: Fence) -> Question:
+    fence.only("ask", "choices", "right", "answer")
+    choices = fence.list_of_words("choices")
+    right = fence.take("right", int, -1)
+    if choices and not 0 <= right < len(choices):
+        raise fence.error(f"right = {right}: expected the place of a choice, 0 to {len(choices) - 1}")
+    if right >= 0 and not choices:
+        raise fence.error("right: there are no choices", "right")
+    return Question(
+        fence.line, fence.piece.text, fence.name, fence.words("ask"), choices, right, fence.words("answer")
+    )
+
+
+def _exercise(fence: Fence) -> Exercise:
+    fence.only(*STATE, "ask", "hint", "solution", "alt")
+    drawn = "sketch" in fence.file.table
+    return Exercise(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        fence.words("ask"),
+        fence.words("hint", needed=False),
+        fence.words("solution"),
+        fence.scene() if drawn else None,
+        fence.words("alt", needed=drawn),
+    )
+
+
+def _measure(fence: Fence) -> Measure:
+    fence.only(*STATE, "of", "what", "with", "over", "digits", "unit", "between", "text")
+    what = fence.words("what")
+    if what not in MEASURES:
+        raise fence.error(f"what = '{what}': there is no such measure{nearest(what, MEASURES)}", "what")
+    table = {key: value for key, value in fence.file.table.items() if key in STATE}
+    over = fence.take("over", dict, None)
+    if over is not None:
+        fence.file.only(over, STATE, "over")
+    digits = fence.take("digits", int, 3)
+    if not 1 <= digits <= 7:
+        raise fence.error(f"digits = {digits}: expected 1 to 7", "digits")
+    return Measure(
+        fence.line,
+        fence.piece.text,
+        fence.name,
+        fence.scene(),
+        None if over is None else read_scene(fence.file, over, ("over",), fence.sketches, under=table),
+        fence.take("of", str, "height"),
+        what,
+        _arguments(fence, what),
+        digits,
+        fence.take("unit", str, ""),
+        _between(fence),
+        fence.words("text", needed=False),
+    )
+
+
+def _arguments(fence: Fence, what: str) -> tuple[tuple[str, float], ...]:
+    given: Mapping[str, Any] = fence.take("with", dict, {})
+    wanted = MEASURES[what].arguments
+    fence.file.only(given, wanted, "with")
+    missing = [name for name in wanted if name not in given]
+    if missing:
+        raise fence.error(f"{what} needs with = {{ {', '.join(f'{name} = …' for name in wanted)} }}")
+    return tuple((name, float(fence.file.take(given, name, float, 0.0, "with"))) for name in wanted)
+
+
+def _between(fence: Fence) -> tuple[float, float] | None:
+    given = fence.take("between", list, None)
+    if given is None:
+        return None
+    numbers = all(type(v) in (int, float) for v in given)
+    if len(given) != 2 or not numbers or any(b < a for a, b in pairwise(given)):
+        raise fence.error(f"between = {spell(given)}: expected [lowest, highest]", "between")
+    return float(given[0]), float(given[1])
+
+
+def _shader(fence: Fence) -> str:
+    file = fence.words("file")
+    path = (GLSL / file).resolve()
+    if not path.is_relative_to(GLSL.resolve()) or not path.is_file():
+        names = [p.relative_to(GLSL).as_posix() for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp")]
+        raise fence.error(f"file = '{file}': not in glsl/{nearest(file, names)}", "file")
+    return file
+
+
+def _check_path(fence: Fence, scene: Scene, path: str, key: str) -> None:
+    try:
+        resolve(scene.sketch.graph, path)
+    except PlaygroundError as error:
+        raise fence.error(error.diagnostics[0].message, key) from None
+
+
+def _type_of(scene: Scene, path: str) -> str:
+    return resolve(scene.sketch.graph, path)[0].parameter.type
+
+
+READERS: dict[str, Callable[[Fence], Named]] = {
+    "figure": _figure,
+    "step": _steps,
+    "slider": _slider,
+    "compare": _compare,
+    "code": _code,
+    "break": _break,
+    "question": _question,
+    "exercise": _exercise,
+    "measure": _measure,
+}
+"""What reads each kind of block."""

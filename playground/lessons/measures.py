@@ -1,0 +1,218 @@
+"""What lessons measure: numbers of a texture, each a pure function of its values.
+
+A function is given ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
+channel, and the ``Grid`` that they stand on. Lessons name it in ``what``, and give the rest
+of its arguments in ``with``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """What the texels of a land stand for."""
+
+    spacing: tuple[float, float] = (1.0, 1.0)  # [m] from texel to texel, eastwards and northwards
+    relief: float = 1.0  # [m] from height 0 to height 1
+
+
+@dataclass(frozen=True)
+class OfTexture:
+    """A measure of a texture's values."""
+
+    function: Callable[..., float]
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class OfRun:
+    """A measure of how a texture or a picture is made: the engine knows it, not the values."""
+
+    arguments: tuple[str, ...] = ()
+
+
+def mean(values: Values, grid: Grid) -> float:
+    """Return the mean."""
+    return float(values.mean())
+
+
+def lowest(values: Values, grid: Grid) -> float:
+    """Return the lowest value."""
+    return float(values.min())
+
+
+def highest(values: Values, grid: Grid) -> float:
+    """Return the highest value."""
+    return float(values.max())
+
+
+def spread(values: Values, grid: Grid) -> float:
+    """Return how far apart the lowest and the highest value are."""
+    return float(values.max() - values.min())
+
+
+def deviation(values: Values, grid: Grid) -> float:
+    """Return the standard deviation."""
+    return float(values.std())
+
+
+def share_below(values: Values, grid: Grid, limit: float) -> float:
+    """Return which share of the texels lies below a limit, 0..1."""
+    return float((values < limit).mean())
+
+
+def share_above(values: Values, grid: Grid, limit: float) -> float:
+    """Return which share of the texels lies above a limit, 0..1."""
+    return float((values > limit).mean())
+
+
+def share_between(values: Values, grid: Grid, low: float, high: float) -> float:
+    """Return which share of the texels lies between two limits, both included, 0..1."""
+    return float(((values >= low) & (values <= high)).mean())
+
+
+def distinct(values: Values, grid: Grid) -> float:
+    """Return how many different values there are."""
+    return float(np.unique(values).size)
+
+
+def local_maxima(values: Values, grid: Grid) -> float:
+    """Return how many texels, borders aside, are higher than each of their eight neighbours."""
+    return float(_peaks(values).sum())
+
+
+def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
+    """Return which share of the local maxima has a row and a column that ``every`` divides, 0..1."""
+    rows, columns = np.nonzero(_peaks(values))
+    return (
+        float((((rows + 1) % int(every) == 0) & ((columns + 1) % int(every) == 0)).mean())
+        if rows.size
+        else 0.0
+    )
+
+
+def _peaks(values: Values) -> NDArray[np.bool_]:
+    inner = values[1:-1, 1:-1]
+    top = np.ones(inner.shape, bool)
+    for dy in (0, 1, 2):
+        for dx in (0, 1, 2):
+            if (dy, dx) != (1, 1):
+                top &= inner > values[dy : dy + inner.shape[0], dx : dx + inner.shape[1]]
+    return top
+
+
+def mean_slope(values: Values, grid: Grid) -> float:
+    """Return the mean slope in degrees of a height in 0..1, by central differences in metres."""
+    return float(_slopes(values, grid).mean())
+
+
+def share_steeper(values: Values, grid: Grid, degrees: float) -> float:
+    """Return which share of a land is steeper than some degrees, 0..1."""
+    return float((_slopes(values, grid) > degrees).mean())
+
+
+def _slopes(values: Values, grid: Grid) -> Values:
+    north, east = np.gradient(values * grid.relief, grid.spacing[1], grid.spacing[0])
+    found: Values = np.degrees(np.arctan(np.hypot(east, north)))
+    return found
+
+
+def spectrum_slope(values: Values, grid: Grid) -> float:
+    """Return the slope of the radial power spectrum in log-log, from 8 cycles to a quarter of the side.
+
+    Of fractional Brownian motion in the plane it is −(2H + 2), H the Hurst exponent. The
+    values are weighed by a Hann window; the sixteen bins are of equal width in the logarithm.
+    """
+    side = min(values.shape)
+    part = values[:side, :side]
+    window = np.hanning(side)
+    power = np.abs(np.fft.fft2((part - part.mean()) * np.outer(window, window))) ** 2
+    along = np.fft.fftfreq(side, 1 / side)
+    frequency = np.hypot(along[None], along[:, None])
+    edges = np.geomspace(8.0, side / 4.0, 17)
+    means = [power[(frequency >= low) & (frequency < high)].mean() for low, high in pairwise(edges)]
+    return float(np.polyfit(np.log(np.sqrt(edges[1:] * edges[:-1])), np.log(means), 1)[0])
+
+
+def box_dimension(values: Values, grid: Grid, limit: float) -> float:
+    """Return the dimension by counting boxes of 2 to a quarter of a side of what lies above a limit."""
+    side = 2 ** int(np.log2(min(values.shape)))
+    mask = values[:side, :side] > limit
+    sizes = [2**k for k in range(1, int(np.log2(side)) - 1)]
+    counts = []
+    for size in sizes:
+        boxes = mask.reshape(side // size, size, side // size, size).any(axis=(1, 3))
+        counts.append(max(int(boxes.sum()), 1))
+    return float(-np.polyfit(np.log(sizes), np.log(counts), 1)[0])
+
+
+def diagonal_crease(values: Values, grid: Grid) -> float:
+    """Return how much a square land bends across its south-west to north-east diagonal, over its parallels.
+
+    The bend is the second difference along the other diagonal; the parallels are the forty on each side.
+    """
+    bend = np.abs(values[2:, :-2] - 2.0 * values[1:-1, 1:-1] + values[:-2, 2:])
+    near = [np.diagonal(bend, k).mean() for k in range(-40, 41) if k]
+    return float(np.diagonal(bend).mean() / np.mean(near))
+
+
+def step_across(values: Values, grid: Grid, at: float) -> float:
+    """Return the mean step from column ``at`` − 1 to ``at``, over that of four pairs of columns beside."""
+    column = int(at)
+    steps = np.abs(np.diff(values, axis=1)).mean(axis=0)
+    beside = [steps[column - 1 + k] for k in (-3, -2, 2, 3)]
+    return float(steps[column - 1] / np.mean(beside))
+
+
+def correlation(values: Values, grid: Grid, dx: float, dy: float) -> float:
+    """Return the correlation of a texture with itself, moved by so many texels, over what they share."""
+    x, y = int(dx), int(dy)
+    first = values[max(y, 0) : values.shape[0] + min(y, 0), max(x, 0) : values.shape[1] + min(x, 0)]
+    second = values[max(-y, 0) : values.shape[0] + min(-y, 0), max(-x, 0) : values.shape[1] + min(-x, 0)]
+    return float(np.corrcoef(first.ravel(), second.ravel())[0, 1])
+
+
+def edge_match(values: Values, grid: Grid) -> float:
+    """Return the mean step from the last column to the first, over that of columns side by side.
+
+    About 1 for a land that repeats without a seam.
+    """
+    return float(np.abs(values[:, 0] - values[:, -1]).mean() / np.abs(np.diff(values, axis=1)).mean())
+
+
+MEASURES: dict[str, OfTexture | OfRun] = {
+    "mean": OfTexture(mean),
+    "lowest": OfTexture(lowest),
+    "highest": OfTexture(highest),
+    "spread": OfTexture(spread),
+    "deviation": OfTexture(deviation),
+    "share_below": OfTexture(share_below, ("limit",)),
+    "share_above": OfTexture(share_above, ("limit",)),
+    "share_between": OfTexture(share_between, ("low", "high")),
+    "distinct": OfTexture(distinct),
+    "local_maxima": OfTexture(local_maxima),
+    "peaks_on_lattice": OfTexture(peaks_on_lattice, ("every",)),
+    "mean_slope": OfTexture(mean_slope),
+    "share_steeper": OfTexture(share_steeper, ("degrees",)),
+    "spectrum_slope": OfTexture(spectrum_slope),
+    "box_dimension": OfTexture(box_dimension, ("limit",)),
+    "diagonal_crease": OfTexture(diagonal_crease),
+    "step_across": OfTexture(step_across, ("at",)),
+    "correlation": OfTexture(correlation, ("dx", "dy")),
+    "edge_match": OfTexture(edge_match),
+    "triangles": OfRun(),  # drawn for the whole picture
+    "turns": OfRun(),  # of the repeated pass in ``of``
+    "texels": OfRun(),  # computed for ``of`` by fragment shaders, every turn counted
+    "texture_bytes": OfRun(),  # of ``of``, without mip levels
+    "milliseconds": OfRun(),  # to make ``of`` anew: the best of three
+}
+"""Every measure, by the name that lessons use."""

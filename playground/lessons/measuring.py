@@ -1,0 +1,123 @@
+"""Compute the numbers of a lesson, on an engine."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from playground.engine.engine import Engine
+from playground.engine.plan import Plan, Step, Turns, every_node, needed
+from playground.errors import SketchError
+from playground.lessons.measures import MEASURES, Grid, OfTexture
+from playground.lessons.model import Lesson, Measure, Scene, Words
+
+_PLACE = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """What a measure came to."""
+
+    value: float
+    text: str  # to its digits, with its unit; a point for the decimals
+
+
+def measured(engine: Engine, measure: Measure) -> Number:
+    """Return the number of a measure; raise ``SketchError`` naming it where there is none."""
+    assert measure.scene is not None
+    value = _value(engine, measure, measure.scene)
+    if measure.over is not None:
+        below = _value(engine, measure, measure.over)
+        value = value / below if below else math.nan
+    if not math.isfinite(value):
+        raise SketchError(f"measure '{measure.name}': {value} is not a number to show", line=measure.line)
+    return Number(value, spelled(value, measure.digits, measure.unit))
+
+
+def numbers_of(engine: Engine, lesson: Lesson) -> dict[str, Number]:
+    """Return all numbers of a lesson, by their names."""
+    return {measure.name: measured(engine, measure) for measure in lesson.measures}
+
+
+def filled(words: Words, numbers: dict[str, Number], comma: bool = False) -> Words:
+    """Return words with numbers in the places that name them; one not there yet is "…".
+
+    ``comma`` writes decimals behind a comma, as French does.
+    """
+
+    def text(match: re.Match[str]) -> str:
+        number = numbers.get(match[1])
+        found = number.text if number else "…"
+        return found.replace(".", ",") if comma else found
+
+    return _PLACE.sub(text, words)
+
+
+def named_in(words: Words) -> list[str]:
+    """List the measures that words name."""
+    return _PLACE.findall(words)
+
+
+def spelled(value: float, digits: int, unit: str = "") -> str:
+    """Write a number to significant digits, never as a power of ten; thousands parted by narrow spaces."""
+    rounded = float(f"{value:.{digits - 1}e}")
+    power = math.floor(math.log10(abs(rounded))) if rounded else 0
+    # What was counted has no decimals: 1 summit, not 1.00.
+    decimals = 0 if value == int(value) else max(digits - 1 - power, 0)
+    text = f"{rounded:,.{decimals}f}".replace(",", "\u202f")
+    if unit in ("%", "°"):
+        return f"{text}\u202f%" if unit == "%" else f"{text}°"
+    return f"{text}\u202f{unit}" if unit else text
+
+
+def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
+    steps = dict(scene.steps)
+    found = MEASURES[measure.what]
+    if isinstance(found, OfTexture):
+        values = engine.read(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
+        first = values if values.ndim == 2 else values[..., 0]
+        grid = _grid(engine.plan, first.shape)
+        share = 100.0 if measure.unit == "%" else 1.0
+        return share * found.function(first.astype(np.float64), grid, **dict(measure.arguments))
+    if measure.what == "triangles":
+        engine.cache.clear()
+        engine.draw(scene.sketch, size=scene.pixels, time=scene.time, steps=steps)
+        return float(engine.triangles)
+    if measure.what == "milliseconds":
+        return min(_seconds(engine, measure, scene) for _ in range(3)) * 1e3
+    plan = engine.plan_for(scene.sketch, scene.pixels, scene.time, steps, measure.of)
+    if measure.what == "texture_bytes":
+        texture = engine.texture(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
+        width, height = texture.size
+        bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
+        return float(width * height * texture.components * bytes_a_channel)
+    nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
+    if measure.what == "turns":
+        return float(max((node.repeat for node in every_node(tuple(nodes))), default=0))
+    return float(sum(_texels(node) for node in nodes))
+
+
+def _texels(node: Step | Turns) -> int:
+    if isinstance(node, Step):
+        return node.size[0] * node.size[1] * node.repeat if node.kernel.kind == "kernel" else 0
+    return node.repeat * sum(_texels(inner) for inner in node.body)
+
+
+def _seconds(engine: Engine, measure: Measure, scene: Scene) -> float:
+    engine.cache.clear()
+    engine.ctx.finish()
+    begun = time.perf_counter()
+    engine.texture(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+    engine.ctx.finish()
+    return time.perf_counter() - begun
+
+
+def _grid(plan: Plan | None, shape: tuple[int, ...]) -> Grid:
+    assert plan is not None
+    east, north = plan.land.extent or (1.0, 1.0)
+    spacing = (east / max(shape[1] - 1, 1), north / max(shape[0] - 1, 1))
+    return Grid(spacing, plan.land.relief or 1.0)

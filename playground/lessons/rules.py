@@ -1,0 +1,150 @@
+"""What every lesson keeps to, so that all of them can be read the same way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from latex2mathml.converter import convert
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.errors import PlaygroundError
+from playground.lessons.excerpt import excerpt
+from playground.lessons.library import lesson_files
+from playground.lessons.markdown import formulas, links
+from playground.lessons.measuring import measured, named_in
+from playground.lessons.model import (
+    Block,
+    Break,
+    Code,
+    Compare,
+    Exercise,
+    Figure,
+    Lesson,
+    Measure,
+    Named,
+    Prose,
+    Question,
+    Slider,
+    Steps,
+)
+from playground.lessons.pictures import broken, draw
+from playground.sketch.find import shipped_sketches
+
+MOST_WORDS = 60
+"""Words that may stand before the first picture, so that it is on the first screen."""
+
+EXERCISES = 3
+"""Exercises that a lesson has at least."""
+
+VISIBLE_MEAN, VISIBLE_SHARE, VISIBLE_LEVELS = 2.0, 0.02, 16
+"""A fault shows if pictures differ by so many levels in the mean, or such a share of pixels by so many."""
+
+
+def broken_rules(lesson: Lesson) -> Iterator[tuple[int, str]]:
+    """Yield (line, sentence) of every rule that a lesson's text breaks; nothing is drawn."""
+    yield from _first_screen(lesson)
+    yield from _kinds(lesson)
+    yield from _sections(lesson)
+    yield from _references(lesson)
+    for block in lesson.blocks:
+        alt, caption = getattr(block, "alt", ""), getattr(block, "caption", "")
+        if alt and alt == caption:
+            yield block.line, f"'{getattr(block, 'name', '')}': alt repeats the caption"
+        try:
+            if isinstance(block, Code):
+                excerpt(block.file, block.anchor)
+            elif isinstance(block, Break):
+                broken(block)
+        except PlaygroundError as error:
+            yield block.line, error.diagnostics[0].message
+
+
+def wrong_pictures(engine: Engine, lesson: Lesson) -> Iterator[tuple[int, str]]:
+    """Yield (line, sentence) of faults that do not show, and of numbers that are not as claimed."""
+    for block in lesson.blocks:
+        try:
+            if isinstance(block, Break) and block.scene:
+                if not visible(draw(engine, block.scene), draw(engine, broken(block))):
+                    yield block.line, f"break '{block.name}': the fault hardly changes the picture"
+            elif isinstance(block, Measure):
+                value = measured(engine, block).value
+                if block.between and not block.between[0] <= value <= block.between[1]:
+                    low, high = block.between
+                    yield block.line, f"measure '{block.name}': {value:g} is not between {low:g} and {high:g}"
+        except PlaygroundError as error:
+            yield block.line, error.diagnostics[0].message
+
+
+def visible(one: Frame, other: Frame) -> bool:
+    """Say whether two pictures of one size differ as anybody sees."""
+    difference = np.abs(one.array.astype(np.int16) - other.array).max(axis=-1)
+    share = float((difference > VISIBLE_LEVELS).mean())
+    return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
+
+
+def _first_screen(lesson: Lesson) -> Iterator[tuple[int, str]]:
+    words = 0
+    for block in lesson.blocks:
+        if isinstance(block, Figure):
+            if words > MOST_WORDS:
+                yield block.line, f"{words} words stand before the first figure, at most {MOST_WORDS} may"
+            return
+        words += len(block.text.split()) if isinstance(block, Prose) else 0
+        if isinstance(block, Named):
+            yield block.line, "the first block of a lesson is a figure"
+            return
+    yield 1, "a lesson has a figure"
+
+
+def _kinds(lesson: Lesson) -> Iterator[tuple[int, str]]:
+    wanted: tuple[tuple[str, tuple[type[Block], ...]], ...] = (
+        ("a step or a slider", (Steps, Slider)),
+        ("a compare or a question", (Compare, Question)),
+        ("a break", (Break,)),
+        ("a code", (Code,)),
+        ("a measure", (Measure,)),
+    )
+    for what, kinds in wanted:
+        if not any(isinstance(block, kinds) for block in lesson.blocks):
+            yield 1, f"a lesson has {what} block"
+    count = sum(isinstance(block, Exercise) for block in lesson.blocks)
+    if count < EXERCISES:
+        yield 1, f"{count} exercises; a lesson has {EXERCISES}"
+    if not lesson.thesis or not lesson.papers:
+        yield 1, "a lesson names sections of the thesis, and papers"
+
+
+def _sections(lesson: Lesson) -> Iterator[tuple[int, str]]:
+    sections = lesson.sections[1:]
+    if not sections:
+        yield 1, "a lesson has sections, each begun by ##"
+        return
+    for section in sections[:-1]:
+        if not any(isinstance(block, Named) and not isinstance(block, Measure) for block in section.blocks):
+            line = section.blocks[0].line if section.blocks else 1
+            yield line, f"section '{section.title}' shows nothing: no picture, code or question"
+    if not any(isinstance(block, Exercise) for block in sections[-1].blocks):
+        yield 1, "the last section of a lesson holds the exercises"
+
+
+def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
+    measures = {measure.name for measure in lesson.measures}
+    for words in lesson.words():
+        for latex in formulas(words):
+            if "\\" in convert(latex):  # a command that it does not know stays as it is
+                yield 1, f"formula ${latex}$ holds a command that cannot be shown"
+        for name in named_in(words):
+            if name not in measures:
+                yield 1, f"{{{{{name}}}}}: there is no measure of that name"
+        for address in links(words):
+            kind, _, what = address.partition(":")
+            if kind == "lesson" and what not in lesson_files():
+                yield 1, f"a link to lesson '{what}', which there is not"
+            elif kind == "sketch" and what not in shipped_sketches():
+                yield 1, f"a link to sketch '{what}', which there is not"
+            elif kind == "thesis" and not all(part.isdigit() for part in what.split(".")):
+                yield 1, f"a link to section '{what}' of the thesis, which is no number"
+            elif kind not in ("lesson", "sketch", "thesis", "https"):
+                yield 1, f"a link to '{address}': expected lesson:, sketch:, thesis: or https:"

@@ -1,0 +1,155 @@
+"""Read the state of a picture: a sketch, and what a block of a lesson sets of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any
+
+from playground.errors import PlaygroundError, nearest
+from playground.lessons.model import Scene
+from playground.paths import SKETCHES
+from playground.sketch.find import shipped_sketches
+from playground.sketch.flatten import flatten, leaves_of
+from playground.sketch.load import load_with
+from playground.sketch.maps import Map
+from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
+from playground.sketch.techniques import Techniques
+from playground.sketch.toml_camera import read_camera
+from playground.sketch.toml_graph import read_set
+from playground.sketch.toml_lines import Place
+from playground.sketch.toml_sketch import read_steps
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import spell
+
+STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels", "view", "range")
+"""The keys that say what a picture shows."""
+
+PICTURE = (640, 360)
+"""Pixels of a picture that stands alone."""
+
+FRAME = (480, 270)
+"""Pixels of one picture of a series."""
+
+
+@dataclass
+class Sketches:
+    """Sketches that have been loaded, so that a lesson reads each of its shaders once."""
+
+    techniques: Techniques = field(default_factory=Techniques)
+    known: dict[str, Sketch] = field(default_factory=dict)
+
+    def load(self, name: str) -> Sketch:
+        """Return a shipped sketch by name; raise as ``playground.sketch.load.load`` does."""
+        if name not in self.known:
+            self.known[name] = load_with(self.techniques, SKETCHES / f"{name}.toml")
+        return self.known[name]
+
+
+def read_scene(
+    file: TomlFile,
+    table: Mapping[str, Any],
+    place: Place,
+    sketches: Sketches,
+    pixels: tuple[int, int] = PICTURE,
+    under: Mapping[str, Any] | None = None,
+) -> Scene:
+    """Return the picture that a table's keys of ``STATE`` say; those of ``under`` stand below its own.
+
+    ``set`` and ``steps`` of both are joined. Raises ``SketchError`` at the key that is wrong.
+    """
+    whole = dict(under or {}) | dict(table)
+    if under:
+        for key in ("set", "steps"):
+            if key in under and key in table:
+                whole[key] = {**under[key], **table[key]}
+    sketch = _sketch(file, whole, place, sketches)
+    shot = _shot(file, whole, place, sketch)
+    preset = file.take(whole, "preset", str, "", *place)
+    values = read_set(file, sketch, whole, place, "this picture")
+    steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, place))
+    camera = None
+    begun = sketch.for_shot(shot)
+    if "camera" in whole:
+        camera = read_camera(file, whole, begun.camera, place)
+    try:
+        made = begun.with_preset(preset) if preset else begun
+        made = made.with_values(dict(values))
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *place, "preset" if preset else "set") from None
+    if camera is not None:
+        made = made.with_camera(camera)
+    view = file.take(whole, "view", str, "", *place)
+    if view:
+        made = _seen_from_above(file, whole, place, made)
+    time = file.take(whole, "time", float, shot.time, *place)
+    size = _pixels(file, whole, place, shot.size if shot.name else pixels)
+    plain = bool(shot.name) and whole.keys() <= {"sketch", "shot"}
+    return Scene(made, size, time, tuple(steps.items()), shot.name, preset, values, view, plain)
+
+
+def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:
+    """Return the picture with repeated passes stopped after so many turns."""
+    return replace(scene, steps=tuple({**dict(scene.steps), **steps}.items()), plain=False)
+
+
+def with_value(scene: Scene, path: str, value: Value) -> Scene:
+    """Return the picture with one more parameter set."""
+    values = (*(v for v in scene.values if v[0] != path), (path, value))
+    return replace(scene, sketch=scene.sketch.with_values({path: value}), values=values, plain=False)
+
+
+def _sketch(file: TomlFile, table: Mapping[str, Any], place: Place, sketches: Sketches) -> Sketch:
+    name = file.take(table, "sketch", str, "", *place)
+    if name not in shipped_sketches():
+        hint = nearest(name, shipped_sketches())
+        raise file.error(
+            f"sketch = {spell(name)}: a lesson shows a sketch that ships{hint}", *place, "sketch"
+        )
+    return sketches.load(name)
+
+
+def _shot(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Shot:
+    name = file.take(table, "shot", str, "", *place)
+    if not name:
+        return Shot("")
+    try:
+        return sketch.shot(name)
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *place, "shot") from None
+
+
+def _pixels(
+    file: TomlFile, table: Mapping[str, Any], place: Place, default: tuple[int, int]
+) -> tuple[int, int]:
+    given = file.take(table, "pixels", list, list(default), *place)
+    if len(given) != 2 or not all(type(v) is int and 16 <= v <= LARGEST_SIDE for v in given):
+        raise file.error(f"pixels = {spell(given)}: expected [width, height], from 16", *place, "pixels")
+    return given[0], given[1]
+
+
+def _range(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[float, float]:
+    given = file.take(table, "range", list, [0.0, 1.0], *place)
+    if len(given) != 2 or not all(type(v) in (int, float) for v in given) or given[0] >= given[1]:
+        raise file.error(f"range = {spell(given)}: expected [lowest, highest]", *place, "range")
+    return float(given[0]), float(given[1])
+
+
+def _seen_from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Sketch:
+    ref = table["view"]
+    flat = flatten(sketch, compute=False)
+    try:
+        found = flat.ref(ref, sketch.name)
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *place, "view") from None
+    kernels = {leaf.path: leaf.kernel for leaf in leaves_of(flat.nodes)}
+    output = next(o for o in kernels[found.path].outputs if o.name == found.output)
+    lowest, highest = _range(file, table, place)
+    shown = _map(ref).with_value("lowest", lowest).with_value("highest", highest)
+    return shown.with_value("channel", 0 if output.components > 2 else 1).of(sketch)
+
+
+@cache
+def _map(ref: str) -> Map:
+    return Map(ref)

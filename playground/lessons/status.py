@@ -1,0 +1,69 @@
+"""Say how far a translation is: missing, stale, or current."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from playground.errors import counted
+from playground.lessons.library import lesson_file
+from playground.lessons.read import Text, part
+from playground.lessons.translate import stale
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a translation is."""
+
+    name: str
+    language: str
+    word: str  # missing | unmarked | stale | current
+    changed: tuple[int, ...] = ()  # lines of the English file
+    added: tuple[int, ...] = ()
+    removed: int = 0  # blocks
+
+    @property
+    def sentences(self) -> list[str]:
+        """What there is to do, in English."""
+        found = []
+        if self.word == "unmarked":
+            found.append(f"playground lesson translated {self.name} --lang {self.language}")
+        for word, lines in (("changed", self.changed), ("new", self.added)):
+            if lines:
+                found.append(f"{word}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}")
+        if self.removed:
+            found.append(f"{counted(self.removed, 'block')} of it no more in English")
+        return found
+
+    def as_json(self) -> dict[str, Any]:
+        """Return it as JSON takes it."""
+        return {
+            "lesson": self.name,
+            "language": self.language,
+            "state": self.word,
+            "changed_lines": list(self.changed),
+            "new_lines": list(self.added),
+            "removed_blocks": self.removed,
+        }
+
+
+def status_of(name: str, language: str) -> Status:
+    """Return how far a translation is; raise ``SketchError`` for one that cannot be read."""
+    path = lesson_file(name, language)
+    if not path.is_file():
+        return Status(name, language, "missing")
+    english, other = part(lesson_file(name)), part(path)
+    if not other.front.table.get("source"):
+        return Status(name, language, "unmarked")
+    lost = stale(english, other)
+    if not lost.any:
+        return Status(name, language, "current")
+    return Status(
+        name, language, "stale", _lines(english, lost.changed), _lines(english, lost.added), lost.removed
+    )
+
+
+def _lines(english: Text, indices: Sequence[int]) -> tuple[int, ...]:
+    """Return where blocks stand; the first index is that of title and goal."""
+    return tuple(english.pieces[index - 1].line if index else 1 for index in indices)

@@ -1,0 +1,199 @@
+"""Put the words of a translation in place of the English ones, and know which have gone stale.
+
+A translation says which English it was made from: ``source`` in its front matter holds a hash
+of each English block. Where the English has changed since, the words are still shown, and
+``status`` names the block.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from playground.errors import SketchError
+from playground.images.files import replacing
+from playground.lessons.fences import Fence, open_fence
+from playground.lessons.markdown import Piece
+from playground.lessons.model import WORDS, Block, Lesson, Named, Prose
+from playground.lessons.read import Text, prose_of, texts_of
+from playground.lessons.scenes import Sketches
+
+_FRONT = ("title", "goal", "source")
+_KEYS = {"words": "text"}  # a field's key in the file, where it is not the field's name
+_LISTED = ("captions", "labels", "choices")
+_SOURCE = re.compile(r"^source\s*=\s*\[.*?\]", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Stale:
+    """What a translation lacks of today's English."""
+
+    changed: tuple[int, ...] = ()  # indices of English blocks that say something else now
+    added: tuple[int, ...] = ()  # indices of English blocks that were not there
+    removed: int = 0  # how many are there no more
+
+    @property
+    def any(self) -> bool:
+        """Whether there is anything to translate."""
+        return bool(self.changed or self.added or self.removed)
+
+
+def hashes(text: Text) -> list[str]:
+    """Return the hash of each block of an English file; the first is that of title and goal."""
+    front = "\n".join(str(text.front.table.get(key, "")) for key in ("title", "goal"))
+    return [_hash(front), *(_hash(piece.text) for piece in text.pieces)]
+
+
+def stale(english: Text, other: Text) -> Stale:
+    """Compare what a translation was made from with what the English says now; index 0 is the front."""
+    now, then = hashes(english), list(texts_of(other.front, "source"))
+    changed: list[int] = []
+    added: list[int] = []
+    removed = 0
+    for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
+        if tag == "replace":
+            both = min(high - low, last - first)
+            changed += range(first, first + both)
+            added += range(first + both, last)
+            removed += high - low - both
+        elif tag == "insert":
+            added += range(first, last)
+        elif tag == "delete":
+            removed += high - low
+    return Stale(tuple(changed), tuple(added), removed)
+
+
+def translated(lesson: Lesson, english: Text, other: Text, language: str) -> Lesson:
+    """Return a lesson with the words of a translation.
+
+    Raises ``SketchError`` where the translation has other blocks than the English had when it
+    was made, says more than words, or lacks some. Of a stale translation, the English blocks
+    that are new stand in English.
+    """
+    front = other.front
+    front.only(front.table, _FRONT)
+    then = texts_of(front, "source")
+    now = hashes(english)
+    if not then:
+        pairs = dict(enumerate(range(len(other.pieces))))
+        if len(other.pieces) != len(lesson.blocks):
+            raise _other_shape(lesson, other)
+    else:
+        if len(then) != len(other.pieces) + 1:
+            message = f"{len(other.pieces)} blocks, but source names {len(then) - 1}"
+            raise front.error(message, "source")
+        pairs = _pairs(then, now)
+    sketches = Sketches()
+    blocks = tuple(
+        _put(block, other.pieces[pairs[index]], other, sketches) if index in pairs else block
+        for index, block in enumerate(lesson.blocks)
+    )
+    lost = stale(english, other) if then else Stale()
+    return replace(
+        lesson,
+        language=language,
+        title=front.take(front.table, "title", str, lesson.title),
+        goal=front.take(front.table, "goal", str, lesson.goal),
+        blocks=blocks,
+        stale=tuple(index - 1 for index in (*lost.changed, *lost.added)),
+    )
+
+
+def write_hashes(english: Text, other: Text) -> None:
+    """Write into a translation that it says what the English says now; the file is replaced whole.
+
+    Raises ``SketchError`` where it has not as many blocks.
+    """
+    if len(other.pieces) != len(english.pieces):
+        raise _other_shape(english, other)
+    text = other.path.read_text(encoding="utf-8")
+    rows = [f'    "{found}",' for found in hashes(english)]
+    line = "\n".join(["source = [", *rows, "]"])
+    edge = text.index("\n+++", 3)
+    front, rest = text[:edge], text[edge:]
+    front = _SOURCE.sub(line, front, count=1) if _SOURCE.search(front) else f"{front}\n{line}"
+    tomllib.loads(front.removeprefix("+++"))  # what is written can be read
+    with replacing(other.path) as handle:
+        handle.write((front + rest).encode())
+
+
+def _pairs(then: tuple[str, ...], now: list[str]) -> dict[int, int]:
+    """Map English blocks to those of a translation: equal ones, and those that took the place of others."""
+    found: dict[int, int] = {}
+    for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
+        if tag in ("equal", "replace"):
+            found |= dict(zip(range(first, last), range(low, high), strict=False))
+    return {new - 1: old - 1 for new, old in found.items() if new and old}
+
+
+def _put(block: Block, piece: Piece, other: Text, sketches: Sketches) -> Block:
+    if isinstance(block, Prose):
+        if block.kind != (found := prose_of(piece)).kind or block.level != found.level:
+            message = f"a {found.kind} stands here, where the English has a {block.kind} (line {block.line})"
+            raise SketchError(message, file=other.path, line=piece.line)
+        return replace(block, words=found.words)
+    assert isinstance(block, Named)
+    kind = block.text.split(maxsplit=1)[0].lstrip("`~")
+    head = f"{kind} {block.name}"
+    if piece.kind != "fence" or piece.info != head:
+        found_head = piece.info if piece.kind == "fence" else f"a {piece.kind}"
+        message = f"expected the block '{head}' here, found {found_head}"
+        raise SketchError(message, file=other.path, line=piece.line)
+    return replace(block, **_words(block, open_fence(piece, other.path, piece.line, sketches)))
+
+
+def _words(block: Named, fence: Fence) -> dict[str, Any]:
+    fields = WORDS[type(block)]
+    keys = [_KEYS.get(field, field) for field in fields]
+    table: Mapping[str, Any] = fence.file.table
+    for key in table:
+        if key not in keys:
+            message = f"'{key}' is not for a translation, which says only {', '.join(keys)}"
+            raise fence.error(message, key)
+    found: dict[str, Any] = {}
+    for field, key in zip(fields, keys, strict=True):
+        there = getattr(block, field)
+        if key in _LISTED:
+            words: Any = fence.list_of_words(key)
+            if len(words) != len(there):
+                raise fence.error(f"{key}: {len(words)} here, {len(there)} in English", key)
+        else:
+            words = fence.words(key, needed=bool(there))
+            if words and not there:
+                raise fence.error(f"{key}: the English has none", key)
+        found[field] = words
+    return found
+
+
+def _other_shape(english: Lesson | Text, other: Text) -> SketchError:
+    """Name the first block that is not what the English has in its place."""
+    theirs: tuple[Block | Piece, ...] = english.blocks if isinstance(english, Lesson) else english.pieces
+    for here, there in zip(other.pieces, theirs, strict=False):
+        kind = _kind(there)
+        if here.kind != kind or (here.kind == "fence" and here.info.split() != _head(there)):
+            message = f"a {here.kind} stands here, where the English has a {kind} (line {there.line})"
+            return SketchError(message, file=other.path, line=here.line)
+    message = f"{len(other.pieces)} blocks, where the English has {len(theirs)}"
+    return SketchError(message, file=other.path, line=other.pieces[-1].line if other.pieces else 1)
+
+
+def _kind(block: Block | Piece) -> str:
+    if isinstance(block, Piece):
+        return block.kind
+    return block.kind if isinstance(block, Prose) and block.kind != "code" else "fence"
+
+
+def _head(block: Block | Piece) -> list[str]:
+    if isinstance(block, Piece):
+        return block.info.split()
+    return block.text.split("\n", 1)[0].lstrip("`~").split()
+
+
+def _hash(text: str) -> str:
+    """Hash words: how lines are broken does not matter."""
+    return hashlib.sha256(" ".join(text.split()).encode()).hexdigest()[:8]
