@@ -83,6 +83,7 @@ float error_of_level(int level) {
 }
 
 // Of the last level: two triangles, parted so that four tiles in a square make a fan as well.
+// anchor: two
 float error_of_two(bool turned) {
     float corner = node(ivec2(0)), east = node(ivec2(TILE, 0));
     float north = node(ivec2(0, TILE)), far = node(ivec2(TILE));
@@ -99,6 +100,7 @@ float error_of_two(bool turned) {
     }
     return worst;
 }
+// end: two
 
 void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
     bool broken = false;
@@ -113,9 +115,11 @@ void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
             nodes[y * ROW + x] = found;
         }
     }
+    // anchor: levels
     errors.x = error_of_level(1);
     errors.y = max(errors.x, error_of_level(2));
     errors.z = max(errors.y, error_of_level(3));
     errors.w = max(errors.z, error_of_two(((texel.x + texel.y) & 1) == 1));
+    // end: levels
     if (broken) errors = vec4(NEVER);
 }
