@@ -83,24 +83,24 @@ float error_of_level(int level) {
 }
 
 // Of the last level: two triangles, parted so that four tiles in a square make a fan as well.
-// anchor: two
 float error_of_two(bool turned) {
     float corner = node(ivec2(0)), east = node(ivec2(TILE, 0));
     float north = node(ivec2(0, TILE)), far = node(ivec2(TILE));
     float worst = 0.0;
     for (int y = 0; y <= TILE; y++) {
         for (int x = 0; x <= TILE; x++) {
+            // anchor: two
             vec2 s = vec2(x, y) / float(TILE);
             float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
                                  : corner + s.y * (north - corner) + s.x * (far - north);
             float other = x + y <= TILE ? corner + s.x * (east - corner) + s.y * (north - corner)
                                         : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
             worst = max(worst, abs((turned ? other : plane) - node(ivec2(x, y))));
+            // end: two
         }
     }
     return worst;
 }
-// end: two
 
 void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
     bool broken = false;
