@@ -27,7 +27,7 @@ class Book:
     lessons: tuple[Lesson, ...]  # in their order
     languages: tuple[str, ...]  # that are built
     renderer: str  # that drew the pictures
-    thesis: str = ""  # address of the thesis's text; "": none is known
+    gallery: bool = True  # whether the thesis's figures are among the pages
 
     def word(self, key: str, **values: object) -> str:
         """Return a word of the interface."""
@@ -38,8 +38,8 @@ class Book:
         kind, _, what = link.partition(":")
         if kind == "lesson":
             return f"{what}.html"
-        if kind == "thesis":
-            return f"{FIGURES}.html#section-{what.replace('.', '-')}"
+        if kind == "thesis":  # its text is not ours to give; the figures of that chapter are here
+            return f"{FIGURES}.html#chapter-{what.partition('.')[0]}" if self.gallery else "#thesis-title"
         if kind == "sketch":
             return "#play"
         return link
@@ -105,7 +105,9 @@ def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
             tag("a", book.word("figures"), href=f"{FIGURES}.html"),
             Markup(" — "),
             book.word("figures_goal"),
-        ),
+        )
+        if book.gallery
+        else None,
         tag("p", book.word("source", thesis=THESIS)),
     )
     return _page(book, book.word("book"), "index", body)
@@ -167,7 +169,7 @@ def _page(book: Book, title: str, name: str, body: Markup, *, wide: bool = False
     top = tag(
         "nav",
         tag("a", book.word("contents"), href="index.html"),
-        tag("a", book.word("figures"), href=f"{FIGURES}.html"),
+        tag("a", book.word("figures"), href=f"{FIGURES}.html") if book.gallery else None,
         *others,
         tag("button", book.word("theme"), type="button", id="theme", hidden=True),
         class_="top",
