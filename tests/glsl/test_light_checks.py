@@ -12,8 +12,6 @@ import numpy as np
 import pytest
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from playground.engine.engine import Engine
-
 from ..truth.land import Land, real, towards, valley
 from ..truth.methods import METHODS, SKY, SUN, Method, lit
 from ..truth.sky import sky_visibility
@@ -25,14 +23,6 @@ OF_THE_SKY = pytest.mark.parametrize("method", [m for m in METHODS if m.gives ==
 EACH = pytest.mark.parametrize("method", OF_THE_SUN, ids=lambda m: m.name)
 SLOW = pytest.mark.slow
 SHADOWING = pytest.mark.parametrize("method", [m for m in OF_THE_SUN if m.shadows], ids=lambda m: m.name)
-
-
-@pytest.fixture(scope="module")
-def kept(shared_context):
-    """Give one engine for the file: programs are compiled once."""
-    shared_context.__enter__()
-    with Engine(shared_context) as made:
-        yield made
 
 
 @pytest.fixture

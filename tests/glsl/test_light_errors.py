@@ -9,8 +9,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from playground.engine.engine import Engine
-
 from ..truth.errors import measure, truth_of
 from ..truth.land import LANDS
 from ..truth.methods import METHODS
@@ -88,14 +86,6 @@ BOUNDS = {
     ("interreflection, 32 directions", "valley"): (0.015, 0.03),
     ("interreflection, 32 directions", "real"): (0.007, 0.017),
 }
-
-
-@pytest.fixture(scope="module")
-def kept(shared_context):
-    """Give one engine for the file: programs are compiled once."""
-    shared_context.__enter__()
-    with Engine(shared_context) as made:
-        yield made
 
 
 @pytest.fixture(scope="module")
