@@ -20,20 +20,10 @@ from playground.shots.fingerprint import Fingerprint, fingerprint_of, processor_
 from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.load import load
 
+from .conftest import OURS
+
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 NVIDIA = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 NVIDIA 570.86", 32)
-OURS = Fingerprint(
-    "llvmpipe (LLVM 15.0.6, 256 bits)",
-    "4.5 Mesa 22.3.6",
-    "Mesa/X.org",
-    "22.3.6",
-    "15.0.6",
-    "GenuineIntel",
-    "avx fma f16c",
-    "ab12",
-    "64x32",
-    "tool 1",
-)
 
 
 @pytest.mark.parametrize(
