@@ -19,7 +19,20 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
-from playground.commands import check, doctor, export, fly, listing, live, new, pack, reduce, render, shots
+from playground.commands import (
+    cache,
+    check,
+    doctor,
+    export,
+    fly,
+    listing,
+    live,
+    new,
+    pack,
+    reduce,
+    render,
+    shots,
+)
 from playground.commands.arguments import (
     DeviceOption,
     Renderer,
@@ -160,8 +173,13 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-app.add_typer(shots.app)
-_COMMANDS = (*(str(command.name) for command in app.registered_commands), str(shots.app.info.name))
+_GROUPS = (shots.app, cache.app)
+for _group in _GROUPS:
+    app.add_typer(_group)
+_COMMANDS = (
+    *(str(command.name) for command in app.registered_commands),
+    *(str(group.info.name) for group in _GROUPS),
+)
 
 
 if __name__ == "__main__":
