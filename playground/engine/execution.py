@@ -80,10 +80,8 @@ class Execution:
 
     def _stood_for(self, step: Step) -> Result | None:
         """Return the earlier draw that stands for one that draws nothing over it, samples and depth too."""
-        if step.kernel.kind != "draw" or step.repeat:
-            return None
         start = self._read(dict(step.inputs).get("initial"), {})
-        if start.result is None or start.texture is None:
+        if step.kernel.kind != "draw" or step.repeat or start.result is None or start.texture is None:
             return None
         if start.result.surface is None or start.result.size != step.size:
             return None

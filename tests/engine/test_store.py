@@ -162,8 +162,8 @@ def any_shelf(ctx, tmp_path) -> Iterator[Shelf]:
     made.close()
 
 
-def picture(engine: Engine, sketch, time: float = 0.0) -> bytes:
-    return engine.render(sketch, size=(64, 36), time=time).array.tobytes()
+def picture(engine: Engine, sketch, steps: dict[str, int] | None = None) -> bytes:
+    return engine.render(sketch, size=(64, 36), steps=steps).array.tobytes()
 
 
 # ── the same bits ────────────────────────────────────────────────────────────
@@ -261,13 +261,13 @@ def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
 def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_shows(
     any_shelf, folder, worn, seed
 ):
-    """Values back and forth, a light moved, sessions that end, memory too small for two lands."""
+    """Values back and forth, loops stopped, sessions that end, memory too small for two lands."""
     chance = random.Random(seed)
-    sketch, reads = worn, 0
+    sketch, reads, steps = worn, 0, {}
     engine = any_shelf.engine(cache_bytes=20_000)
     with Engine(any_shelf.ctx) as plain:
-        for _ in range(30):
-            match chance.randrange(6):
+        for _ in range(50):
+            match chance.randrange(7):
                 case 0:
                     sketch = sketch.with_values({"land.bumps": chance.choice((1.0, 2.0, 3.0))})
                 case 1:
@@ -276,13 +276,16 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
                     sketch = sketch.with_values({"worn.add.share": chance.choice((0.25, 0.5))})
                 case 3:
                     engine.keeping.skips = not engine.keeping.skips
-                case 4:
+                case 4 if engine.plan is not None:
+                    any_shelf.keep(engine)
                     reads += engine.keeping.reads
                     engine = any_shelf.engine(cache_bytes=20_000)
-                case 5 if engine.plan is not None:
+                case 5:
+                    steps = chance.choice(({}, {"worn": 1}, {"worn": 2}, {"land": 2}))
+                case 6 if engine.plan is not None:
                     any_shelf.keep(engine)
-            expected = set(engine.stale(sketch, size=(64, 36)))
-            assert picture(engine, sketch) == picture(plain, sketch)
+            expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
+            assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
             assert set(engine.ran) == expected, "stale() tells what runs"
         path = chance.choice(("land", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))

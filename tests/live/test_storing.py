@@ -14,6 +14,7 @@ from playground.engine.engine import Engine
 from playground.engine.store import listed
 from playground.engine.store_keeping import REST as LAND_RESTS
 from playground.engine.store_keeping import Keeping
+from playground.errors import ContextError
 from playground.live import storing as storing_module
 from playground.live.actions import Actions
 from playground.live.finite import REST, FiniteWatch
@@ -193,6 +194,24 @@ def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
     for _ in range(5):
         desk.turn()
     assert desk.session.draws == draws, "it was asked for once"
+
+
+def test_passes_that_fail_are_asked_for_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk.rest()
+    desk.open()
+    desk.turn()
+    assert desk.session is not None
+    tries = []
+
+    def fails(*_: object, **__: object) -> None:
+        tries.append(1)
+        raise ContextError("no")
+
+    monkeypatch.setattr(desk.session.engine, "draw", fails)
+    desk.actions.see.graph.on = True
+    for _ in range(5):
+        desk.turn()
+    assert len(tries) == 1
 
 
 def test_an_edited_kernel_is_another_land(desk: Desk) -> None:
