@@ -43,7 +43,7 @@ def passing(plan: Plan, continued: frozenset[str] = frozenset()) -> frozenset[st
 
 
 def _stops(loop: Turns) -> bool:
-    by_time = bool(loop.spec.repeat) and "time" in names_in(loop.spec.repeat)
+    by_time = "time" in loop.spec.repeat and "time" in names_in(loop.spec.repeat)
     return by_time or loop.repeat != loop.whole
 
 
@@ -51,7 +51,9 @@ def _passes(step: Step, plan: Plan, continued: frozenset[str]) -> bool:
     kernel = step.kernel
     if kernel.kind.startswith("plain") or step.path in continued or step.window is not None:
         return True
-    if step.size == plan.frame_size or step.repeat != step.whole or "time" in names_in(kernel.repeat):
+    if step.size == plan.frame_size or step.repeat != step.whole:
+        return True
+    if "time" in kernel.repeat and "time" in names_in(kernel.repeat):
         return True
     return any(kernel.reads(name) for name in _PASSING)
 
