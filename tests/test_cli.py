@@ -33,7 +33,7 @@ from playground.sketch.find import shipped_sketches
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
-COMMANDS += ["shots", "shots list", "shots mutants"]
+COMMANDS += ["shots", "shots list", "shots mutants", "cache", "cache show", "cache clear"]
 
 PLAIN_FRAGMENT = """#version 330
 uniform vec3 iResolution;

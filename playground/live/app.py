@@ -45,6 +45,7 @@ from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
+from playground.live.storing import Storing
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
@@ -67,15 +68,17 @@ def run(
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
+    keeps: int = 0,
     time_limit: float | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
-    by hand the last time is set again, unless ``fresh``. With a ``time_limit`` [s] the
-    window closes itself. Raises ``ContextError`` where no window
-    can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
-    value that does not fit; any other mistake in the sketch is shown in the window.
+    by hand the last time is set again, unless ``fresh``. Expensive land is kept on disk, in
+    at most ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window
+    closes itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where
+    there is no such sketch, ``ParameterError`` for a value that does not fit; any other
+    mistake in the sketch is shown in the window.
     """
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
@@ -101,10 +104,11 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer)
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
+        stack.callback(live.storing.close)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
@@ -135,9 +139,12 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
 class Live:
     """The window, the session and the watcher, turn by turn."""
 
-    def __init__(self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer) -> None:
+    def __init__(
+        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+    ) -> None:
         self.window = window
         self.rememberer = rememberer
+        self.storing = storing
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
@@ -196,6 +203,7 @@ class Live:
             self.release()
         self.window.reopen()
         self.session.rebuild(Engine(self.window.ctx, driver=driver))
+        self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
 
@@ -213,6 +221,8 @@ class Live:
             return REST / 2
         if self.finite.patience is not None:
             return self.finite.patience
+        if self.storing.patience is not None:
+            return min(self.storing.patience, QUIET / 2)
         if self.rememberer.waits:
             return QUIET / 2
         if self.actions.capture.working is not None:
@@ -251,6 +261,7 @@ class Live:
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
         self.finite.turn(actions, imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
         actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)

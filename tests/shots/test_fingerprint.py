@@ -14,9 +14,10 @@ import pytest
 from playground._version import __version__
 from playground.engine.drawn import compiled_text, rounded
 from playground.engine.engine import Engine
+from playground.gpu.build import processor_in
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
-from playground.shots.fingerprint import Fingerprint, fingerprint_of, processor_in, read_fingerprint
+from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.load import load
 
