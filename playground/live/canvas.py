@@ -24,7 +24,9 @@ class Canvas:
         self.mask = mask
         self.saved = False  # whether the file holds what is painted
         self._before: list[NDArray[np.uint8]] = []  # the mask before each stroke, oldest first
-        self._after: list[NDArray[np.uint8]] = []  # and after each that was taken back, the last taken back at the end
+        self._after: list[
+            NDArray[np.uint8]
+        ] = []  # and after each that was taken back, the last taken back at the end
 
     @classmethod
     def begun(cls, folder: Path, name: str, of: Path | None, size: tuple[int, int]) -> Canvas:

@@ -20,7 +20,7 @@ from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
 from playground.live.hasty import hastily
-from playground.live.maps import Map, fitted, refs_of
+from playground.live.maps import Map, fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
@@ -87,6 +87,10 @@ class Session(Drafts):
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
         return refs_of(self.plan) if self.plan is not None else []
+
+    def can_show(self, ref: str) -> bool:
+        """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
+        return ref in self.refs or (self.sketch is not None and in_view(self.sketch, ref))
 
     @property
     def repeats(self) -> dict[str, int]:
@@ -254,7 +258,7 @@ class Session(Drafts):
         self._drawn = self._wanted(size)
         sketch = self.shown.sketch
         try:
-            if self.map is not None and self.map.ref not in self.refs:
+            if self.map is not None and not self.can_show(self.map.ref):
                 self.notes.append(f"{self.map.ref} is gone, so the sketch's own view is shown")
                 self.map = None
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)
