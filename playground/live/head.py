@@ -51,6 +51,10 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("Capture"):
         actions.capture.shown = True
     imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
+    imgui.same_line()
+    if imgui.button("Graph"):
+        actions.see.graph.toggle()
+    imgui.set_item_tooltip("The passes as a graph, or no longer (G)")
     if sketch.presets:
         _presets(sketch, memory, actions)
     _shown(actions)

@@ -24,7 +24,7 @@ from playground.live.maps import Map, fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
-from playground.sketch.model import Sketch, Value, kernels_of
+from playground.sketch.model import Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:
     import moderngl
@@ -46,12 +46,20 @@ class Session(Drafts):
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         super().__init__(
-            path, driver=engine.driver, values=values, edits=edits, in_file=in_file, trial=trial, now=now
+            path,
+            driver=engine.driver,
+            values=values,
+            edits=edits,
+            in_file=in_file,
+            camera_in_file=camera_in_file,
+            trial=trial,
+            now=now,
         )
         self.engine = engine
         self.map: Map | None = None  # what is shown instead of the sketch's own view

@@ -162,9 +162,11 @@ def main() -> None:
             report_times(bench, options.saves)
     if options.many > 0 or options.reloads > 1:
         with opened(65) as bench:
-            files = list(bench.texts)
-            missed = sum(not bench.save_and_show(files[n % 3]) for n in range(options.many))
-            print(f"saves missed of {options.many}: {missed} (wanted 0)", flush=True)
+            files, missed = list(bench.texts), 0
+            for number in range(1, options.many + 1):
+                missed += not bench.save_and_show(files[number % 3])
+                if number % 100 == 0 or number == options.many:
+                    print(f"saves missed of {number}: {missed} (wanted 0)", flush=True)
             if options.reloads > 1:
                 report_growth(bench, options.reloads)
 
