@@ -90,7 +90,7 @@ def run(
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
-        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", opens))
+        window = stack.enter_context(Window(title_of(path), opens))
         engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
@@ -98,6 +98,7 @@ def run(
             values=checked,
             edits=found.edits,
             in_file=dict(found.in_file),
+            camera_in_file=found.camera_in_file,
             trial=trial,
             is_lost=lambda: window.lost,
         )
@@ -105,6 +106,8 @@ def run(
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        if found.at is not None:
+            live.place.stand_at(found.at)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -121,6 +124,12 @@ def find_default() -> Path:
     from playground.paths import DEFAULT_SKETCH
 
     return find(DEFAULT_SKETCH)
+
+
+def title_of(path: Path) -> str:
+    """Return the title of a window on a sketch."""
+    name = path.parent.name if path.name == "sketch.toml" else path.stem
+    return f"{name} – terrain shader playground"
 
 
 def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
@@ -154,6 +163,7 @@ class Live:
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
+        rememberer.compare = self.actions.see.compare
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
@@ -243,6 +253,7 @@ class Live:
 
     def _turn(self) -> None:
         window, session, actions = self.window, self.session, self.actions
+        window.call(title_of(session.path))
         take_dropped(actions, self.place.dropped())
         window.begin()
         actions.see.begin()
@@ -288,7 +299,7 @@ class Live:
             self.warnings.look()
         self.status.write(actions, self.finite.found)
         stands = self.place.geometry()
-        self.rememberer.look((stands.width, stands.height))
+        self.rememberer.look((stands.width, stands.height), (stands.x, stands.y))
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""
