@@ -27,6 +27,14 @@ from playground.errors import ContextError, PlaygroundError
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
 ]
+NoCacheOption = Annotated[
+    bool,
+    typer.Option(
+        "--no-cache",
+        metavar="",
+        help="Make all land anew, and keep none on disk (see playground cache).",
+    ),
+]
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
@@ -35,6 +43,7 @@ HELP = help_text(
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
+    "playground live my-land --no-cache",
     "playground live shader.frag",
 )
 
@@ -47,6 +56,7 @@ def live(
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
     fresh: FreshOption = False,
+    no_cache: NoCacheOption = False,
 ) -> None:
     """Open a sketch in a window."""
     from playground.gpu.doctor import where_to_show
@@ -60,7 +70,7 @@ def live(
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh)
+    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh, no_cache=no_cache)
 
 
 def open_window(
@@ -71,8 +81,12 @@ def open_window(
     values: dict[str, object],
     *,
     fresh: bool = False,
+    no_cache: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
+    from playground.engine.store import limit_in
+
+    keeps = 0 if no_cache else limit_in()
     from playground.live.app import run
 
     if values:
@@ -80,6 +94,14 @@ def open_window(
 
         with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
             values = with_whole_paths(load(sketch), values)
-    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values, fresh=fresh)
+    status = run(
+        sketch,
+        size=size,
+        software=renderer.software,
+        driver=driver,
+        values=values,
+        fresh=fresh,
+        keeps=keeps,
+    )
     if status:
         raise typer.Exit(status)

@@ -108,7 +108,7 @@ def test_what_repeats_has_no_edge():
         (3330.0, 4, "", "3\u202f330"),
         (263169.0, 6, "", "263\u202f169"),
         (0.0, 3, "", "0"),
-        (-2.6, 2, "", "-2.6"),
+        (-2.6, 2, "", "−2.6"),
         (45.04, 3, "°", "45.0°"),
         (12.34, 2, "%", "12\u202f%"),
         (0.00123, 2, "m", "0.0012\u202fm"),
@@ -136,6 +136,8 @@ def test_a_quotient_of_two_lands(make_lesson, engine):
     over = f'{level}\nover = {{ set = {{ "height.smoothing" = 0.6 }} }}'
     block = make_lesson(('what    = "spread"', over)).named["spread"]
     assert measured(engine, block).value == pytest.approx(0.5, rel=1e-4)
+    hundredths = make_lesson(('what    = "spread"', f'{over}\nunit = "%"')).named["spread"]
+    assert measured(engine, hundredths).value == pytest.approx(50.0, rel=1e-4)
 
 
 def test_numbers_of_the_engine_s_own(make_lesson, engine):

@@ -69,7 +69,7 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
             class_="kicker",
         ),
         tag("h1", lesson.title),
-        tag("p", tag("b", book.word("goal")), Markup(": "), setting.line(lesson.goal), class_="goal"),
+        tag("p", tag("b", book.word("goal")), book.word("colon"), setting.line(lesson.goal), class_="goal"),
         tag("p", book.word("stale"), class_="stale") if lesson.stale else None,
     )
     return _page(
@@ -193,7 +193,7 @@ def _play(book: Book, lesson: Lesson, setting: Setting) -> Markup:
         tag("h2", book.word("play"), id="play-title"),
         tag("p", book.word("play_goal")),
         command_line(f"playground live {lesson.sketch}"),
-        tag("p", f"{book.word('try_it')}:"),
+        tag("p", f"{book.word('try_it')}{book.word('colon')}"),
         command_line(f"playground lesson open {lesson.name}{_option(lesson)}"),
         id="play",
         aria_labelledby="play-title",
@@ -217,7 +217,7 @@ def _references(book: Book, lesson: Lesson, address: Address) -> Markup:
     return tag(
         "section",
         tag("h2", book.word("thesis"), id="thesis-title"),
-        tag("p", tag("span", THESIS), Markup(": "), Markup(listed.removesuffix(", ")), Markup(".")),
+        tag("p", tag("span", THESIS), book.word("colon"), Markup(listed.removesuffix(", ")), Markup(".")),
         tag("h2", book.word("papers")),
         tag("ul", *(tag("li", paper_html(paper)) for paper in lesson.papers)),
         aria_labelledby="thesis-title",
