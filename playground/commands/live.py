@@ -71,6 +71,9 @@ def open_window(
     values: dict[str, object],
     *,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
     from playground.live.app import run
@@ -80,6 +83,16 @@ def open_window(
 
         with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
             values = with_whole_paths(load(sketch), values)
-    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values, fresh=fresh)
+    status = run(
+        sketch,
+        size=size,
+        software=renderer.software,
+        driver=driver,
+        values=values,
+        fresh=fresh,
+        lesson=lesson,
+        language=language,
+        beside=beside,
+    )
     if status:
         raise typer.Exit(status)

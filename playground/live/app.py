@@ -33,6 +33,9 @@ from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
+from playground.live.lesson.panel import LessonPanel
+from playground.live.lesson.progress import progress_file, read_progress
+from playground.live.lesson.reading import Reading
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
@@ -67,14 +70,18 @@ def run(
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
     time_limit: float | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
-    by hand the last time is set again, unless ``fresh``. With a ``time_limit`` [s] the
-    window closes itself. Raises ``ContextError`` where no window
-    can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
+    by hand the last time is set again, unless ``fresh``. ``lesson`` opens one by name, in a
+    ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
+    unless the reader has closed the lessons. With a ``time_limit`` [s] the window closes
+    itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
     value that does not fit; any other mistake in the sketch is shown in the window.
     """
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
@@ -102,6 +109,7 @@ def run(
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, rememberer)
+        live.begin_lesson(lesson, language, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -152,13 +160,29 @@ class Live:
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
         self.finite = FiniteWatch()
+        self.reading = Reading(
+            self.actions,
+            read_progress(progress_file()),
+            begins=self._remember_own,
+            play=rememberer.open,
+        )
+        self.lessons = LessonPanel()
+        self.actions.toggle_lessons, self.actions.turn_page = self.reading.toggle, self.reading.turn_page
+
+    def begin_lesson(self, name: str, language: str, *, beside: bool) -> None:
+        """Open the lesson that was asked for, if any was; see ``run``."""
+        if name:
+            self.reading.open(name, language=language)
+        elif beside and self.reading.progress.shown:
+            self.reading.open(show=False)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
         while self._stays():
-            patience = min(self._patience(), self.actions.see.patience(self.actions.now()))
+            now = self.actions.now()
+            patience = min(self._patience(), self.actions.see.patience(now), self.reading.patience(now))
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -185,6 +209,7 @@ class Live:
     def release(self) -> None:
         """Give back all that was made in the window's context."""
         self.actions.see.release()
+        self.lessons.release()
         self.painter.release()
         self.session.release()
         self.session.engine.release()
@@ -236,7 +261,8 @@ class Live:
         take_dropped(actions, self.place.dropped())
         window.begin()
         actions.see.begin()
-        left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
+        left = self.lessons.draw(self.reading, window.theme)
+        left += self.panel.draw(actions, window.theme, left) if actions.panel_shown else 0.0
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         draw_code(actions, window.theme, area)
@@ -276,8 +302,19 @@ class Live:
         if not session.testing and self._settling == 0:
             self.warnings.look()
         self.status.write(actions, self.finite.found)
+        if self.reading.stage.own is None:  # what a lesson sets is not the reader's
+            self.rememberer.look(self._size())
+        rests = self._settling == 0 and not session.testing and not imgui.is_mouse_down(0)
+        self.reading.turn(idle=rests)
+
+    def _size(self) -> tuple[int, int]:
         stands = self.place.geometry()
-        self.rememberer.look((stands.width, stands.height))
+        return stands.width, stands.height
+
+    def _remember_own(self) -> None:
+        """Remember what is shown, before a lesson shows something else."""
+        self.rememberer.look(self._size())
+        self.rememberer.write()
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""

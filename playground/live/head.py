@@ -51,6 +51,10 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("Capture"):
         actions.capture.shown = True
     imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
+    imgui.same_line()
+    if imgui.button("Lessons"):
+        actions.toggle_lessons()
+    imgui.set_item_tooltip("What there is to know of terrain, step by step (F2)")
     if sketch.presets:
         _presets(sketch, memory, actions)
     _shown(actions)

@@ -49,17 +49,19 @@ class Rememberer:
         self._written_at = now()
         self._is_told = False
         self._in_file: tuple[Draft | None, tuple[tuple[str, Said], ...]] = (None, ())
-        found = found or Remembered()
-        self._recalled = not found.is_nothing
-        clock = session.clock
-        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
-        session.steps.update(found.steps)
-        session.map = Map(found.map, found.map_values) if found.map else None
+        self._recall(found or Remembered())
 
     @property
     def waits(self) -> bool:
         """Whether something is still to be written."""
         return self._seen != self._written
+
+    def open(self, sketch: Path) -> None:
+        """Open another sketch in the session, with what is remembered of it."""
+        found, complaint = Memory(sketch, self._memory.path.parent).read()
+        self.session.open(sketch, edits=found.edits, in_file=dict(found.in_file))
+        self.session.notes.extend(filter(None, [complaint]))
+        self._recall(found)
 
     def look(self, window: tuple[int, int]) -> None:
         """Take in what the session shows now, and write it if it is time to."""
@@ -69,7 +71,7 @@ class Rememberer:
             self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
             self._seen = self._written = None
             self._is_told = False
-        if session.shown is None:
+        if session.shown is None or session.leaves:
             if self._recalled and isinstance(session.error, TrialError):
                 session.notes.append("playground live --fresh opens it without what was set by hand")
                 self._recalled = False
@@ -103,6 +105,14 @@ class Rememberer:
         """Write what is still to be written, and let other windows remember."""
         self.write()
         self._memory.close()
+
+    def _recall(self, found: Remembered) -> None:
+        """Have the session show what is remembered beside what was set by hand."""
+        session, clock = self.session, self.session.clock
+        self._recalled = not found.is_nothing
+        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
+        session.steps.update(found.steps)
+        session.map = Map(found.map, found.map_values) if found.map else None
 
     def _snapshot(self, draft: Draft, window: tuple[int, int]) -> Remembered:
         session = self.session

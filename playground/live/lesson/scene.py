@@ -1,0 +1,45 @@
+"""A lesson's picture as what a hand could have set: edits, stopped repeats, a map."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playground.engine.plan import repeated_in
+from playground.lessons.model import Scene
+from playground.live.edits import Edits
+from playground.sketch.maps import USE, Map
+from playground.sketch.model import Sketch, Value
+
+
+def path_of(scene: Scene) -> Path:
+    """Return the file of a picture's sketch."""
+    return Path(scene.sketch.file)
+
+
+def edits_of(scene: Scene, file: Sketch) -> Edits:
+    """Return what has to be set by hand in a sketch, as its file says it, to see a picture."""
+    values: dict[str, Value] = {}
+    if scene.shot:
+        shot = file.shot(scene.shot)
+        values |= _preset(file, shot.preset) | dict(shot.values)
+    values |= _preset(file, scene.preset) | dict(scene.values)
+    seen = scene.sketch
+    moved = seen.camera != file.camera or seen.keyframes != file.keyframes
+    return Edits(tuple(values.items()), camera=seen.camera if moved else None)
+
+
+def steps_of(scene: Scene) -> dict[str, int]:
+    """Return after how many turns each repeated pass of a picture stops, by its whole path."""
+    return {repeated_in(scene.sketch, path): turn for path, turn in scene.steps}
+
+
+def map_of(scene: Scene) -> Map | None:
+    """Return the map that a picture is; None where it is the sketch's own view."""
+    if not scene.view:
+        return None
+    spec = scene.sketch.graph.find("view")
+    return Map(scene.view, spec.values if spec is not None and spec.use == USE else ())
+
+
+def _preset(file: Sketch, name: str) -> dict[str, Value]:
+    return next((dict(preset.values) for preset in file.presets if preset.name == name), {})
