@@ -31,7 +31,7 @@ LAYERS = (
     ("terrain",),
     ("images",),
     ("sketch",),
-    ("errors", "folders", "paths", "_version"),
+    ("errors", "folders", "markup", "paths", "_version"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

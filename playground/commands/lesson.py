@@ -61,6 +61,15 @@ TRANSLATED_HELP = help_text(
     "playground lesson translated diamond_square --lang fr",
 )
 
+BUILD_HELP = help_text(
+    "Build the lessons as a book: a folder of pages that need no network.\n\n"
+    "In English and French, or in the language of --lang. Built again into the same folder, pages and"
+    " pictures that are no more are removed, and nothing else is touched.",
+    "playground lesson build -o book",
+    "playground lesson build -o livre --lang fr",
+    "playground lesson build diamond_square -o one-lesson",
+)
+
 app = typer.Typer(
     name="lesson",
     help=HELP,
@@ -205,6 +214,30 @@ def pictures(
             write_png(path, draw(engine, picture.scene).array)
             print(path)
             advance()
+
+
+@app.command("build", help=BUILD_HELP)
+def build(
+    ctx: typer.Context,
+    names: NamesArgument = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="The folder of the book.", metavar="FOLDER")
+    ] = Path("book"),
+    lang: LanguageOption = "",
+    software: SoftwareOption = False,
+) -> None:
+    """Build the lessons as a book."""
+    from playground.lessons.book.build import prepare, write_book
+    from playground.lessons.library import LANGUAGES
+    from playground.lessons.read import read_lessons
+
+    languages = [read_language(lang)] if lang else list(LANGUAGES)
+    chosen = _chosen(names)
+    lessons = {code: [one for one in read_lessons(code) if one.name in chosen] for code in languages}
+    made = prepare(output, lessons, gallery=not names)
+    with _engine(ctx, software) as engine, progress("drawing", len(made.names)) as advance:
+        front = write_book(made, engine, advance)
+    print(front)
 
 
 @app.command("translated", help=TRANSLATED_HELP)

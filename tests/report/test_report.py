@@ -17,7 +17,7 @@ import pytest
 
 from playground.errors import DataError
 from playground.images.files import read_png
-from playground.shots.page.markup import Markup, tag
+from playground.markup import Markup, tag
 from playground.shots.page.shot import CAPTIONS
 from playground.shots.page.words import MEANINGS, TIERS
 from playground.shots.report import report_html, write_report

@@ -16,7 +16,7 @@ from string import Template
 
 from playground._version import __version__
 from playground.errors import counted
-from playground.shots.page.markup import Markup, joined, tag
+from playground.markup import Markup, joined, tag
 from playground.shots.page.shot import Setting, can_be_accepted, chip, failure, moment, passed_row, row
 from playground.shots.page.words import MEANINGS, meaning
 from playground.shots.results import Record

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from urllib.parse import quote
 
-from playground.shots.page.markup import Markup, tag
+from playground.markup import Markup, tag
 from playground.shots.page.words import TIERS, meaning
 from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
 

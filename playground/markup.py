@@ -18,7 +18,7 @@ class Markup(str):
     __slots__ = ()
 
 
-def tag(name: str, *inside: str | Markup | None, **attributes: str | int | bool | None) -> Markup:
+def tag(name: str, /, *inside: str | Markup | None, **attributes: str | int | bool | None) -> Markup:
     """Return an element with what is inside it, escaped where it is no `Markup`; None is left out.
 
     Attributes are named as in HTML, with ``_`` for ``-`` and a ``_`` at the end of Python's own

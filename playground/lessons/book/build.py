@@ -1,0 +1,140 @@
+"""Build the book: one folder that needs no network.
+
+index.html          chooses a language
+en/, fr/            a page for each lesson, the contents, the thesis's figures
+pictures/           all pictures, for all languages
+book.css, book.js
+book.json           the files that were written, so that the next build removes what is no more
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.engine.engine import Engine
+from playground.errors import DataError
+from playground.gpu.context import context_info
+from playground.images.files import replacing
+from playground.lessons.book.blocks import Setting
+from playground.lessons.book.gallery import gallery_html
+from playground.lessons.book.page import (
+    FIGURES,
+    Book,
+    contents_page,
+    door_page,
+    gallery_page,
+    lesson_page,
+)
+from playground.lessons.book.pictures import Album, of_picture
+from playground.lessons.figures import Drawn, ThesisFigure, thesis_figures
+from playground.lessons.library import interface_words
+from playground.lessons.measuring import Number, numbers_of
+from playground.lessons.model import Lesson
+from playground.lessons.pictures import pictures_of
+
+MANIFEST = "book.json"
+PICTURES = "pictures"
+_HERE = Path(__file__).resolve().parent
+
+
+@dataclass
+class Build:
+    """What a build is made of; nothing is drawn yet."""
+
+    folder: Path
+    lessons: dict[str, tuple[Lesson, ...]]  # by language, each in order
+    figures: list[ThesisFigure]
+    album: Album
+    files: dict[str, dict[str, str]]  # lesson → picture → file
+    gallery: dict[tuple[str, str], str]  # sketch, shot → file
+
+    @property
+    def names(self) -> list[str]:
+        """The pictures that are to be drawn."""
+        return list(self.album.wanted)
+
+
+def prepare(folder: Path, lessons: Mapping[str, Sequence[Lesson]], *, gallery: bool = True) -> Build:
+    """Return what is to be built into a folder, that is empty, new, or a book already.
+
+    Raises ``DataError`` for a folder with other things in it.
+    """
+    if folder.exists() and not (folder / MANIFEST).is_file():
+        if not folder.is_dir() or any(folder.iterdir()):
+            raise DataError(
+                "there is something here that is no book; name a new or empty folder", file=folder
+            )
+    album = Album(folder / PICTURES)
+    one_language = next(iter(lessons.values()))
+    files = {lesson.name: album.add_lesson(lesson) for lesson in one_language}
+    figures = thesis_figures() if gallery else []
+    shown = [drawn for figure in figures for drawn in figure.pictures]
+    of_shots = {(d.sketch, d.shot): album.add(f"{d.sketch}-{d.shot}", d.scene) for d in shown}
+    return Build(folder, {k: tuple(v) for k, v in lessons.items()}, figures, album, files, of_shots)
+
+
+def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambda: None) -> Path:
+    """Draw every picture, compute every number, write every page; return the front page.
+
+    Raises as drawing does; what has been written so far stays, and the next build goes over it.
+    """
+    build.album.draw(engine, build.names, advance)
+    numbers = {lesson.name: numbers_of(engine, lesson) for lesson in next(iter(build.lessons.values()))}
+    info = context_info(engine.ctx)
+    written = [f"{PICTURES}/{name}" for name in build.names]
+    for language, lessons in build.lessons.items():
+        words = interface_words(language)
+        book = Book(language, words, lessons, tuple(build.lessons), info.renderer)
+        for name, text in _pages(build, book, numbers):
+            _write(build.folder / language / name, text)
+            written.append(f"{language}/{name}")
+    titles = {language: interface_words(language)["book"] for language in build.lessons}
+    _write(build.folder / "index.html", door_page(list(build.lessons), titles))
+    for name in ("book.css", "book.js"):
+        _write(build.folder / name, (_HERE / name).read_text(encoding="utf-8"))
+        written.append(name)
+    _forget(build.folder, [*written, "index.html"])
+    return build.folder / "index.html"
+
+
+def _pages(build: Build, book: Book, numbers: dict[str, dict[str, Number]]) -> Iterator[tuple[str, str]]:
+    covers = {}
+    for lesson in book.lessons:
+        source = of_picture(build.files[lesson.name], f"../{PICTURES}")
+        setting = Setting(lesson, book.words, numbers[lesson.name], source, book.address)
+        cover = pictures_of(lesson)[0]
+        covers[lesson.name] = setting.image(cover, alt="")
+        yield f"{lesson.name}.html", lesson_page(book, lesson, setting)
+    yield "index.html", contents_page(book, covers)
+    if build.figures:
+
+        def address(drawn: Drawn) -> str:
+            return f"../{PICTURES}/{build.gallery[drawn.sketch, drawn.shot]}"
+
+        yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as handle:
+        handle.write(text.encode())
+
+
+def _forget(folder: Path, written: list[str]) -> None:
+    """Remove what an earlier build wrote and this one did not, and note what this one wrote."""
+    manifest = folder / MANIFEST
+    before: list[str] = []
+    if manifest.is_file():
+        try:
+            before = [str(name) for name in json.loads(manifest.read_text(encoding="utf-8"))["files"]]
+        except (ValueError, KeyError, TypeError):
+            before = []
+    kept = set(written)
+    for name in before:
+        path = folder / name
+        if name not in kept and ".." not in Path(name).parts and not Path(name).is_absolute():
+            path.unlink(missing_ok=True)
+    _write(manifest, json.dumps({"files": sorted(kept)}, indent=1) + "\n")

@@ -1,0 +1,95 @@
+"""Write Markdown, formulas and code as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from html import escape
+from typing import Any
+
+from latex2mathml.converter import convert
+from markdown_it.renderer import RendererHTML
+from markdown_it.token import Token
+
+from playground.lessons.markdown import parser
+from playground.markup import Markup, tag
+
+Address = Callable[[str], str]
+"""What gives a link its address in the book: "lesson:fourier" → "fourier.html"."""
+
+
+def prose(words: str, address: Address) -> Markup:
+    """Return blocks of Markdown as HTML."""
+    return Markup(_renderer(words, address, inline=False))
+
+
+def line(words: str, address: Address) -> Markup:
+    """Return Markdown within a line as HTML; of several paragraphs, one after the other."""
+    if "\n\n" in words:
+        return prose(words, address)
+    return Markup(_renderer(words, address, inline=True))
+
+
+def plain(words: str) -> str:
+    """Return Markdown within a line as plain text, formulas as they are written."""
+    tokens = parser().parseInline(words)[0].children or []
+    return "".join(
+        token.content for token in tokens if token.type in ("text", "code_inline", "math_inline", "softbreak")
+    )
+
+
+def formula(latex: str, *, alone: bool = False) -> Markup:
+    """Return a formula as MathML."""
+    return Markup(convert(latex, display="block" if alone else "inline"))
+
+
+@lru_cache(maxsize=512)
+def code(text: str) -> Markup:
+    """Return GLSL as HTML, its words marked with classes."""
+    from pygments import highlight
+    from pygments.formatters import HtmlFormatter
+    from pygments.lexers.graphics import GLShaderLexer
+
+    formatter: Any = HtmlFormatter(nowrap=True, classprefix="t-")
+    return Markup(highlight(text, GLShaderLexer(), formatter).rstrip("\n"))
+
+
+def code_block(text: str, label: str) -> Markup:
+    """Return GLSL as a block that can be scrolled by keys where it is too wide."""
+    return tag("pre", tag("code", code(text)), class_="code", tabindex=0, role="region", aria_label=label)
+
+
+class _Renderer(RendererHTML):
+    """Formulas as MathML, links of our own, tables that can be scrolled."""
+
+    def math_inline(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        return formula(tokens[idx].content)
+
+    def math_block(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        return f'<div class="formula" tabindex="0">{formula(tokens[idx].content, alone=True)}</div>\n'
+
+    def link_open(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        href = str(tokens[idx].attrs["href"])
+        return f'<a href="{escape(env["address"](href))}">'
+
+    def table_open(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        return '<div class="table" tabindex="0"><table>\n'
+
+    def table_close(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        return "</table></div>\n"
+
+    def fence(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        token = tokens[idx]
+        text = token.content.rstrip("\n")
+        return (
+            code_block(text, token.info or "code")
+            if token.info == "glsl"
+            else str(tag("pre", tag("code", text), class_="code", tabindex=0))
+        )
+
+
+def _renderer(words: str, address: Address, *, inline: bool) -> str:
+    found = parser()
+    found.renderer = _Renderer(found)
+    env: dict[str, Any] = {"address": address}
+    return str(found.renderInline(words, env) if inline else found.render(words, env))

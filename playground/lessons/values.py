@@ -1,0 +1,21 @@
+"""Write a parameter's value as a reader reads it."""
+
+from __future__ import annotations
+
+from playground.lessons.model import Slider
+from playground.sketch.assign import LAND, resolve
+from playground.sketch.model import Value
+from playground.sketch.values import write
+
+
+def spelled_value(slider: Slider, value: Value, language: str) -> str:
+    """Return a value of a slider's parameter: menu choices by name, numbers with their unit."""
+    if slider.parameter in LAND:
+        return f"{value:g}" if isinstance(value, float | int) else " × ".join(map(str, value))
+    parameter = resolve(slider.scenes[0].sketch.graph, slider.parameter)[0].parameter
+    text = write(parameter, value).replace(",", "; ")
+    if language == "fr" and parameter.widget.kind not in ("menu", "file"):
+        text = text.replace(".", ",")
+    if parameter.unit:
+        return f"{text}\u202f{parameter.unit}"
+    return f"{text}°" if parameter.widget.kind == "angle" else text
