@@ -81,8 +81,9 @@ def run(
     by hand the last time is set again, unless ``fresh``. ``lesson`` opens one by name, in a
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. With a ``time_limit`` [s] the window closes
-    itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
-    value that does not fit; any other mistake in the sketch is shown in the window.
+    itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where there
+    is no such sketch, ``ParameterError`` for a value that does not fit; any other mistake in
+    the sketch is shown in the window.
     """
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
@@ -172,6 +173,9 @@ class Live:
     def begin_lesson(self, name: str, language: str, *, beside: bool) -> None:
         """Open the lesson that was asked for, if any was; see ``run``."""
         if name:
+            wide, high = self.window.pixels
+            taken = self.reading.progress.width * self.window.scale * self.window.density
+            self.reading.stage.room = max(wide - round(taken), 1), high
             self.reading.open(name, language=language)
         elif beside and self.reading.progress.shown:
             self.reading.open(show=False)
@@ -273,6 +277,7 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
+        self.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size

@@ -48,6 +48,7 @@ class Rememberer:
         self._seen_at = 0.0
         self._written_at = now()
         self._is_told = False
+        self._recalled = False  # what is shown was set in an earlier session
         self._in_file: tuple[Draft | None, tuple[tuple[str, Said], ...]] = (None, ())
         self._recall(found or Remembered())
 

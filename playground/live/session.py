@@ -36,6 +36,11 @@ REST = 0.2  # [s] without a change after which a hasty picture is drawn again in
 _SEEN_FROM = ("clip_from_world", "world_from_clip", "eye")
 
 
+def is_seen_from_camera(sketch: Sketch) -> bool:
+    """Say whether the camera moves anything in a sketch's picture."""
+    return any(kernel.reads(name) for _, kernel in kernels_of(sketch.graph) for name in _SEEN_FROM)
+
+
 class Session(Drafts):
     """One sketch, open."""
 
@@ -82,7 +87,7 @@ class Session(Drafts):
         """Whether the picture is seen from the camera."""
         if self.sketch is None or self.map is not None:
             return False
-        return any(kernel.reads(name) for _, kernel in kernels_of(self.sketch.graph) for name in _SEEN_FROM)
+        return is_seen_from_camera(self.sketch)
 
     @property
     def refs(self) -> list[str]:

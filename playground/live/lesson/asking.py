@@ -75,7 +75,7 @@ def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -
     if on:
         imgui.pop_style_color()
     imgui.begin_group()
-    imgui.align_text_to_frame_padding()
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + imgui.get_style().frame_padding.y / 2)
     page.text(choice)
     imgui.end_group()
     if marked or imgui.is_item_clicked(0):

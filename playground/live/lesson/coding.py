@@ -24,7 +24,7 @@ def draw_code_block(block: Code, page: Page) -> None:
             with page.look.font(page.look.text, theme.SMALL):
                 imgui.text_disabled(f"glsl/{block.file}:{found.line}")
             fence = "```"
-            page.prose.draw(f"{fence}\n{found.text}\n{fence}", page.look)
+            page.prose.draw(f"{fence}\n{found.text}\n{fence}", page.look, size=theme.SMALL + 1)
         if page.button(page.say("edit"), page.say("edit_note")):
             faults.edit(block)
         if edited:

@@ -26,6 +26,7 @@ from playground.sketch.model import kernels_of
 from playground.sketch.reread import with_texts
 from playground.sketch.source import read_text
 
+_BEGINS = " kernel("
 _SAME = 0.25
 """Mean difference of two pictures, of 255, below which they are the same."""
 
@@ -72,7 +73,7 @@ class Faults:
         except PlaygroundError as error:
             self.actions.say(str(error))
             return
-        self._open(block, path, text, line_of(text, block.put))
+        self._open(block, path, text, line_of(text, _BEGINS))  # the fault itself is to be found
         self._on, self.state[block.name] = block, BROKEN
         self.stage.show(block.scene, (block.name, 1), self.texts)
         self._to_check = text != faulty(block)
@@ -150,6 +151,9 @@ class Faults:
         """Draw the file's own text again, and forget what was typed."""
         self.typed.pop(block.name, None)
         self.copies.close(file_of(block))
+        if self._on is not None and file_of(self._on) == file_of(block):
+            self.typed.pop(self._on.name, None)
+            self.leave()
         self._draw()
 
     # ── copies ───────────────────────────────────────────────────────────────

@@ -17,6 +17,9 @@ from playground.live.lesson.words import words_in
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
 
+TEXT = theme.TEXT_SIZE + 1.0
+"""Of a lesson's text: it is read at length."""
+
 
 @dataclass
 class Page:
@@ -37,7 +40,7 @@ class Page:
         """Return words of the interface."""
         return words_in(self.reading.language)[key].format(*given)
 
-    def text(self, words: Words, *, size: float = theme.TEXT_SIZE, dim: bool = False) -> None:
+    def text(self, words: Words, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
         if words:
             ink = theme.packed(theme.DIM if dim else theme.INK)

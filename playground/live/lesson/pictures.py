@@ -56,7 +56,7 @@ def draw_slider(block: Slider, page: Page) -> None:
             _parameters(block, (block.parameter,), page)
         else:
             imgui.set_next_item_width(-1)
-            form = f"{block.label or block.parameter}: {_value(block, at)}".replace("%", "%%")
+            form = _named(block, at).replace("%", "%%")
             moved, chosen = imgui.slider_int("##values", at, 0, last, form, imgui.SliderFlags_.always_clamp)
             if moved:
                 reading.move(block, chosen)
@@ -105,13 +105,15 @@ def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
             reading.show(block)
         imgui.same_line()
     playing = reading.playing == block.name
-    if page.button(page.say("rest") if playing else page.say("play"), block.alt, on=playing):
-        reading.play_or_rest(block)
-    for label, by in (("<", -1), (">", 1)):
-        imgui.same_line()
-        if page.button(label, enabled=0 <= at + by <= last):
-            reading.playing = ""
-            reading.move(block, at + by)
+    for label, by in (("<", -1), (page.say("rest" if playing else "play"), 0), (">", 1)):
+        if by >= 0:
+            imgui.same_line()
+        if page.button(label, "" if by else block.alt, on=playing and not by, enabled=0 <= at + by <= last):
+            if by:
+                reading.playing = ""
+                reading.move(block, at + by)
+            else:
+                reading.play_or_rest(block)
     if on and reading.stage.changed and isinstance(block, Slider):
         imgui.same_line()
         if page.button(page.say("reset"), page.say("reset_note")):
@@ -150,13 +152,10 @@ def _item(path: str, items: dict[str, Item], page: Page) -> Item | None:
     return items.get(leaf)
 
 
-def _value(block: Slider, at: int) -> str:
-    """Return a value of a sweep in words."""
-    scene = block.scenes[at]
-    try:
-        return write(resolve(scene.sketch.graph, block.parameter)[0].parameter, block.values[at])
-    except ParameterError:
-        return str(block.values[at])
+def _named(block: Slider, at: int) -> str:
+    """Return a value of a sweep, with the name of what it is of."""
+    parameter = resolve(block.scenes[at].sketch.graph, block.parameter)[0].parameter
+    return f"{block.label or parameter.title}: {write(parameter, block.values[at])}"
 
 
 def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> tuple[float, float, float]:

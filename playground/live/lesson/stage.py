@@ -48,6 +48,7 @@ class Stage:
         self.own: Own | None = None
         self.key: Key | None = None  # of the picture that is shown
         self.scene: Scene | None = None
+        self.room: tuple[int, int] | None = None  # [pixels] where pictures are seen
         self._begins = begins  # told before the first picture takes the stage
         self._path: Path | None = None
         self._set: tuple[Edits, Mapping[str, int]] = (Edits(), {})  # for the picture
@@ -79,7 +80,7 @@ class Stage:
         try:
             known = session.shown if session.path == path else None
             file = known.file if known is not None else load(path)
-            edits, steps = edits_of(scene, file), steps_of(scene)
+            edits, steps = edits_of(scene, file, self.room), steps_of(scene)
         except PlaygroundError as error:
             actions.say(str(error))
             return
@@ -181,7 +182,7 @@ class Stage:
         if first is not None and draft is not None:
             compare = self.actions.see.compare
             compare.mode = Mode.DIVIDER
-            compare.keep_other(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
+            compare.keep_other(draft.with_edits(edits_of(first, draft.file, self.room)), steps_of(first))
 
     def let_go(self) -> None:
         """Let the stage go: what it shows is the reader's own from here on."""
