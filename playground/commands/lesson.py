@@ -23,6 +23,7 @@ from playground.terminal import complain, note, painted, print_table, progress
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
+    from playground.lessons.model import Lesson
 
 HELP = help_text(
     "Lessons on terrain, to read beside the window, in a browser or as notebooks.",
@@ -62,12 +63,13 @@ TRANSLATED_HELP = help_text(
 )
 
 BUILD_HELP = help_text(
-    "Build the lessons as a book: a folder of pages that need no network.\n\n"
+    "Build the lessons as a book, a folder of pages that need no network, or as notebooks.\n\n"
     "In English and French, or in the language of --lang. Built again into the same folder, pages and"
     " pictures that are no more are removed, and nothing else is touched.",
     "playground lesson build -o book",
     "playground lesson build -o livre --lang fr",
     "playground lesson build diamond_square -o one-lesson",
+    "playground lesson build --notebooks -o notebooks",
 )
 
 app = typer.Typer(
@@ -224,16 +226,24 @@ def build(
         Path, typer.Option("-o", "--output", help="The folder of the book.", metavar="FOLDER")
     ] = Path("book"),
     lang: LanguageOption = "",
+    notebooks: Annotated[
+        bool, typer.Option("--notebooks", metavar="", help="Write Jupyter notebooks, not pages.")
+    ] = False,
     software: SoftwareOption = False,
 ) -> None:
-    """Build the lessons as a book."""
-    from playground.lessons.book.build import prepare, write_book
+    """Build the lessons as a book, or as notebooks."""
     from playground.lessons.library import LANGUAGES
     from playground.lessons.read import read_lessons
 
     languages = [read_language(lang)] if lang else list(LANGUAGES)
     chosen = _chosen(names)
     lessons = {code: [one for one in read_lessons(code) if one.name in chosen] for code in languages}
+    if notebooks:
+        with _engine(ctx, software) as engine:
+            _write_notebooks(output, lessons, engine)
+        return
+    from playground.lessons.book.build import prepare, write_book
+
     made = prepare(output, lessons, gallery=not names)
     with _engine(ctx, software) as engine, progress("drawing", len(made.names)) as advance:
         front = write_book(made, engine, advance)
@@ -254,6 +264,21 @@ def translated(name: NameArgument, lang: LanguageOption = "") -> None:
     write_hashes(part(lesson_file(name)), part(path))
     read_lesson(name, lang)  # says what is wrong with it
     print(shown(path))
+
+
+def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
+    from playground.images.files import replacing
+    from playground.lessons.measuring import numbers_of
+    from playground.lessons.notebook.build import notebook_text
+
+    for in_languages in zip(*lessons.values(), strict=True):
+        numbers = numbers_of(engine, in_languages[0])
+        for lesson in in_languages:
+            path = folder / lesson.language / f"{lesson.name}.ipynb"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(path) as handle:
+                handle.write(notebook_text(lesson, numbers).encode())
+            print(path)
 
 
 def read_language(text: str) -> str:

@@ -67,7 +67,9 @@ def spelled(value: float, digits: int, unit: str = "") -> str:
     if value == 0.0:
         text = "0"
     else:
-        decimals = digits - 1 - math.floor(math.log10(abs(value)))
+        # What was counted has no decimals: 1 summit, not 1.00.
+        decimals = 0 if value == int(value) else digits - 1 - math.floor(math.log10(abs(value)))
+        decimals = min(decimals, digits - 1 - math.floor(math.log10(abs(value))))
         rounded = round(value, decimals)
         text = f"{rounded:,.{max(decimals, 0)}f}".replace(",", "\u202f")
     if unit in ("%", "°"):

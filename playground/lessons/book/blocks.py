@@ -105,7 +105,12 @@ def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: st
             tag(
                 "li",
                 setting.image(picture, alt=f"{name}: {label}"),
-                tag("p", tag("b", label), Markup(" "), setting.line(caption) if caption else None),
+                tag(
+                    "p",
+                    tag("b", label),
+                    Markup(" "),
+                    tag("span", setting.line(caption)) if caption else None,
+                ),
             )
         )
     return tag(

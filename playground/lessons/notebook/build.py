@@ -1,0 +1,131 @@
+"""Write a lesson as a Jupyter notebook: its words as Markdown, a cell of code for each picture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from playground.errors import DataError
+from playground.lessons.excerpt import excerpt
+from playground.lessons.faults import around
+from playground.lessons.library import SOURCE, THESIS, interface_words
+from playground.lessons.measuring import Number, filled
+from playground.lessons.model import (
+    Block,
+    Break,
+    Code,
+    Compare,
+    Exercise,
+    Figure,
+    Lesson,
+    Measure,
+    Prose,
+    Question,
+    Slider,
+    Steps,
+)
+
+_LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis):([^)]*)\)")
+
+
+def notebook_text(lesson: Lesson, numbers: Mapping[str, Number]) -> str:
+    """Return a lesson's notebook, not run yet, with its numbers; raise ``DataError`` without nbformat."""
+    try:
+        import nbformat
+    except ModuleNotFoundError:
+        raise DataError(
+            "nbformat is not installed: pip install 'terrain-shader-playground[notebook]'"
+        ) from None
+    form: Any = nbformat  # its functions have no types
+    make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
+    cells = []
+    for number, (kind, text) in enumerate(_Writer(lesson, numbers).cells()):
+        cell: Any = make[kind](text)
+        cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
+        cells.append(cell)
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    found: Any = form.v4.new_notebook(
+        cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}}
+    )
+    form.validate(found)
+    return str(form.writes(found)) + "\n"
+
+
+class _Writer:
+    """Writes the cells of one lesson: (kind, text)."""
+
+    def __init__(self, lesson: Lesson, numbers: Mapping[str, Number]) -> None:
+        self.lesson = lesson
+        self.numbers = dict(numbers)
+        self.words = interface_words(lesson.language)
+
+    def cells(self) -> Iterator[tuple[str, str]]:
+        """Yield all cells."""
+        lesson, words = self.lesson, self.words
+        minutes = words["minutes"].format(n=lesson.minutes)
+        head = f"{words['lesson']} {lesson.number} · {minutes}\n\n# {lesson.title}"
+        goal = f"**{words['goal']}**: {lesson.goal}"
+        yield "markdown", f"{head}\n\n{goal}\n\n{words['run_first']}"
+        language = "" if lesson.language == SOURCE else f', language="{lesson.language}"'
+        opening = f'lesson = open_lesson("{lesson.name}"{language})'
+        yield "code", f"from playground.lessons.notebook import open_lesson\n\n{opening}"
+        for block in lesson.blocks:
+            yield from self.block(block)
+        sections = ", ".join(words["section"].format(n=number) for number in lesson.thesis)
+        papers = "\n".join(f"- {paper}" for paper in lesson.papers)
+        yield "markdown", f"## {words['thesis']}\n\n{THESIS}: {sections}.\n\n## {words['papers']}\n\n{papers}"
+
+    def block(self, block: Block) -> Iterator[tuple[str, str]]:
+        """Yield the cells of a block; what it says stands before the code that draws it."""
+        words, said = self.words, self.said
+        if isinstance(block, Prose):
+            yield (
+                "markdown",
+                said(block.text if block.kind == "code" else f"{'#' * block.level} {block.words}".strip()),
+            )
+        elif isinstance(block, Figure | Steps | Slider | Compare):
+            yield "markdown", f"*{said(block.caption)}*"
+            yield "code", f'lesson.show("{block.name}")'
+        elif isinstance(block, Code):
+            title = words["code_of"].format(file=f"glsl/{block.file}")
+            caption = f"{said(block.caption)} " if block.caption else ""
+            yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
+        elif isinstance(block, Break):
+            yield "markdown", f"### {words['fault']}\n\n{said(block.ask)}"
+            yield "code", f'lesson.show("{block.name}")'
+            yield "markdown", words["your_turn"]
+            yield "code", f'lesson.mend("{block.name}", """\n{around(block)[1]}\n""")'
+            folded = (self.folded("hint", block.hint), self.folded("mend", block.mend))
+            yield "markdown", "\n\n".join(folded)
+        elif isinstance(block, Question):
+            choices = "".join(f"\n- {said(choice)}" for choice in block.choices)
+            asked = f"### {words['question']}\n\n{said(block.ask)}\n{choices}".rstrip()
+            yield "markdown", f"{asked}\n\n{self.folded('answer', block.answer)}"
+        elif isinstance(block, Exercise):
+            yield "markdown", self.exercise(block)
+        elif isinstance(block, Measure) and block.words:
+            yield "markdown", said(block.words)
+            yield "code", f'lesson.measure("{block.name}")'
+
+    def exercise(self, block: Exercise) -> str:
+        """Return an exercise, its solution folded away."""
+        others = [one.name for one in self.lesson.blocks if isinstance(one, Exercise)]
+        parts = [f"### {self.words['exercise']} {others.index(block.name) + 1}", self.said(block.ask)]
+        if block.hint:
+            parts.append(self.folded("hint", block.hint))
+        parts.append(self.folded("solution", block.solution))
+        return "\n\n".join(parts)
+
+    def folded(self, key: str, words: str) -> str:
+        """Return words that are shown when they are asked for."""
+        return f"<details><summary>{self.words[key]}</summary>\n\n{self.said(words)}\n\n</details>"
+
+    def said(self, words: str) -> str:
+        """Return words with their numbers, and with links that a notebook can follow."""
+        return _LINK.sub(_linked, filled(words, self.numbers, comma=self.lesson.language == "fr"))
+
+
+def _linked(match: re.Match[str]) -> str:
+    words, kind, what = match.groups()
+    return f"[{words}]({what}.ipynb)" if kind == "lesson" else words

@@ -1,0 +1,98 @@
+"""What can be dragged of a block, as plain values for a browser, and the picture that a state of it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
+from playground.lessons.scenes import with_value
+from playground.lessons.values import spelled_value
+from playground.sketch.assign import resolve, value_of, values_of
+from playground.sketch.model import Value
+from playground.sketch.values import is_whole
+
+_STEPS = 200  # positions of a slider whose parameter says no step
+
+
+@dataclass(frozen=True)
+class Control:
+    """Something to drag or to choose."""
+
+    key: str  # parameter path, or "frame"
+    label: str
+    kind: str  # range | choice | checkbox
+    value: float
+    low: float = 0.0
+    high: float = 1.0
+    step: float = 1.0
+    choices: tuple[str, ...] = ()  # of a choice: their names; of a frame: one for each
+    unit: str = ""
+
+    def as_json(self) -> dict[str, Any]:
+        """Return it as a browser takes it."""
+        return asdict(self)
+
+
+def controls_of(
+    block: Figure | Steps | Slider | Compare, language: str, words: Mapping[str, str]
+) -> list[Control]:
+    """Return what can be dragged of a block."""
+    if isinstance(block, Figure):
+        assert block.scene is not None
+        return [found for path in block.sliders if (found := _parameter(block.scene, path))]
+    if isinstance(block, Steps):
+        label = words["step"]
+        names = tuple(words["turn"].format(n=turn) for turn in block.turns)
+    elif isinstance(block, Slider):
+        label = block.label or block.parameter
+        names = tuple(spelled_value(block, value, language) for value in block.values)
+    else:
+        return [Control("frame", words["show"], "choice", 0.0, choices=block.labels)]
+    start = 0 if isinstance(block, Steps) else len(names) // 2
+    return [Control("frame", label, "range", float(start), 0.0, len(names) - 1.0, 1.0, names)]
+
+
+def scene_at(block: Figure | Steps | Slider | Compare, values: Mapping[str, float]) -> Scene:
+    """Return the picture of a block for values of its controls; raise ``ParameterError`` for a bad one."""
+    if not isinstance(block, Figure):
+        last = len(block.scenes) - 1
+        return block.scenes[min(max(round(values.get("frame", 0.0)), 0), last)]
+    assert block.scene is not None
+    scene = block.scene
+    for path in block.sliders:
+        if path in values:
+            scene = with_value(scene, path, _value(scene, path, values[path]))
+    return scene
+
+
+def _parameter(scene: Scene, path: str) -> Control | None:
+    parameter = resolve(scene.sketch.graph, path)[0].parameter
+    value = value_of(scene.sketch, path, values_of(scene.sketch))
+    widget = parameter.widget
+    if widget.kind == "menu":
+        return Control(path, parameter.title, "choice", float(_scalar(value)), choices=widget.choices)
+    if parameter.type == "bool":
+        return Control(path, parameter.title, "checkbox", float(bool(value)))
+    if isinstance(value, tuple | str) or widget.low is None or widget.high is None:
+        return None  # vectors and files are set in code: with_values
+    whole = is_whole(parameter.type)
+    step = 1.0 if whole else parameter.step or (widget.high - widget.low) / _STEPS
+    return Control(
+        path, parameter.title, "range", float(value), widget.low, widget.high, step, unit=parameter.unit
+    )
+
+
+def _value(scene: Scene, path: str, given: float) -> Value:
+    parameter = resolve(scene.sketch.graph, path)[0].parameter
+    if parameter.type == "bool":
+        return bool(given)
+    if is_whole(parameter.type):
+        return round(given)
+    return float(given)
+
+
+def _scalar(value: Value) -> float:
+    assert not isinstance(value, tuple | str)
+    return float(value)
