@@ -33,9 +33,7 @@ from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
-from playground.live.lesson.panel import LessonPanel
-from playground.live.lesson.progress import progress_file, read_progress
-from playground.live.lesson.reading import Reading
+from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
@@ -110,7 +108,8 @@ def run(
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, rememberer)
-        live.begin_lesson(lesson, language, beside=beside)
+        density = window.scale * window.density
+        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -161,24 +160,7 @@ class Live:
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
         self.finite = FiniteWatch()
-        self.reading = Reading(
-            self.actions,
-            read_progress(progress_file()),
-            begins=self._remember_own,
-            play=rememberer.open,
-        )
-        self.lessons = LessonPanel()
-        self.actions.toggle_lessons, self.actions.turn_page = self.reading.toggle, self.reading.turn_page
-
-    def begin_lesson(self, name: str, language: str, *, beside: bool) -> None:
-        """Open the lesson that was asked for, if any was; see ``run``."""
-        if name:
-            wide, high = self.window.pixels
-            taken = self.reading.progress.width * self.window.scale * self.window.density
-            self.reading.stage.room = max(wide - round(taken), 1), high
-            self.reading.open(name, language=language)
-        elif beside and self.reading.progress.shown:
-            self.reading.open(show=False)
+        self.lessons = Lessons(self.actions, rememberer, self._size)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -186,7 +168,9 @@ class Live:
         self.follower.follow()
         while self._stays():
             now = self.actions.now()
-            patience = min(self._patience(), self.actions.see.patience(now), self.reading.patience(now))
+            patience = min(
+                self._patience(), self.actions.see.patience(now), self.lessons.reading.patience(now)
+            )
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -265,7 +249,7 @@ class Live:
         take_dropped(actions, self.place.dropped())
         window.begin()
         actions.see.begin()
-        left = self.lessons.draw(self.reading, window.theme)
+        left = self.lessons.draw(window.theme)
         left += self.panel.draw(actions, window.theme, left) if actions.panel_shown else 0.0
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
@@ -277,7 +261,7 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
-        self.reading.stage.room = (wide - skipped, high)
+        self.lessons.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
@@ -307,19 +291,12 @@ class Live:
         if not session.testing and self._settling == 0:
             self.warnings.look()
         self.status.write(actions, self.finite.found)
-        if self.reading.stage.own is None:  # what a lesson sets is not the reader's
-            self.rememberer.look(self._size())
         rests = self._settling == 0 and not session.testing and not imgui.is_mouse_down(0)
-        self.reading.turn(idle=rests)
+        self.lessons.turn(idle=rests)
 
     def _size(self) -> tuple[int, int]:
         stands = self.place.geometry()
         return stands.width, stands.height
-
-    def _remember_own(self) -> None:
-        """Remember what is shown, before a lesson shows something else."""
-        self.rememberer.look(self._size())
-        self.rememberer.write()
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""

@@ -7,6 +7,7 @@
     copies.py     copies of shaders to break and mend; their files are never written
     faults.py     a reader's way with such a copy: broken, mended, edited
     numbers.py    the lesson's numbers, computed while nothing else is to be done
+    shelf.py      the lessons that there are
     reading.py    a reader and the lessons: pages, pictures, what was asked and answered
 
     marks.py      Markdown as runs of one style
@@ -16,6 +17,7 @@
     page.py       what every block is drawn with
     pictures.py, asking.py, coding.py   the blocks
     panel.py      the panel
+    beside.py     what the window asks of all that
 
 Each knows only those above it.
 """

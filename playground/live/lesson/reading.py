@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.lessons.library import LANGUAGES, SOURCE, preferred_language
+from playground.lessons.library import LANGUAGES, preferred_language
 from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, Scene, Section, Slider, Steps
-from playground.lessons.read import Summary, read_lesson, summaries
-from playground.lessons.scenes import Sketches
+from playground.lessons.read import Summary
 from playground.live.actions import Actions
 from playground.live.code_window import unsaved
 from playground.live.history import History
@@ -23,6 +22,7 @@ from playground.live.lesson.faults import Faults
 from playground.live.lesson.numbers import Numbers
 from playground.live.lesson.progress import Progress, progress_file, write_progress
 from playground.live.lesson.scene import steps_of
+from playground.live.lesson.shelf import Shelf
 from playground.live.lesson.stage import Stage, comparable
 from playground.live.lesson.words import words_in
 from playground.sketch.find import find
@@ -45,7 +45,6 @@ class Reading:
     file: Path = field(default_factory=progress_file)  # where the progress is remembered
     begins: Callable[[], None] = lambda: None  # told before a lesson takes the stage
     play: Callable[[Path], None] | None = None  # opens a sketch as the reader's own
-    read: Callable[[str, str, Sketches], Lesson] = read_lesson
     lesson: Lesson | None = None
     at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
     shown: set[tuple[str, str]] = field(default_factory=set)  # what was asked for: (block, "answer")
@@ -57,10 +56,8 @@ class Reading:
         self.stage = Stage(self.actions, self.begins)
         self.numbers = Numbers(self.actions.session)
         self.faults = Faults(self.actions, self.stage, lambda key: words_in(self.language)[key])
-        self._sketches = Sketches()
-        self._summaries: dict[str, list[Summary]] = {}
+        self._shelf = Shelf(self.actions.say)
         self._due = math.inf  # when what plays goes on
-        self._missing: set[str] = set()
         self._hid = False  # the parameters' panel, to make room
 
     # ── pages ────────────────────────────────────────────────────────────────
@@ -86,13 +83,7 @@ class Reading:
     @property
     def summaries(self) -> list[Summary]:
         """All lessons, in their order."""
-        if self.language not in self._summaries:
-            try:
-                self._summaries[self.language] = summaries(self.language)
-            except PlaygroundError as error:
-                self.actions.say(str(error))
-                self._summaries[self.language] = []
-        return self._summaries[self.language]
+        return self._shelf.listed(self.language)
 
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
         """Open a lesson, at the page where it was left; say whether that could be done.
@@ -104,7 +95,7 @@ class Reading:
         if language:
             self.progress.language = language
         try:
-            lesson = self._read(name)
+            lesson = self._shelf.read(name, self.language, words_in(self.language)["untranslated"])
         except PlaygroundError as error:
             self.actions.say(str(error))
             return False
@@ -173,19 +164,6 @@ class Reading:
         complaint = write_progress(self.progress, self.file)
         if complaint:
             self.actions.say(complaint)
-
-    def _read(self, name: str) -> Lesson:
-        """Return a lesson in the language of the reader; in English, and a word, where it has none yet."""
-        try:
-            return self.read(name, self.language, self._sketches)
-        except PlaygroundError:
-            if self.language == SOURCE:
-                raise
-            lesson = self.read(name, SOURCE, self._sketches)
-            if name not in self._missing:
-                self._missing.add(name)
-                self.actions.say(words_in(self.language)["untranslated"])
-            return lesson
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
