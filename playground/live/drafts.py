@@ -120,7 +120,7 @@ class Drafts(ABC):
             self._drop_coming()
             self._file_error = explained(error)
             return
-        if self.shown is not None and loaded == self.shown.file:
+        if self.shown is not None and loaded == self.shown.file and not self._another:
             self._drop_coming()
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another

@@ -78,7 +78,7 @@ class Stage:
         actions, session = self.actions, self.actions.session
         path, texts = path_of(scene), texts or {}
         try:
-            known = session.shown if session.path == path else None
+            known = session.shown if session.path == path and not session.leaves else None
             file = known.file if known is not None else load(path)
             edits, steps = edits_of(scene, file, self.room), steps_of(scene)
         except PlaygroundError as error:
@@ -87,7 +87,7 @@ class Stage:
         self._begin()
         actions.see.compare.end()
         self._first = None
-        if session.path != path or session.shown is None:
+        if known is None:
             self._leave()
             history, before = self._histories.get(path, (History(), edits))
             _note(history, before, edits, actions.now())
@@ -162,7 +162,7 @@ class Stage:
         self._begins()
         actions, session = self.actions, self.actions.session
         actions.look_back(False)
-        draft: Draft | None = session.shown or session.coming
+        draft: Draft | None = session.coming if session.leaves else session.shown or session.coming
         clock = replace(session.clock)
         edits = draft.edits if draft else Edits()
         self.own = Own(session.path, edits, dict(session.steps), session.map, clock, actions.history)
@@ -171,7 +171,7 @@ class Stage:
     def _leave(self) -> None:
         """Keep what was set by hand in the sketch that is left, for when a lesson shows it again."""
         session = self.actions.session
-        if session.shown is not None:
+        if session.shown is not None and not session.leaves:
             self.actions.look_back(False)
             self._histories[session.path] = self.actions.history, session.shown.edits
 
