@@ -92,11 +92,11 @@ anchor = "mean"
 sketch = "diamond_square_steps"
 file   = "generation/diamond_square/raw.glsl"
 find   = "(all(inside) ? 4.0 : 3.0)"
-put    = "1.0"
-ask    = "It climbs. Why?"
+put    = "(all(inside) ? 4.0 : 9.0)"
+ask    = "Its border sinks. Why?"
 hint   = "How many are summed?"
 mend   = "A mean divides by their count."
-alt    = "Heights that grow"
+alt    = "Heights that shrink"
 ```
 
 ## Exercises

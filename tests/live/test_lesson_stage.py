@@ -275,11 +275,11 @@ def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, broken(fault)))
     assert [editing.text.path for editing in desk.actions.editing] == [FILE]
     text = desk.actions.editing[0].text
-    assert "total / 1.0" in text.base
-    text.save(text.base.replace("total / 1.0", "total / 2.0"))
+    assert ": 9.0)" in text.base
+    text.save(text.base.replace(": 9.0)", ": 2.0)"))
     desk.turn(6)
     assert desk.reading.faults.state["quarter"] == BROKEN, "another picture, but not the whole one"
-    text.save(text.base.replace("total / 2.0", "total / float(all(inside) ? 4 : 3)"))
+    text.save(text.base.replace(": 2.0)", ": float(3))"))
     desk.turn(6)
     assert desk.reading.faults.state["quarter"] == MENDED
     assert any("Mended" in notice.text for notice in desk.actions.notices)
@@ -300,7 +300,7 @@ def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_pag
     desk.reading.faults.break_it(fault)
     desk.turn(4)
     text = desk.actions.editing[0].text
-    text.save(text.base.replace("total / 1.0", "totals / 4.0"))
+    text.save(text.base.replace("total /", "totals /"))
     desk.turn(4)
     assert desk.session.error is not None and "raw.glsl" in str(desk.session.error)
     assert desk.reading.faults.state["quarter"] == BROKEN
@@ -309,7 +309,7 @@ def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_pag
     assert desk.session.error is None and not desk.session.texts and not desk.actions.editing
     desk.reading.turn_page(-1)
     desk.reading.faults.break_it(fault)
-    assert "totals / 4.0" in desk.actions.editing[0].text.base, "what was typed is there again"
+    assert "totals /" in desk.actions.editing[0].text.base, "what was typed is there again"
 
 
 def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk, monkeypatch):
@@ -341,9 +341,7 @@ def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
     number = desk.reading.numbers.known["halving"]["peaks"]
     values = desk.session.engine.read(block(desk, "peaks").scene.sketch, "height")
     tops = sum(
-        values[y, x] == values[y - 1 : y + 2, x - 1 : x + 2].max()
-        for y in range(1, 32)
-        for x in range(1, 32)
+        values[y, x] == values[y - 1 : y + 2, x - 1 : x + 2].max() for y in range(1, 32) for x in range(1, 32)
     )
     assert number.value == tops and 50 < tops < 200
     assert desk.reading.numbers.fill("{{peaks}} tops", desk.reading.lesson) == f"{tops} tops"
