@@ -13,6 +13,8 @@
 
 uniform uint seed = 7u; //! slider(0, 9999) Which land
 
+// anchor: kernel
 float kernel(ivec2 texel) {
     return random(texel, seed);
 }
+// end: kernel

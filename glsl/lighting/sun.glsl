@@ -25,9 +25,11 @@ vec3 normal_of_slope(vec2 slope) {
     return normalize(vec3(-slope, 1.0));
 }
 
+// anchor: lambert
 // The sun's light on a surface, 1 where it falls straight on it. A sun below the horizon
 // lights nothing, not even slopes that face it: the land itself is in the way.
 float sun_on(vec3 normal, vec3 sun) {
     return sun.z < 0.0 ? 0.0 : max(0.0, dot(normal, sun));
 }
+// end: lambert
 #endif

@@ -49,10 +49,12 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
     ivec2 high = min(node + 1, textureSize(field, 0) - 1);
     int row = way == ONE_TRIANGLE ? low.y : node.y;
     int column = way == ONE_TRIANGLE ? high.x : node.x;
+    // anchor: slope
     float east = texelFetch(field, ivec2(high.x, row), 0).r - texelFetch(field, ivec2(low.x, row), 0).r;
     float north = texelFetch(field, ivec2(column, high.y), 0).r - texelFetch(field, ivec2(column, low.y), 0).r;
     // A grid one texel wide has no run, and no rise either.
     return vec2(east, north) / (vec2(max(high - low, ivec2(1))) * spacing);
+    // end: slope
 }
 
 // The slope at a place: the nodes' slopes, interpolated.

@@ -19,7 +19,9 @@ float detail_nearness(float distance, float reach) {
 }
 
 // The cover times so much of the detail's ratio to its mean. A strength above 1 could go below black.
+// anchor: detail
 vec3 with_detail(vec3 cover, vec3 detail, vec3 mean, float strength) {
     return cover * max(mix(vec3(1.0), detail / max(mean, vec3(1e-4)), strength), 0.0);
 }
+// end: detail
 #endif

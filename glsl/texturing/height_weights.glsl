@@ -22,9 +22,11 @@ float share_between(float height, float from, float to) {
 
 // Weights of grass, rock and snow. Rock takes from grass, then snow from both: so they
 // sum to 1 even where the thresholds are out of order.
+// anchor: weights
 vec3 height_weights(float height, vec4 thresholds) {
     float bare = share_between(height, thresholds.x, thresholds.y);
     float covered = share_between(height, thresholds.z, thresholds.w);
     return vec3((1.0 - bare) * (1.0 - covered), bare * (1.0 - covered), covered);
 }
+// end: weights
 #endif

@@ -12,11 +12,13 @@
 
 // The first layer lies everywhere; each cover hides what lies below it, by (1). What is left
 // of layer k is its cover times (1 - cover) of all above it, and all that sums to 1.
+// anchor: covers
 vec4 weights_of_covers(vec3 covers) {
     vec3 held = clamp(covers, 0.0, 1.0);
     vec3 left = 1.0 - held;
     return vec4(left.x * left.y * left.z, held.x * left.y * left.z, held.y * left.z, held.z);
 }
+// end: covers
 
 // A mask as an image holds it, its four numbers in any proportion. Nothing at all is the first layer.
 vec4 weights_of_mask(vec4 mask) {

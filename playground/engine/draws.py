@@ -114,15 +114,13 @@ class Draws:
         program.set(ZOOM, (wide / width, tall / height, *moved))
 
     def _surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
-        """Return something to draw on: a spare one where there is, cleared."""
+        """Return something to draw on: a spare one where there is."""
         for spare in self._surfaces:
             if (spare.size, spare.format, spare.samples) == (size, form, samples):
                 self._surfaces.remove(spare)
                 break
         else:
             spare = self._new_surface(size, form, samples)
-        spare.framebuffer.use()
-        spare.framebuffer.clear(0, 0, 0, 0, depth=1.0)
         return spare
 
     def _new_surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
@@ -145,15 +143,20 @@ class Draws:
         return Surface(framebuffer, colour, depth, size, form, samples)
 
     def _start_from(self, job: Job, surface: Surface) -> None:
-        """Begin with an earlier picture: a draw's samples and depth, or a texture's colours."""
-        wired = job.inputs.get("initial")
-        if wired is None or wired.texture is None:
-            return
+        """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
+        wired = job.inputs.get("initial", Wired())
         earlier = wired.result.surface if wired.result is not None else None
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
-        self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
+        _clear(surface.framebuffer, colour=wired.texture is None)
+        if wired.texture is None:
+            return
+        if wired.result is not None and _is_alike(wired.result, surface):
+            # The same bits, where the processor draws in a tenth of the time.
+            self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
+        else:
+            self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
 
     def _chosen(self, job: Job) -> Chosen:
         """Return what to draw of a mesh that is chosen from."""
@@ -202,6 +205,20 @@ class Draws:
         if array is None:
             array = program.arrays[key] = self._meshes[key].array(program)
         return self._meshes[key], array
+
+
+def _clear(framebuffer: moderngl.Framebuffer, *, colour: bool) -> None:
+    """Clear the depth, and the colour if wanted: one that is drawn over at once would be cleared in vain."""
+    framebuffer.use()
+    framebuffer.color_mask = (colour,) * 4
+    framebuffer.clear(0, 0, 0, 0, depth=1.0)
+    framebuffer.color_mask = (True,) * 4
+
+
+def _is_alike(result: Result, surface: Surface) -> bool:
+    """Say whether a result is one texture of the same size and format as a surface of single samples."""
+    formats = [output.format for output in result.outputs]
+    return surface.samples == 1 and result.size == surface.size and formats == [surface.format]
 
 
 def _mesh_values(job: Job) -> dict[str, Value]:

@@ -87,13 +87,27 @@ def distinct(values: Values, grid: Grid) -> float:
 
 def local_maxima(values: Values, grid: Grid) -> float:
     """Return how many texels, borders aside, are higher than each of their eight neighbours."""
+    return float(_peaks(values).sum())
+
+
+def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
+    """Return which share of the local maxima has a row and a column that ``every`` divides, 0..1."""
+    rows, columns = np.nonzero(_peaks(values))
+    return (
+        float((((rows + 1) % int(every) == 0) & ((columns + 1) % int(every) == 0)).mean())
+        if rows.size
+        else 0.0
+    )
+
+
+def _peaks(values: Values) -> NDArray[np.bool_]:
     inner = values[1:-1, 1:-1]
     top = np.ones(inner.shape, bool)
     for dy in (0, 1, 2):
         for dx in (0, 1, 2):
             if (dy, dx) != (1, 1):
                 top &= inner > values[dy : dy + inner.shape[0], dx : dx + inner.shape[1]]
-    return float(top.sum())
+    return top
 
 
 def mean_slope(values: Values, grid: Grid) -> float:
@@ -186,6 +200,7 @@ MEASURES: dict[str, OfTexture | OfRun] = {
     "share_between": OfTexture(share_between, ("low", "high")),
     "distinct": OfTexture(distinct),
     "local_maxima": OfTexture(local_maxima),
+    "peaks_on_lattice": OfTexture(peaks_on_lattice, ("every",)),
     "mean_slope": OfTexture(mean_slope),
     "share_steeper": OfTexture(share_steeper, ("degrees",)),
     "spectrum_slope": OfTexture(spectrum_slope),

@@ -64,14 +64,11 @@ def named_in(words: Words) -> list[str]:
 
 def spelled(value: float, digits: int, unit: str = "") -> str:
     """Write a number to significant digits, never as a power of ten; thousands parted by narrow spaces."""
-    if value == 0.0:
-        text = "0"
-    else:
-        # What was counted has no decimals: 1 summit, not 1.00.
-        decimals = 0 if value == int(value) else digits - 1 - math.floor(math.log10(abs(value)))
-        decimals = min(decimals, digits - 1 - math.floor(math.log10(abs(value))))
-        rounded = round(value, decimals)
-        text = f"{rounded:,.{max(decimals, 0)}f}".replace(",", "\u202f")
+    rounded = float(f"{value:.{digits - 1}e}")
+    power = math.floor(math.log10(abs(rounded))) if rounded else 0
+    # What was counted has no decimals: 1 summit, not 1.00.
+    decimals = 0 if value == int(value) else max(digits - 1 - power, 0)
+    text = f"{rounded:,.{decimals}f}".replace(",", "\u202f")
     if unit in ("%", "°"):
         return f"{text}\u202f%" if unit == "%" else f"{text}°"
     return f"{text}\u202f{unit}" if unit else text

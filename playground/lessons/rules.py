@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from latex2mathml.converter import convert
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError
 from playground.lessons.excerpt import excerpt
 from playground.lessons.library import lesson_files
-from playground.lessons.markdown import links
+from playground.lessons.markdown import formulas, links
 from playground.lessons.measuring import measured, named_in
 from playground.lessons.model import (
     Block,
@@ -131,6 +132,9 @@ def _sections(lesson: Lesson) -> Iterator[tuple[int, str]]:
 def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
     measures = {measure.name for measure in lesson.measures}
     for words in lesson.words():
+        for latex in formulas(words):
+            if "\\" in convert(latex):  # a command that it does not know stays as it is
+                yield 1, f"formula ${latex}$ holds a command that cannot be shown"
         for name in named_in(words):
             if name not in measures:
                 yield 1, f"{{{{{name}}}}}: there is no measure of that name"

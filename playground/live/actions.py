@@ -173,9 +173,14 @@ class Actions:
             self.say("there is nothing to undo")
 
     def redo(self) -> None:
-        """Do the step again that was taken back last."""
+        """Do the step again that was taken back last; with the brush in the hand, the stroke."""
         if self.painting.on:
-            self.say("a stroke cannot be done again; put the brush down (B) to redo values")
+            canvas = self.painting.canvas
+            if canvas is None or not canvas.can_redo:
+                self.say("no stroke to paint again; put the brush down (B) to redo values")
+            else:
+                self.painting.redo()
+                self.say("painted the stroke again; put the brush down (B) to redo values")
             return
         self.look_back(False)
         if self.history.can_redo:

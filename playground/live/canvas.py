@@ -24,6 +24,7 @@ class Canvas:
         self.mask = mask
         self.saved = False  # whether the file holds what is painted
         self._before: list[NDArray[np.uint8]] = []  # the mask before each stroke, oldest first
+        self._after: list[NDArray[np.uint8]] = []  # after each that was taken back, the last one at the end
 
     @classmethod
     def begun(cls, folder: Path, name: str, of: Path | None, size: tuple[int, int]) -> Canvas:
@@ -47,9 +48,15 @@ class Canvas:
         """Whether there is a stroke to take back."""
         return bool(self._before)
 
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a stroke to paint again."""
+        return bool(self._after)
+
     def begin(self) -> None:
-        """Begin a stroke, which one undo will take back."""
+        """Begin a stroke, which one undo will take back; what was taken back before is gone."""
         self._before = [*self._before, _bytes(self.mask)][-_MOST_UNDONE:]
+        self._after = []
 
     def paint(
         self, start: tuple[float, float], end: tuple[float, float], extent: tuple[float, float], brush: Brush
@@ -60,15 +67,24 @@ class Canvas:
 
     def undo(self) -> None:
         """Take the last stroke back, and save."""
-        if self._before:
-            self.mask = (self._before.pop() / np.float32(255)).astype(np.float32)
-            self.save()
+        self._go(self._before, self._after)
+
+    def redo(self) -> None:
+        """Paint the stroke again that was taken back last, and save."""
+        self._go(self._after, self._before)
 
     def clear(self) -> None:
         """Take all paint away, and save; that can be undone as well."""
         self.begin()
         self.mask[...] = 0.0
         self.save()
+
+    def _go(self, there: list[NDArray[np.uint8]], back: list[NDArray[np.uint8]]) -> None:
+        """Take the last mask of a list, and put the one of now on the other."""
+        if there:
+            back.append(_bytes(self.mask))
+            self.mask = (there.pop() / np.float32(255)).astype(np.float32)
+            self.save()
 
     def save(self) -> None:
         """Write the file, whole or not at all. Raises ``DataError`` where that fails."""

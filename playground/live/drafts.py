@@ -25,7 +25,8 @@ from playground.live.stages import Stage, Tester, explained
 from playground.live.sunlight import suns_of, turned
 from playground.live.words import Said
 from playground.sketch.find import find
-from playground.sketch.load import load
+from playground.sketch.kept import KeptTechniques
+from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
@@ -61,6 +62,7 @@ class Drafts(ABC):
         self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
+        self._techniques = KeptTechniques()
         self._trial = trial
         self._now = now
         self._started = 0.0  # when what is coming began to be read
@@ -111,7 +113,7 @@ class Drafts(ABC):
         self._started = self._now()
         try:
             with noting_places() as self.places:
-                loaded = with_texts(load(self.path), self.texts)
+                loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             old = None if self._another else self.shown or self.coming
             draft, notes = (
                 reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
@@ -163,12 +165,6 @@ class Drafts(ABC):
             self._propose(self.shown.choose(pass_name, use), [])
         except PlaygroundError as error:
             self._file_error = error
-
-    def dismiss(self) -> None:
-        """Put what failed away; a save brings it back."""
-        if self.stage is Stage.FAILED:
-            self._drop_coming()
-        self._file_error = self._draw_error = None
 
     def _propose(self, draft: Draft, notes: list[str]) -> None:
         self.coming, self._coming_notes = draft, notes

@@ -94,7 +94,7 @@ def _undo(memory: Memory, actions: Actions, look: Theme) -> None:
     imgui.end_disabled()
     imgui.set_item_tooltip("Ctrl+Z")
     imgui.same_line()
-    imgui.begin_disabled(not history.can_redo)
+    imgui.begin_disabled(not history.can_redo and not actions.painting.on)
     if imgui.button("Redo"):
         actions.redo()
     imgui.end_disabled()

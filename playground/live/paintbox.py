@@ -57,6 +57,13 @@ def draw_paintbox(painting: Painting) -> None:
     if imgui.button("Undo stroke"):
         painting.undo()
     imgui.end_disabled()
+    imgui.set_item_tooltip("Ctrl+Z, while the brush is in the hand")
+    imgui.same_line()
+    imgui.begin_disabled(canvas is None or not canvas.can_redo)
+    if imgui.button("Redo stroke"):
+        painting.redo()
+    imgui.end_disabled()
+    imgui.set_item_tooltip("Ctrl+Shift+Z or Ctrl+Y, while the brush is in the hand")
     imgui.same_line()
     if imgui.button("Clear"):
         painting.clear()

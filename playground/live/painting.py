@@ -145,6 +145,11 @@ class Painting:
         if self.canvas is not None:
             self._saved(self.canvas.undo)
 
+    def redo(self) -> None:
+        """Paint the stroke again that was taken back last."""
+        if self.canvas is not None:
+            self._saved(self.canvas.redo)
+
     def clear(self) -> None:
         """Take all paint away."""
         canvas = self._begun()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.engine.frame import Frame
-from playground.gpu.textures import make_texture
+from playground.gpu.textures import make_framebuffer, make_texture
 
 if TYPE_CHECKING:
     import moderngl
@@ -87,7 +87,13 @@ class Picture:
             self._texture = make_texture(self._painter.ctx, texture.size, "rgba8")
             self._texture.filter = (self._painter.ctx.NEAREST, self._painter.ctx.NEAREST)
             self._surface = self._painter.ctx.framebuffer([self._texture])
-        self._painter.paint(texture, self._surface, (0, 0, *texture.size))
+        if (texture.components, texture.dtype, texture.samples) == (4, "f1", 0):
+            # Copied, not painted: where the processor draws that takes a tenth of the time.
+            source = make_framebuffer(self._painter.ctx, [texture])
+            self._painter.ctx.copy_framebuffer(self._surface, source)
+            source.release()
+        else:
+            self._painter.paint(texture, self._surface, (0, 0, *texture.size))
 
     def frame(self, sketch: str = "", time: float = 0.0) -> Frame | None:
         """Read it back, as what can be saved; None before the first picture."""
@@ -95,7 +101,9 @@ class Picture:
             return None
         width, height = self._texture.size
         rows = np.frombuffer(self._texture.read(alignment=1), np.uint8).reshape(height, width, 4)
-        return Frame(rows[::-1].copy(), sketch, time)
+        rows = rows[::-1].copy()
+        rows[..., 3] = 255  # nothing shows through a window
+        return Frame(rows, sketch, time)
 
     def release(self) -> None:
         """Give the texture back."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,9 +19,10 @@ from playground.errors import ContextError, PlaygroundError
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
+from playground.live.hasty import hastily
 from playground.live.maps import fitted, refs_of
 from playground.live.picture import Painter, Picture
-from playground.live.stages import Reload, Stage, Tester, explained, has_draws
+from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
 from playground.sketch.model import Sketch, Value, kernels_of
@@ -66,7 +66,7 @@ class Session(Drafts):
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
         self.draws = 0  # pictures drawn so far
-        self.hasty = False  # the picture has one sample a pixel only, and will be drawn again in full
+        self.hasty = False  # the picture was drawn hastily, and will be drawn again in full
         self._is_lost = is_lost  # says whether the engine's context is lost
         self._lost_over: object = None  # what was shown when a context was lost last
         self._painter = Painter(engine.ctx)
@@ -223,7 +223,7 @@ class Session(Drafts):
         texture = self._picture.texture
         if self.shown is None or texture is None:
             return True
-        chosen = replace(sketch, samples=1) if self.hasty else sketch
+        chosen = hastily(sketch) if self.hasty else sketch
         try:
             steps = self._steps_for(sketch)
             return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
@@ -269,12 +269,11 @@ class Session(Drafts):
             self._draw_error = explained(error)
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
-        """Draw; where the processor draws, hastily first: four samples take it three times as long as one."""
-        hasty = self.engine.info.software and not in_full and sketch.samples > 1 and has_draws(sketch)
+        """Draw; where the processor draws, hastily first: see ``live.hasty``."""
+        chosen = hastily(sketch) if self.engine.info.software and not in_full else sketch
         self.engine.runner.frame = self.draws
-        chosen = replace(sketch, samples=1) if hasty else sketch
         texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
-        self.hasty = hasty
+        self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1

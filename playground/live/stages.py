@@ -9,7 +9,6 @@ from typing import Protocol
 
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import PlaygroundError
-from playground.sketch.model import Sketch, kernels_of
 
 log = logging.getLogger("playground.live")
 
@@ -39,11 +38,6 @@ class Reload:
 
     seconds: float  # from reading the files to the picture
     trial: float  # [s] of it in the trial child
-
-
-def has_draws(sketch: Sketch) -> bool:
-    """Say whether any pass draws a mesh, so that its pixels may have several samples."""
-    return any(kernel.kind == "draw" for _, kernel in kernels_of(sketch.graph))
 
 
 def explained(error: Exception) -> PlaygroundError:

@@ -11,7 +11,6 @@ import re
 import signal
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
@@ -21,10 +20,9 @@ from playground.engine.trial_process import receive, send
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.gpu.context import ContextInfo, context_info, open_context
 from playground.gpu.textures import drain, read_picture
-from playground.paths import GLSL
 from playground.sketch.load import load_with
-from playground.sketch.model import Sketch, Technique
-from playground.sketch.techniques import Techniques
+from playground.sketch.model import Sketch
+from playground.sketch.techniques import Techniques, WithLibrary
 
 if TYPE_CHECKING:
     import moderngl
@@ -55,19 +53,6 @@ class Seen:
     told: str = ""  # the mistakes with their places
 
 
-class _Reading(Techniques):
-    """Reads a candidate's own files anew, and those of the library once for all candidates."""
-
-    def __init__(self, library: Techniques) -> None:
-        super().__init__()
-        self._library = library
-
-    def read(self, use: str, folder: Path, root: Path) -> Technique:
-        """Return what ``use`` names."""
-        own = use.startswith("./") and not folder.is_relative_to(GLSL)
-        return super().read(use, folder, root) if own else self._library.read(use, folder, root)
-
-
 def main() -> None:
     """Answer tasks until the parent closes its end."""
     memory, renderer, device, longest = int(sys.argv[1]), sys.argv[2], sys.argv[3], float(sys.argv[4])
@@ -96,7 +81,7 @@ def main() -> None:
 
 def _look(ctx: moderngl.Context, engines: dict[str, Engine], library: Techniques, task: Task) -> Seen:
     try:
-        sketch = load_with(_Reading(library), task.sketch) if isinstance(task.sketch, str) else task.sketch
+        sketch = load_with(WithLibrary(library), task.sketch) if isinstance(task.sketch, str) else task.sketch
     except PlaygroundError as error:
         return _refused(error, "refused")
     drain(ctx)

@@ -15,7 +15,7 @@ from playground.sketch.assign import effective_values
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
-from playground.sketch.places import SHADERS, is_absolute, is_file, root_of
+from playground.sketch.places import SHADERS, following_links_once, is_absolute, is_file, root_of
 from playground.sketch.techniques import (
     Techniques,
     nothing_to_run,
@@ -41,6 +41,7 @@ def load(name: str | Path = "") -> Sketch:
     return load_with(Techniques(), name)
 
 
+@following_links_once()
 def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
     """Load a sketch as ``load`` does, but take what these techniques have read already as still the same."""
     if not isinstance(name, str | Path):

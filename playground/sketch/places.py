@@ -7,7 +7,7 @@ that the user types are the user's own affair and are not judged here.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path, PurePosixPath, PureWindowsPath
@@ -38,7 +38,7 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
 
     The same places give the same sketch: whoever follows them misses no file that comes,
     goes or changes, also one that would stand before another from then on. Meanwhile links
-    are followed once each: hundreds of places share a few folders.
+    are followed once each.
     """
     found: dict[Path, Signature | None] = {}
     noted, led = _noted.set(found), _led.set({})
@@ -47,6 +47,39 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
     finally:
         _noted.reset(noted)
         _led.reset(led)
+
+
+@contextmanager
+def following_links_once() -> Iterator[None]:
+    """Follow the links of each path once, from here on until the outermost of these ends.
+
+    A sketch names hundreds of places in a few folders, most of them several times.
+    """
+    led = _led.set({} if (known := _led.get()) is None else known)
+    try:
+        yield
+    finally:
+        _led.reset(led)
+
+
+@contextmanager
+def noting_part() -> Iterator[dict[Path, Signature | None]]:
+    """Note what a part of a reading looks for by itself; whoever notes the whole notes it too."""
+    found: dict[Path, Signature | None] = {}
+    noted = _noted.set(found)
+    try:
+        yield found
+    finally:
+        _noted.reset(noted)
+        note_again(found)
+
+
+def note_again(places: Mapping[Path, Signature | None]) -> None:
+    """Note places with what is known to be there; what is noted already stays as it is."""
+    noted = _noted.get()
+    if noted is not None:
+        for path, seen in places.items():
+            noted.setdefault(path, seen)
 
 
 def note(path: Path) -> None:

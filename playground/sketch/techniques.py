@@ -77,46 +77,62 @@ class Techniques:
     """Reads techniques for one sketch, each file once."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[Path, str], Technique] = {}
-        self._open: list[Path] = []
+        self.known: dict[tuple[str, Path, Path], Technique] = {}
+        self.open: list[Path] = []  # techniques of several passes that are being read, outermost first
+        self.deepest = 0  # the most that were open at once
+
+    def has_room_for(self, depth: int) -> bool:
+        """Say whether techniques nested so deep may stand where the reading is."""
+        return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
-        path, limit = _locate(use, folder, root)
-        if (path, use) in self._known:
-            return self._known[path, use]
-        found: Technique
+        named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
+        if named not in self.known:
+            self.known[named] = self._read(*_locate(use, folder, root), use)
+        return self.known[named]
+
+    def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
-            found = self.graph(path, use, limit)
-        else:
-            kernel = read_kernel(path, limit)
-            if kernel is None:
-                raise SketchError(
-                    f"'{use}' is a library file: it has no #pragma kernel, source or draw to run"
-                )
-            found = kernel
-        self._known[path, use] = found
-        return found
+            return self.graph(path, use, limit)
+        kernel = read_kernel(path, limit)
+        if kernel is None:
+            raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
+        return kernel
 
     def graph(self, path: Path, name: str, root: Path) -> Graph:
         """Return a technique of several passes, by the path of its TOML."""
         path = path.resolve()
-        if path in self._open:
-            circle = [*self._open[self._open.index(path) :], path]
+        if path in self.open:
+            circle = [*self.open[self.open.index(path) :], path]
             raise SketchError("techniques use each other in a circle: " + " → ".join(map(shown, circle)))
-        if len(self._open) >= _MAX_NESTING:
+        if not self.has_room_for(1):
             raise SketchError(f"techniques nest more than {_MAX_NESTING} deep")
-        self._open.append(path)
+        self.open.append(path)
+        self.deepest = max(self.deepest, len(self.open))
         try:
             graph = read_graph(TomlFile(path, root), name, self.read)
             refuse_monster(graph)
         finally:
-            self._open.pop()
+            self.open.pop()
         beside = path.with_suffix(".comp")
         if is_file(beside):
             companion = _read_companion(beside, root, graph, outputs_with_formats(graph))
             graph = replace(graph, companion=companion)
         return graph
+
+
+class WithLibrary(Techniques):
+    """Reads a sketch's own techniques anew, and those of ``glsl/`` once for all who share ``library``."""
+
+    def __init__(self, library: Techniques) -> None:
+        super().__init__()
+        self._library = library
+
+    def read(self, use: str, folder: Path, root: Path) -> Technique:
+        """Return what ``use`` names, as ``read_technique`` does."""
+        own = use.startswith("./") and not folder.is_relative_to(GLSL)
+        return super().read(use, folder, root) if own else self._library.read(use, folder, root)
 
 
 def refuse_monster(graph: Graph) -> None:

@@ -69,6 +69,31 @@ def test_it_starts_from_a_texture(any_engine, plates, samples):
     np.testing.assert_array_equal(found[:, 8:], back[:, 8:])
 
 
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("start", ["", "back"])
+def test_nothing_is_left_of_what_was_drawn_on_before(any_engine, plates, samples, start):
+    """What a draw draws on is used again: colours of an earlier frame, and its depth, are gone."""
+    near = plates(("one", "", {"depth": -0.9, "colour": GREEN}, start), samples=samples)
+    any_engine.read(near, "one")
+    far = plates(("one", "", {"right": 0.0, "depth": 0.9}, start), samples=samples)
+    found = any_engine.read(far, "one")
+    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    expected = any_engine.read(far, "back")[:, 8:] if start else np.zeros((16, 8, 4))
+    np.testing.assert_array_equal(found[:, 8:], expected)
+
+
+def test_a_start_of_another_format_is_converted(any_engine, folder):
+    """A texture of one component, drawn over by a draw of four: what is copied as it is must not be."""
+    folder.write(
+        "back.glsl", '#pragma kernel(output = "grey:r32f")\nfloat kernel(ivec2 t) { return 0.75; }\n'
+    )
+    folder.write("one.glsl", PLATE.replace("{more}", ""))
+    wiring = '[[pass]]\nname = "one"\nuse = "./one"\ninputs = { initial = "back" }\nset = { right = 0.0 }'
+    sketch = folder.sketch(f'[[pass]]\nname = "back"\nuse = "./back"\n{wiring}', size="size = 16")
+    found = any_engine.read(replace(sketch, samples=1), "one")
+    np.testing.assert_array_equal(found[:, 8:], np.broadcast_to((0.75, 0.0, 0.0, 1.0), (16, 8, 4)))
+
+
 @pytest.mark.parametrize("samples", [1, 2, 4])
 @pytest.mark.parametrize(("depth", "hidden"), [(-0.5, False), (0.5, True)])
 def test_it_starts_from_an_earlier_draw_with_its_depth(any_engine, plates, samples, depth, hidden):

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from playground.paths import GLSL
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.sketch.source import read_source
+
+from ..loading import load
 
 TYPES = [kind + n for kind in ("uint", "int", "float") for n in ("", "2", "3", "4")]
 LETTERS = {"uint": ("u", "u4", np.uint32), "int": ("i", "i4", np.int32), "float": ("", "f4", np.float32)}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 
+from ..loading import load
 from ..truth.land import Land, cone, real, towards
 
 HALF = 2.0**-10

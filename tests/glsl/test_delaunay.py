@@ -15,10 +15,11 @@ from scipy.interpolate import LinearNDInterpolator
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.paths import GLSL
-from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.sketch.techniques import read_technique
 from playground.terrain.delaunay import Rules, Triangulation, triangulate
+
+from ..loading import load
 
 TABLES = "generation/delaunay/tables.glsl"
 DRAWN = "generation/delaunay/picture/drawn.glsl"

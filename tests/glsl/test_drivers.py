@@ -15,10 +15,11 @@ import pytest
 from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.expressions import accepted_sizes
-from playground.sketch.load import load
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names, outputs_with_formats
+
+from ..loading import load
 
 RANDOM = """
 #include "noise/hash.glsl"

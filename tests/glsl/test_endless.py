@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
+
+from ..loading import load
 
 WHOLE = 2**32
 PASSES = """

@@ -14,10 +14,11 @@ from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.find import is_part
-from playground.sketch.load import load
 from playground.sketch.model import Parameter, Sketch, Technique, Value
 from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names, is_optional, output_names
+
+from ..loading import load
 
 NEEDS_A_FILE = {"generation/heightmap"}
 MADE = [

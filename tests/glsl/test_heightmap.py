@@ -7,7 +7,8 @@ from scipy.interpolate import RectBivariateSpline
 
 from playground.errors import DataError
 from playground.paths import GLSL
-from playground.sketch.load import load
+
+from ..loading import load
 
 DEM = GLSL / "sketches" / "data" / "jacksboro_fault_dem.npz"
 PASS = '[[pass]]\nname = "land"\nuse = "generation/heightmap"\n'

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 
+from ..loading import load
 from ..truth.horizon import horizon
 from ..truth.land import Land, cone, real, valley
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import dblquad
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 
+from ..loading import load
 from ..truth.land import Land, cone, real
 from ..truth.sky import sky_visibility
 

@@ -105,6 +105,27 @@ def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_pat
         np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
     assert not canvas.can_undo
     canvas.undo()
+    for wanted in pictures[1:]:
+        assert canvas.can_redo
+        canvas.redo()
+        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+    assert not canvas.can_redo
+    canvas.redo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[2])
+    canvas.undo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[1])
+
+
+def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas.begin()
+    canvas.paint((0.2, 0.5), (0.2, 0.5), EXTENT, HARD)
+    canvas.undo()
+    assert canvas.can_redo
+    canvas.clear()
+    assert not canvas.can_redo
+    canvas.redo()
+    assert (read_image(canvas.path).pixels == 0).all()
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
@@ -213,6 +234,9 @@ def test_a_stroke_over_the_picture_lands_under_the_mouse(session: Session, tmp_p
     painting.undo()
     session.frame((160, 120))
     np.testing.assert_array_equal(session.engine.read(session.sketch, "weights"), before)
+    painting.redo()
+    session.frame((160, 120))
+    np.testing.assert_array_equal(session.engine.read(session.sketch, "weights"), after)
 
 
 def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tmp_path: Path) -> None:

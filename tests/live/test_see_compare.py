@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.gpu.textures import make_framebuffer, make_texture, read_picture, write_texture
 from playground.images.files import write_png
+from playground.live.hasty import hastily
 from playground.live.see.ab import drag_line, shows_first
 from playground.live.see.beside import Beside
 from playground.live.see.compare import PERIOD, Compare, Mode
@@ -86,8 +87,7 @@ def drawn(engine: Engine, session: Session, level: float) -> NDArray[np.uint8]:
     """Return the picture of the files with a level, seen as the session sees it, drawn for itself."""
     assert session.plan is not None
     sketch = load(session.path).with_values({"height.level": level}).with_camera(session.plan.sketch.camera)
-    samples = session.plan.sketch.samples
-    return engine.render(replace(sketch, samples=samples), size=SIZE).array
+    return engine.render(hastily(sketch) if session.hasty else sketch, size=SIZE).array
 
 
 def test_a_stays_while_b_changes(session: Session, compare: Compare) -> None:

@@ -243,17 +243,25 @@ class Brush:
 
     def __init__(self, strokes: int) -> None:
         self.strokes = strokes
+        self.undone = 0
         self.canvas = self
 
     @property
     def can_undo(self) -> bool:
         return self.strokes > 0
 
+    @property
+    def can_redo(self) -> bool:
+        return self.undone > 0
+
     def undo(self) -> None:
-        self.strokes -= 1
+        self.strokes, self.undone = self.strokes - 1, self.undone + 1
+
+    def redo(self) -> None:
+        self.strokes, self.undone = self.strokes + 1, self.undone - 1
 
 
-def test_with_the_brush_in_the_hand_strokes_are_undone_and_no_values(desk: Desk) -> None:
+def test_with_the_brush_in_the_hand_strokes_are_undone_and_redone_and_no_values(desk: Desk) -> None:
     desk.session.set("height.level", 0.5)
     desk.turn()
     brush = Brush(1)
@@ -264,7 +272,10 @@ def test_with_the_brush_in_the_hand_strokes_are_undone_and_no_values(desk: Desk)
     desk.actions.undo()
     assert "no stroke to take back" in desk.said and desk.value("level") == 0.5
     desk.actions.redo()
-    assert "a stroke cannot be done again" in desk.said
+    assert brush.strokes == 1 and desk.value("level") == 0.5
+    assert "painted the stroke again; put the brush down (B) to redo values" in desk.said
+    desk.actions.redo()
+    assert "no stroke to paint again" in desk.said
     brush.on = False
     desk.actions.undo()
     assert desk.value("level") == 0.25

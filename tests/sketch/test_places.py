@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -75,3 +77,23 @@ def link_to(link: Path, target: Path) -> None:
         link.symlink_to(target, target_is_directory=True)
     except OSError:
         pytest.skip("this system makes no links")
+
+
+def test_a_load_follows_the_links_of_a_path_once_and_the_next_load_follows_them_anew(
+    hills: Path, monkeypatch: pytest.MonkeyPatch
+):
+    followed: Counter[Path] = Counter()
+    resolve = Path.resolve
+
+    def counted(path: Path, strict: bool = False) -> Path:
+        if sys._getframe(1).f_code is real.__code__:
+            followed[path] += 1
+        return resolve(path, strict)
+
+    monkeypatch.setattr(Path, "resolve", counted)
+    view = '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
+    (hills / "sketch.toml").write_text(f'format = 1\n[[pass]]\nname = "height"\nuse = "./parts/k"\n{view}')
+    load(hills)
+    assert followed[hills / "parts" / "k.glsl"] == 1 and set(followed.values()) == {1}
+    load(hills)
+    assert followed[hills / "parts" / "k.glsl"] == 2

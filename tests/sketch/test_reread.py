@@ -7,7 +7,8 @@ import pytest
 from playground.errors import DataError, ShaderError
 from playground.sketch.model import kernels_of
 from playground.sketch.reread import with_texts
-from tests.sketch.conftest import LAND, VIEW
+
+from .conftest import LAND, VIEW
 
 NESTED = """\
 [[pass]]

@@ -15,9 +15,9 @@ import numpy as np
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..loading import load
 from .land import Array, Land
 
 SUN, SKY, BOTH, BOUNCED = "sun", "sky", "sun and sky", "sky and bounces"

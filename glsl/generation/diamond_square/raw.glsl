@@ -40,10 +40,12 @@ float kernel(ivec2 texel) {
     int side = size.x - 1;
     bool is_new = is_set_by(texel, iteration, side);
     if (iteration == 0) return is_new ? corner(texel) : previous(texel);
+    // anchor: neighbours
     int r = half_spacing(iteration, side);
     // The four neighbours lie along the diagonals of a centre, along the axes of an edge.
     ivec2 along = (iteration & 1) == 1 ? ivec2(r, r) : ivec2(r, 0);
     ivec2 across = ivec2(-along.y, along.x);
+    // end: neighbours
     // In the loop's order. A centre is never at the border, an edge never at two.
     bvec4 inside = bvec4(texel.x + r <= side, texel.y + r <= side, texel.x >= r, texel.y >= r);
     float here = 0.0;
@@ -57,7 +59,9 @@ float kernel(ivec2 texel) {
         if (i == 0) here = h;
         total += inside[i] ? h : 0.0;
     }
+    // anchor: height
     float share = float(2 * r) / float(side);
     float number = sign_of_random == 0 ? random_signed(texel, seed) : random(texel, seed);
     return is_new ? total / (all(inside) ? 4.0 : 3.0) + number * share * smoothing : here;
+    // end: height
 }

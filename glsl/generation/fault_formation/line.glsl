@@ -33,11 +33,13 @@ ivec3 fault_line(ivec2 first, ivec2 second) {
 }
 
 // Above 0 to the left of the line, below 0 to its right; less than 2^29.
+// anchor: side
 int fault_value(ivec3 line, ivec2 place) {
     ivec2 point = ivec2(line.z & 4095, line.z >> 12) * 8 + 4;
     ivec2 offset = place - point;
     return line.x * offset.x + line.y * offset.y;
 }
+// end: side
 
 // Which side the line's own texels belong to: 1 for the raised. It changes with the line's sense.
 int fault_edge(ivec3 line) {

@@ -20,10 +20,12 @@ uniform sampler2D still;     //! input
 uniform int faults = 200;    //! slider(0, 1000) How many
 uniform float amount = 0.05; //! log_slider(0.001, 1) Height of the first fault, at most
 
+// anchor: change
 int change_by(int which, ivec2 place) {
     vec4 fault = texelFetch(lines, ivec2(which, 0), 0);
     return is_raised(ivec3(fault.xyz), place) ? int(fault.w) : -int(fault.w);
 }
+// end: change
 
 float kernel(ivec2 texel) {
     ivec2 place = ivec2(place_of_texel(texel.x, size.x), place_of_texel(texel.y, size.y));

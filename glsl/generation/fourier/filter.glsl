@@ -16,9 +16,11 @@ uniform sampler2D spectrum;     //! input
 uniform float roughness = 2.0;  //! slider(0, 4) step(0.01) The r of 1 / f^r: 0 is noise, the higher the smoother
 
 vec2 kernel(ivec2 texel) {
+    // anchor: weight
     ivec2 waves = texel - size * ivec2(greaterThan(2 * texel, size));
     vec2 f = vec2(waves * max(size.x, size.y)) / vec2(size);
     float squared = dot(f, f);
     float weight = squared > 0.0 ? power(squared, -0.5 * roughness) : 1.0;
     return weight * texelFetch(spectrum, texel, 0).rg;
+    // end: weight
 }

@@ -29,8 +29,10 @@ vec2 kernel(ivec2 texel) {
     int from = ((place >> (turn + 1)) << turn) | (place & (h - 1));
     ivec2 here = along_x ? ivec2(from, texel.y) : ivec2(texel.x, from);
     ivec2 further = along_x ? ivec2(count >> 1, 0) : ivec2(0, count >> 1);
+    // anchor: butterfly
     vec2 w = root_of_one(place & (2 * h - 1), 2 * h);
     if (direction == 0) w = conjugate(w);
     vec2 sum = previous(here) + complex_product(w, previous(here + further));
     return direction == 0 ? sum : 0.5 * sum;
+    // end: butterfly
 }

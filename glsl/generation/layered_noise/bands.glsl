@@ -43,6 +43,7 @@ vec4 kernel(ivec2 texel) {
     if (layer == 0) for (int k = 0; k < first; k++) weight *= persistence;
     float weights = 0.0;
     vec4 total = vec4(0.0);
+    // anchor: layers
     for (int k = first; k < last; k++) {
         if (layer == 0) weight *= persistence;
         vec4 column = texelFetch(columns, ivec2(texel.x, k), 0);
@@ -59,4 +60,5 @@ vec4 kernel(ivec2 texel) {
         weights += weight;
     }
     return overflow == 0 && weights > 0.0 ? total / weights : total;
+    // end: layers
 }

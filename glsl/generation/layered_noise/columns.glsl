@@ -18,9 +18,11 @@ vec4 kernel(ivec2 texel) {
     int intervals = 1;
     for (int k = 0; k <= texel.y; k++) intervals = finer(intervals, frequency, (size.x - 1) * tiles + 1);
     intervals = within_a_part(intervals, tiles);
+    // anchor: part
     ivec2 nodes;
     float part;
     nodes_around(texel.x, size.x, intervals, nodes, part);
     if (interpolation == 1) part = part * part * (3.0 - 2.0 * part);
+    // end: part
     return vec4(float(nodes.x), float(node_beyond(nodes.y, size.x, seams == 0 && tiles > 1)), part, float(intervals));
 }

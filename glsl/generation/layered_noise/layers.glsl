@@ -39,7 +39,9 @@ void nodes_around(int place, int side, int intervals, out ivec2 nodes, out float
 
 // The node whose random number the one after stands for: where seams are mended, a part's
 // last node has the number of the next part's first one, and all parts are alike.
+// anchor: beyond
 int node_beyond(int node, int side, bool mended) {
     return mended && node == side - 1 ? 0 : node;
 }
+// end: beyond
 #endif

@@ -14,9 +14,11 @@
 
 // Where a texel lies on the tile of its part. Where a land is no whole number of parts wide,
 // the last part is cut.
+// anchor: place
 ivec2 place_in_part(ivec2 texel, ivec2 tile, int tiles) {
     ivec2 wide = max(tile - 1, ivec2(1));
     ivec2 part = min(ivec2(quotient(texel.x, wide.x), quotient(texel.y, wide.y)), ivec2(tiles - 1));
     return texel - part * wide;
 }
+// end: place
 #endif

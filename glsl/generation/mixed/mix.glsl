@@ -16,8 +16,10 @@ uniform sampler2D detail;         //! input
 uniform int octaves = 1;          //! slider(0, 8) Layers of detail
 uniform float persistence = 0.04; //! slider(0, 1) step(0.01) Weight of the first layer of detail; each next layer has this share of it
 
+// anchor: sum
 float kernel(ivec2 texel) {
     float weights = sum_of_weights(0, octaves, persistence);
     float details = texelFetch(detail, texel, 0).r * weights;
     return (details + texelFetch(shape, texel, 0).r) / (weights + 1.0);
 }
+// end: sum

@@ -43,13 +43,17 @@ float kernel(ivec2 texel) {
     int reach = (size.x - 1) >> iteration;
     bool on_lattice = ((texel.x | texel.y) & (reach - 1)) == 0;
     if (iteration == 0) return on_lattice ? corner(texel) : previous(texel);
+    // anchor: mean
     // Half the edge, from its middle: on a vertex that was known before it is 0, so that both
     // ends are that vertex, and their mean is its height to the last bit.
     ivec2 half_edge = on_lattice ? texel & reach : ivec2(0);
     float mean = (previous(texel - half_edge) + previous(texel + half_edge)) * 0.5;
+    // end: mean
+    // anchor: height
     bool is_diagonal = half_edge.x > 0 && half_edge.y > 0;
     // k is 2^(1 - iteration), and sqrt(2) times as much along a diagonal.
     float log_k = (is_diagonal ? 1.5 : 1.0) - float(iteration);
     bool is_new = half_edge.x + half_edge.y > 0;
     return is_new ? mean + random_signed(texel, seed) * exp2(r * log_k) : mean;
+    // end: height
 }

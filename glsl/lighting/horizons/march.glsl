@@ -37,6 +37,7 @@ float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, floa
     ivec2 across = course.along_x ? ivec2(0, 1) : ivec2(1, 0);
     float most = (highest - foot) * course.steep;
     float found = 0.0;
+    // anchor: horizon
     for (int k = 1; k < course.rows; k++) {
         float rows = float(k);
         vec2 at = start + rows * way;
@@ -44,6 +45,7 @@ float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, floa
         float land_there = on_texels ? height_on_line(height, at, across) : height_at(height, at * scale);
         found = max(found, (land_there - foot) * course.steep / rows);
     }
+    // end: horizon
     return found;
 }
 

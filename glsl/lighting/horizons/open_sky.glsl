@@ -35,12 +35,14 @@ float sector_shape(int sectors) {
     return sin(half_width) / half_width;
 }
 
+// anchor: thrown-back
 // How much more light there is than the sky's alone, where ground of that colour throws it back
 // and forth, by K of the whole sky: eq. 3.11, f = K thrown_back. A white pit without sky would
 // be 0 / 0.
 vec3 thrown_back(vec3 ground, float k) {
     return 1.0 / max(1.0 - ground * (1.0 - k), vec3(1e-6));
 }
+// end: thrown-back
 
 // What the sector towards u adds to n K, times the length of (-slope, 1).
 float sky_of_sector(float tangent, vec2 slope, vec2 towards, float shape) {

@@ -32,10 +32,12 @@ float seen(Walk walk, int count, bool on_lines) {
     while (k <= count) {
         int to;
         k = next_near(tops, walk, k, count, 0.0, walk.climb, relief, to);
+        // anchor: march
         for (; k < to; k++) {
             float land = height_at_step(height, walk, k, reading, on_lines) * relief;
             if (land > walk.foot + float(k) * walk.climb) return 0.0;
         }
+        // end: march
     }
     return 1.0;
 }

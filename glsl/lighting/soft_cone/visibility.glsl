@@ -35,10 +35,12 @@ uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("M
 uniform int reach = 0;                   //! slider(0, 4096) group("March") unit("texels") In the march, land farther than this throws no shadow, and in the last quarter less of one; 0: all of it does
 uniform int reading = 0;                 //! menu("interpolated", "cut down") group("March") Heights between texels, or of the texel that a place is cut down to, as in the thesis
 
+// anchor: free-part
 // The free part of a cone of that radius, whose middle is so high over the land.
 float free_part(float clearance, float radius) {
     return clamp(0.5 + clearance / max(2.0 * radius, 1e-20), 0.0, 1.0);
 }
+// end: free-part
 
 // The free part of the cone over a walk of so many steps, at most `part`.
 float seen(Walk walk, int count, float part, float grows, bool on_lines) {
@@ -49,6 +51,7 @@ float seen(Walk walk, int count, float part, float grows, bool on_lines) {
     while (k <= count) {
         int to;
         k = next_near(tops, walk, k, count, 0.0, walk.climb - grows, relief, to);
+        // anchor: cone
         for (; k < to; k++) {
             float t = float(k);
             float land = height_at_step(height, walk, k, reading, on_lines) * relief;
@@ -58,6 +61,7 @@ float seen(Walk walk, int count, float part, float grows, bool on_lines) {
             part = min(part, open + (1.0 - open) * left_out);
             if (part == 0.0) return 0.0;
         }
+        // end: cone
     }
     return part;
 }

@@ -30,9 +30,11 @@ vec4 kernel(ivec2 texel) {
     float level = nearest(height, texel).r * 255.0;
     // Land that is not a number stays visible as such in view/land.
     if (isnan(level)) level = 0.0;
+    // anchor: mixed
     vec3 weights = height_weights(level, vec4(grass_below, rock_from, rock_below, snow_from));
     vec3 mixed = weights.x * nearest(grass, texel).rgb
                + weights.y * nearest(rock, texel).rgb
                + weights.z * nearest(snow, texel).rgb;
+    // end: mixed
     return vec4(mixed, 1.0);
 }

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from playground.engine.engine import Engine
@@ -18,6 +20,10 @@ QUALITY = 84
 
 SHARPER = 1.5
 """Pixels drawn for each of a page's, each way: screens have more than one."""
+
+
+FEW_COLOURS = 2048
+"""Colours that a diagram has at most; a land has tens of thousands."""
 
 
 @dataclass
@@ -48,9 +54,17 @@ class Album:
         self.folder.mkdir(parents=True, exist_ok=True)
         for name in names:
             frame = draw(engine, larger(self.wanted[name]))
+            exact = is_diagram(frame.array)
             with replacing(self.folder / name) as handle:
-                Image.fromarray(frame.array).convert("RGB").save(handle, "WEBP", quality=QUALITY, method=4)
+                image = Image.fromarray(frame.array).convert("RGB")
+                image.save(handle, "WEBP", quality=QUALITY, method=4, lossless=exact)
             advance()
+
+
+def is_diagram(picture: NDArray[np.uint8]) -> bool:
+    """Say whether a picture has few colours: its thin lines suffer from what lands do not mind."""
+    colours = picture[..., :3].astype(np.uint32) @ np.array([1, 256, 65536], np.uint32)
+    return np.unique(colours).size <= FEW_COLOURS
 
 
 def larger(scene: Scene) -> Scene:

@@ -19,10 +19,10 @@ from playground.engine.plan import Plan
 from playground.errors import PlaygroundError
 from playground.live.clock import is_animated
 from playground.live.edits import Draft
+from playground.live.hasty import hastily
 from playground.live.picture import Painter, Picture
 from playground.live.see.beside import Beside
 from playground.live.session import Session
-from playground.live.stages import has_draws
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Compare:
         self._painter: Painter | None = None
         self._picture: Picture | None = None
         self._drawn: object = None  # what A's picture shows
-        self._hasty = False  # with one sample a pixel
+        self._hasty = False  # as of ``live.hasty``
         self._told = False  # that A cannot be drawn
 
     @property
@@ -178,13 +178,12 @@ class Compare:
         assert self._picture is not None
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(kept.draft.sketch, plan)
-        hasty = hasty and sketch.samples > 1 and has_draws(sketch)
+        chosen = hastily(sketch) if hasty else sketch
         changed = [path for path, stamp in kept.files.items() if _stamp(path) != stamp]
         try:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
             with as_before(engine, plan):
-                chosen = replace(sketch, samples=1) if hasty else sketch
                 texture = engine.draw(chosen, size=plan.frame_size, time=plan.time, steps=kept.steps)
                 self._picture.keep(texture)
         except Exception as error:
@@ -193,7 +192,7 @@ class Compare:
             self._told, self._hasty = True, False
             return
         self.draws += 1
-        self._hasty = hasty
+        self._hasty = chosen is not sketch
 
     def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
         """Return a sketch as B is seen: by its camera, and the same texture if one is shown."""

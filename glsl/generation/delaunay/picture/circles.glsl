@@ -27,10 +27,12 @@ vec3 circle_of(int element) {
     if (circles == 1 && element < triangles_of(last)) triangle = ivec3(entry(triangles, element).xyz);
     if (circles == 2) triangle = marked_triangle(triangles, neighbours, last, marked, number, element);
     if (triangle.x < 0) return vec3(-1.0);
+    // anchor: middle
     vec2 a = entry(places, triangle.x).xy;
     vec2 b = entry(places, triangle.y).xy - a;
     vec2 c = entry(places, triangle.z).xy - a;
     vec2 middle = (dot(b, b) * vec2(c.y, -c.x) - dot(c, c) * vec2(b.y, -b.x)) / (2.0 * exact_cross(ivec2(b), ivec2(c)));
+    // end: middle
     ivec2 sides = lattice_sides(places);
     vec2 pixel = pixel_of_place(a + middle, sides, size, window, margin);
     return vec3(pixel, distance(pixel, pixel_of_place(a, sides, size, window, margin)));

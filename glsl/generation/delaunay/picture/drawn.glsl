@@ -42,6 +42,7 @@ int triangles_of(sampler2D last) {
 }
 
 // Whether the circle through a, b and c, counter-clockwise, holds d: in floats, for pictures.
+// anchor: inside
 bool is_inside_circle(vec2 a, vec2 b, vec2 c, vec2 d) {
     float unit = 1.0 / max(max(distance(a, d), distance(b, d)), max(distance(c, d), 1e-9));
     a = (a - d) * unit;
@@ -52,6 +53,7 @@ bool is_inside_circle(vec2 a, vec2 b, vec2 c, vec2 d) {
                  + dot(c, c) * (a.x * b.y - b.x * a.y);
     return inside > 1e-6;
 }
+// end: inside
 
 // The corner of a triangle that is neither u nor v.
 int third(ivec3 triangle, int u, int v) {

@@ -1,0 +1,232 @@
+"""The book: what a browser gets, read as a browser would, without one."""
+
+from __future__ import annotations
+
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import urldefrag
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from playground.errors import DataError
+from playground.lessons.book import build
+from playground.lessons.book.build import prepare, write_book
+from playground.lessons.book.html import formula, line, plain, prose
+from playground.lessons.book.pictures import is_diagram, larger
+from playground.lessons.figures import thesis_figures
+from playground.lessons.library import interface_words
+from playground.lessons.pictures import draw, pictures_of
+
+VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
+
+
+class Page(HTMLParser):
+    """What is on a page: elements with their attributes, ids, addresses; open elements must be closed."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.path = path
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.text = ""
+        self.feed(path.read_text(encoding="utf-8"))
+        assert not self.open, (path, self.open)
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, (self.path, tag)
+
+    def handle_data(self, data):
+        self.text += data
+
+    def all(self, name):
+        return [attributes for tag, attributes in self.elements if tag == name]
+
+    @property
+    def ids(self):
+        return [attributes["id"] for _, attributes in self.elements if "id" in attributes]
+
+    @property
+    def addresses(self):
+        keys = ("href", "src")
+        return [value for _, attributes in self.elements for key in keys if (value := attributes.get(key))]
+
+
+@pytest.fixture
+def book(tmp_path, lesson, french, engine):
+    folder = tmp_path / "book"
+    write_book(prepare(folder, {"en": [lesson], "fr": [french]}, gallery=False), engine)
+    return folder
+
+
+def pages(folder):
+    return [Page(path) for path in sorted(folder.rglob("*.html"))]
+
+
+def test_its_files(book):
+    names = sorted(
+        p.relative_to(book).as_posix() for p in book.rglob("*") if p.is_file() and p.suffix != ".webp"
+    )
+    assert names == [
+        *("book.css", "book.js", "book.json", "en/index.html", "en/small.html"),
+        *("fr/index.html", "fr/small.html", "index.html"),
+    ]
+
+
+def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(book):
+    found = pages(book)
+    ids = {page.path: set(page.ids) for page in found}
+    outside = []
+    for page in found:
+        for address in page.addresses:
+            if address.startswith("https://"):
+                outside.append(address)
+                continue
+            path, place = urldefrag(address)
+            target = (page.path.parent / path).resolve() if path else page.path
+            if target.name == "figures.html":  # this book is built without the gallery
+                continue
+            assert target.is_file(), (page.path, address)
+            assert not place or place in ids[target], (page.path, address)
+    assert set(outside) == {"https://doi.org/10.1145/358523.358553"}  # a paper, to be followed by hand
+    for name in ("book.css", "book.js"):
+        assert "http" not in (book / name).read_text(encoding="utf-8")
+
+
+def test_pages_can_be_read_by_those_who_do_not_see(book):
+    for page in pages(book):
+        assert page.all("html")[0]["lang"] in ("en", "fr")
+        assert len(page.all("h1")) == 1 and len(page.all("main")) == 1 and page.all("title")
+        assert len(page.ids) == len(set(page.ids)), page.path
+        assert all("alt" in image for image in page.all("img")), page.path
+        for _, attributes in page.elements:
+            for key in ("aria-labelledby", "aria-describedby"):
+                assert key not in attributes or attributes[key] in page.ids
+
+
+def test_each_language_has_its_words_and_the_same_pictures(book):
+    english, french = Page(book / "en/small.html"), Page(book / "fr/small.html")
+    assert [i["src"] for i in english.all("img")] == [i["src"] for i in french.all("img")]
+    assert "Why is it dark?" in english.text and "Pourquoi est-ce sombre" in french.text
+    assert "A lattice of discs." in [i["alt"] for i in english.all("img")]
+    for page in (english, french):
+        assert "{{" not in page.text and "$" not in page.text
+    number = json.dumps(english.text.split("From lowest to highest: ")[1].split(".\n")[0][:4])
+    assert number.strip('"').replace(".", ",") in french.text
+
+
+def test_its_pictures_are_the_engine_s(book, lesson, engine):
+    for picture in pictures_of(lesson):
+        path = book / "pictures" / f"small-{picture.name}.webp"
+        if not path.exists():  # another block shows the same
+            continue
+        with Image.open(path) as image:
+            stored = np.asarray(image.convert("RGB")).astype(float)
+        drawn = draw(engine, larger(picture.scene)).array[..., :3]
+        assert stored.shape == drawn.shape
+        # Diagrams are stored as they are, lands nearly so.
+        assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
+
+
+def test_a_picture_shown_twice_is_stored_once(book, lesson):
+    """The whole picture of the fault is that of the second exercise."""
+    names = {path.stem for path in (book / "pictures").glob("*.webp")}
+    assert "small-fault" in names and "small-second" not in names
+
+
+def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
+    page = Page(book / "en/small.html")
+    text = (book / "en/small.html").read_text(encoding="utf-8")
+    assert len(page.all("details")) == 7  # hint and mend of the fault, an answer, three solutions, a hint
+    assert not any("open" in attributes for attributes in page.all("details"))
+    assert text.count("<li") >= 6 + 3 + 2  # turns, values, variants
+    assert "4.0 : 3.0" in page.text and "8.0" in page.text
+
+
+def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, engine, make_lesson):
+    own = book / "my-notes.txt"
+    own.write_text("mine", encoding="utf-8")
+    fewer = make_lesson(("frames    = 3", "frames = 2"))
+    write_book(prepare(book, {"en": [fewer]}, gallery=False), engine)
+    names = {p.relative_to(book).as_posix() for p in book.rglob("*") if p.is_file()}
+    assert own.read_text(encoding="utf-8") == "mine"
+    assert "fr/small.html" not in names and "pictures/small-smooth-2.webp" not in names
+    assert "en/small.html" in names and "pictures/small-smooth-1.webp" in names
+
+
+def test_a_manifest_that_names_files_outside_removes_none(book, lesson, engine, tmp_path):
+    victim = tmp_path / "victim.txt"
+    victim.write_text("keep", encoding="utf-8")
+    manifest = book / build.MANIFEST
+    manifest.write_text(json.dumps({"files": ["../victim.txt", str(victim)]}), encoding="utf-8")
+    write_book(prepare(book, {"en": [lesson]}, gallery=False), engine)
+    assert victim.read_text(encoding="utf-8") == "keep"
+
+
+def test_a_folder_of_other_things_is_refused(tmp_path, lesson):
+    (tmp_path / "thesis.doc").write_text("dear", encoding="utf-8")
+    with pytest.raises(DataError, match="no book"):
+        prepare(tmp_path, {"en": [lesson]}, gallery=False)
+
+
+# ── words ────────────────────────────────────────────────────────────────────
+
+
+def test_formulas_become_mathml():
+    html = prose("Let $a^2$ be\n\n$$\\frac{a}{b}$$\n", str)
+    assert html.count("<math") == 2 and "<msup>" in html and "<mfrac>" in html and "$" not in html
+    assert 'display="block"' in formula("x", alone=True)
+
+
+def test_html_in_a_lesson_is_text():
+    assert "<script>" not in prose("<script>alert(1)</script>\n", str)
+    assert "&lt;b&gt;" in line("a <b>b</b>", str)
+
+
+def test_plain_words():
+    assert plain("a *b* `c` $d^2$ [e](lesson:f)") == "a b c d^2 e"
+
+
+def test_both_languages_have_the_same_words():
+    english, french = interface_words("en"), interface_words("fr")
+    assert english.keys() == french.keys()
+    for key, text in english.items():
+        places = [part.split("}")[0] for part in text.split("{")[1:]]
+        assert sorted(places) == sorted(part.split("}")[0] for part in french[key].split("{")[1:]), key
+
+
+def test_french_is_set_as_french_is():
+    """No ordinary space before ; : ? ! and within quotation marks."""
+    import re
+
+    for key, text in interface_words("fr").items():
+        assert not re.search(r" [;:?!»]|« ", text), key
+
+
+# ── the thesis's figures ─────────────────────────────────────────────────────
+
+
+def test_every_figure_of_the_thesis_has_its_pictures():
+    figures = thesis_figures()
+    numbers = [figure.number for figure in figures]
+    chapters = {"1": 36, "2": 9, "3": 11, "4": 8, "5": 15}
+    assert numbers == [f"{c}.{n}" for c, most in chapters.items() for n in range(1, most + 1)]
+    for figure in figures:
+        assert bool(figure.pictures) != figure.diagram, figure.number
+        assert figure.captions.keys() == {"en", "fr"}
+
+
+def test_a_figure_says_its_parameters_and_its_command():
+    figure = next(figure for figure in thesis_figures() if figure.number == "1.16")
+    (drawn,) = figure.pictures
+    assert drawn.command == "playground render diamond_square --shot figure-1-16"
+    parameters = dict(drawn.parameters)
+    assert parameters["height.smoothing"] == "0.9" and parameters["size"] == "513 × 513"
+    assert parameters["height.corners"] == "0.22,0.55,0.9,0.4"

@@ -1,0 +1,77 @@
+"""The lessons that ship: there are all of them, in both languages, and they keep their promises."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
+from playground.lessons.measuring import filled, numbers_of
+from playground.lessons.model import Prose
+from playground.lessons.pictures import pictures_of
+from playground.lessons.read import read_lesson, summaries
+from playground.lessons.rules import broken_rules, wrong_pictures
+from playground.lessons.scenes import Sketches
+from playground.lessons.status import status_of
+
+NAMES = [one.name for one in summaries()]
+SKETCHES = Sketches()
+NO_BREAK = "\u00a0\u202f"
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def shipped(request):
+    return {language: read_lesson(request.param, language, SKETCHES) for language in LANGUAGES}
+
+
+def test_they_are_numbered_from_one():
+    assert [one.number for one in summaries()] == list(range(1, len(NAMES) + 1))
+    assert len(NAMES) >= 12
+
+
+def test_no_translation_is_stale_or_without_a_lesson():
+    for language in LANGUAGES:
+        if language != SOURCE:
+            assert [path.stem for path in sorted((TEXTS / language).glob("*.md"))] == lesson_files()
+            assert {name: status_of(name, language).word for name in NAMES} == dict.fromkeys(NAMES, "current")
+
+
+def test_each_keeps_to_the_rules(shipped):
+    for language, lesson in shipped.items():
+        assert list(broken_rules(lesson)) == [], language
+
+
+def test_french_is_set_as_french_is(shipped):
+    """A no-break space before ; : ? ! and within quotation marks; code and formulas aside."""
+    for words in shipped["fr"].words():
+        text = re.sub(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)|https://\S+", "", words)
+        wrong = re.findall(r"[^\n]{0,20}(?:(?<=\w) [;:?!»]|« )[^\n]{0,10}", text)
+        assert not wrong, wrong
+
+
+def test_a_translation_says_as_much(shipped):
+    """Paragraph by paragraph: none is left in English, none is a line where there were ten."""
+    for english, french in zip(shipped["en"].blocks, shipped["fr"].blocks, strict=True):
+        if isinstance(english, Prose) and english.kind == "paragraph" and len(english.words) > 80:
+            assert isinstance(french, Prose)
+            assert french.words != english.words
+            assert 0.6 < len(french.words) / len(english.words) < 2.0, french.words[:80]
+
+
+def test_the_names_of_its_pictures_are_its_own(shipped):
+    names = [picture.name for picture in pictures_of(shipped["en"])]
+    assert len(names) == len(set(names)) and names
+
+
+@pytest.mark.slow
+def test_faults_show_and_claims_hold(shipped, engine):
+    assert list(wrong_pictures(engine, shipped["en"])) == []
+
+
+@pytest.mark.slow
+def test_every_number_stands_in_its_sentence(shipped, engine):
+    numbers = numbers_of(engine, shipped["en"])
+    for language, lesson in shipped.items():
+        for words in lesson.words():
+            assert "…" not in filled(words, numbers, comma=language == "fr") or "…" in words

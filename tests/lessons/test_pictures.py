@@ -1,0 +1,52 @@
+"""Every picture of every lesson, against its reference.
+
+A picture that is a shot of its sketch and nothing else has its reference there. The others
+are drawn a third as large each way, which is enough to tell them from others.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.lessons.pictures import pictures_of
+from playground.lessons.read import read_lesson, summaries
+
+LESSONS = [one.name for one in summaries()]
+
+
+def check(shot, lesson, pictures):
+    """Compare pictures; say of all what is wrong, not of the first."""
+    wrong = []
+    for picture in pictures:
+        scene = picture.smaller().scene
+        frame = shot.render(scene.sketch, size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+        try:
+            shot.check(frame, f"{lesson}-{picture.name}")
+        except AssertionError as error:
+            wrong.append(f"{picture.name}: {error}")
+    assert not wrong, "\n".join(wrong)
+
+
+def own(name):
+    return [picture for picture in pictures_of(read_lesson(name)) if not picture.scene.plain]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LESSONS)
+def test_pictures(shot, name):
+    check(shot, name, own(name))
+
+
+def test_what_is_left_to_shots_is_one(shot):
+    """Of a lesson's picture that is a shot of its sketch, that sketch's test compares the reference."""
+    for name in LESSONS[:2]:
+        for picture in pictures_of(read_lesson(name)):
+            if picture.scene.plain:
+                sketch = picture.scene.sketch
+                assert picture.scene.shot in [one.name for one in sketch.shots]
+                one = sketch.shot(picture.scene.shot)
+                assert (one.size, one.time, one.steps) == (
+                    picture.scene.pixels,
+                    picture.scene.time,
+                    picture.scene.steps,
+                )

@@ -1,0 +1,125 @@
+"""A lesson's file becomes blocks; each mistake in it is one sentence with its line."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.errors import SketchError
+from playground.lessons.model import Break, Code, Compare, Exercise, Figure, Measure, Question, Slider, Steps
+
+
+def test_what_it_says_of_itself(lesson):
+    assert (lesson.number, lesson.title, lesson.minutes) == (4, "A small lesson", 10)
+    assert lesson.thesis == ("1.3.2",)
+    assert [section.title for section in lesson.sections] == ["", "One thing", "Exercises"]
+
+
+def test_every_kind_of_block_is_read(lesson):
+    kinds = [type(block) for block in lesson.named.values()]
+    assert kinds == [Figure, Steps, Slider, Compare, Code, Break, Measure, Question, *[Exercise] * 3]
+
+
+def test_a_figure_that_is_a_shot_is_plain(lesson, make_lesson):
+    land = lesson.named["land"]
+    assert land.scene.plain and land.scene.pixels == (480, 480)
+    assert dict(land.scene.steps) == {"height.raw": 5, "phase": 5}
+    more = make_lesson(('shot    = "figure-1-11"', 'shot = "figure-1-11"\nset = { size = 9 }')).named["land"]
+    assert not more.scene.plain
+
+
+def test_steps_stop_all_their_passes_at_each_turn(lesson):
+    steps = lesson.named["turns"]
+    assert steps.turns == (0, 1, 2, 3, 4, 5)  # 5 texels a side: the corners, then twice two turns
+    assert [dict(scene.steps) for scene in steps.scenes] == [{"height.raw": t, "phase": t} for t in range(6)]
+
+
+def test_a_slider_goes_from_one_value_to_the_other(lesson):
+    slider = lesson.named["smooth"]
+    assert slider.values == (0.1, 0.5, 0.9)
+    assert [dict(scene.sketch.overrides)["height.smoothing"] for scene in slider.scenes] == [0.1, 0.5, 0.9]
+
+
+def test_variants_stand_over_what_the_block_sets(make_lesson):
+    block = 'pixels  = [96, 96]\ncaption = "Two lands."'
+    found = make_lesson((block, f'set = {{ "height.seed" = 3 }}\n{block}')).named["two"]
+    assert [dict(scene.values) for scene in found.scenes] == [
+        {"height.seed": 3, "height.smoothing": smoothing} for smoothing in (0.0, 0.9)
+    ]
+
+
+def test_a_texture_from_above(make_lesson, engine):
+    """Its greys are the texture's values between the ends of the range."""
+    from playground.lessons.pictures import draw
+
+    found = make_lesson(
+        ('pixels    = [96, 96]\ncaption   = "Smoother', 'pixels = [20, 20]\ncaption = "Smoother'),
+        ("frames    = 3", 'frames = 3\nview = "height"\nrange = [0.0, 2.0]'),
+    )
+    scene = found.named["smooth"].scenes[0]
+    picture = draw(engine, scene).array[..., 0].astype(float) / 255
+    values = engine.read(scene.sketch, "height", size=scene.pixels)
+    expected = values[::-1].repeat(4, 0).repeat(4, 1) / 2.0
+    assert abs(picture - expected).max() < 0.005
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "line", "words"),
+    [
+        ('title   = "A small lesson"', "title = 3", 3, "title = 3: expected text in quotes"),
+        ("minutes = 10\n", "", 1, "front matter lacks minutes"),
+        ('sketch  = "diamond_square_steps"\n+++', 'sketch = "nothing"\n+++', 8, "sketch = 'nothing'"),
+        (
+            "```figure land",
+            "```figur land",
+            13,
+            "no block of a lesson is called 'figur'; did you mean 'figure'?",
+        ),
+        ("```figure land", "```figure Land", 13, "small letters"),
+        ('shot    = "figure-1-11"', 'shot = "figure-1-1"', 15, "no shot 'figure-1-1'"),
+        ('alt     = "A lattice of discs."\n', "", 13, 'a figure block needs alt = "…"'),
+        (
+            'sliders = ["height.smoothing"]',
+            'sliders = ["height.smothing"]',
+            18,
+            "did you mean 'height.smoothing'?",
+        ),
+        ('passes  = ["height.raw", "phase"]', 'passes = ["height.smooth"]', 27, "height.smooth"),
+        ("frames    = 3", "frames = 1", None, "from, to and frames (2 to 64)"),
+        ("to        = 0.9", "to = 7.0", None, "height.smoothing"),
+        ('labels  = ["even", "uneven"]', 'labels = ["even"]', None, "labels: 1 for 2 variants"),
+        (
+            'file    = "generation/white_noise.glsl"',
+            'file = "generation/white_nois.glsl"',
+            None,
+            "did you mean",
+        ),
+        ('what    = "spread"', 'what = "spraed"', None, "did you mean 'spread'?"),
+        ("right   = 0", "right = 2", None, "expected the place of a choice, 0 to 1"),
+        ("between = [0.1, 2.0]", "between = [2.0, 0.1]", None, "expected [lowest, highest]"),
+        ("```exercise second", "```exercise first", None, "a second block named 'first'"),
+        ('ask      = "Predict."\n', "", None, 'needs ask = "…"'),
+        ('caption = "Two lands."', 'caption = "Two lands.', None, "not TOML"),
+        ('set = { "height.smoothing" = 0.9 }', 'set = { "height.smoothing" = 9 }', None, "9"),
+    ],
+)
+def test_a_mistake_is_a_sentence_with_its_line(write_lesson, before, after, line, words):
+    from playground.lessons.read import read_file
+
+    path = write_lesson((before, after))
+    with pytest.raises(SketchError) as caught:
+        read_file(path)
+    (diagnostic,) = caught.value.diagnostics
+    assert words in diagnostic.message
+    lines = path.read_text(encoding="utf-8").split("\n")
+    assert 1 <= diagnostic.line <= len(lines)
+    if line is not None:
+        assert diagnostic.line == line, lines[diagnostic.line - 1]
+
+
+def test_a_file_without_front_matter(tmp_path):
+    from playground.lessons.read import read_file
+
+    path = tmp_path / "bare.md"
+    path.write_text("# No front\n", encoding="utf-8")
+    with pytest.raises(SketchError, match="begins with TOML between two lines"):
+        read_file(path)

@@ -1,0 +1,68 @@
+"""What every lesson keeps to: each rule, broken by one change."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.lessons import rules
+from playground.lessons.rules import broken_rules, wrong_pictures
+
+
+def sentences(lesson):
+    return [sentence for _, sentence in broken_rules(lesson)]
+
+
+@pytest.fixture(autouse=True)
+def _one_lesson(monkeypatch):
+    monkeypatch.setattr(rules, "lesson_files", lambda: ["small"])
+
+
+def test_the_small_lesson_keeps_to_all(lesson):
+    assert sentences(lesson) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("A picture first.", "word " * 61, "61 words stand before the first figure"),
+        (
+            "A picture first.",
+            "```question early\nask = 'a'\nanswer = 'b'\n```",
+            "the first block of a lesson is a figure",
+        ),
+        ('anchor  = "kernel"', 'anchor = "nowhere"', "no anchor 'nowhere'"),
+        ("## One thing", "## Bare\n\nOnly words.\n\n## One thing", "section 'Bare' shows nothing"),
+        ('```exercise third\nask      = "Change."\nsolution = "So."\n```', "", "2 exercises; a lesson has 3"),
+        ("spread is {{spread}}", "spread is {{spraed}}", "{{spraed}}: there is no measure"),
+        ("lesson:small", "lesson:smaller", "a link to lesson 'smaller'"),
+        ("lesson:small", "http://example.org", "a link to 'http://example.org'"),
+        ("lesson:small", "sketch:nothing", "a link to sketch 'nothing'"),
+        ("lesson:small", "thesis:one", "a link to section 'one'"),
+        (
+            'alt     = "A lattice of discs."',
+            'alt = "Five by five, with *all* of it known."',
+            "alt repeats the caption",
+        ),
+        ('thesis  = ["1.3.2"]', "thesis = []", "names sections of the thesis"),
+        ('goal    = "Know $r^2$."', r"""goal = 'Know $\foo{r}$.' """, "formula"),
+        ('find   = "(all(inside) ? 4.0 : 3.0)"', 'find = "nothing of it"', "found 0 times"),
+        (
+            'file   = "generation/diamond_square/raw.glsl"',
+            'file = "generation/white_noise.glsl"',
+            "does not use",
+        ),
+    ],
+)
+def test_each_rule(make_lesson, before, after, words):
+    assert any(words in sentence for sentence in sentences(make_lesson((before, after))))
+
+
+def test_a_fault_must_show_and_a_claim_must_hold(make_lesson, engine):
+    assert list(wrong_pictures(engine, make_lesson())) == []
+    hidden = make_lesson(('put    = "8.0"', 'put = "(all(inside) ? 4.0001 : 3.0)"'))
+    assert [s for _, s in wrong_pictures(engine, hidden)] == [
+        "break 'fault': the fault hardly changes the picture"
+    ]
+    false = make_lesson(("between = [0.1, 2.0]", "between = [3.0, 4.0]"))
+    (sentence,) = [s for _, s in wrong_pictures(engine, false)]
+    assert sentence.startswith("measure 'spread': 0.") and sentence.endswith("is not between 3 and 4")

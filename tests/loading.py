@@ -1,0 +1,16 @@
+"""Load a sketch that a test wrote: its own files anew, those of ``glsl/``, which no test changes, once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playground.sketch.load import load_with
+from playground.sketch.model import Sketch
+from playground.sketch.techniques import Techniques, WithLibrary
+
+_LIBRARY = Techniques()
+
+
+def load(name: str | Path) -> Sketch:
+    """Load a sketch as the playground does, but read each of the library's techniques once a session."""
+    return load_with(WithLibrary(_LIBRARY), name)

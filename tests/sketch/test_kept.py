@@ -1,0 +1,173 @@
+"""A sketch read again with what was kept is the sketch read anew, whatever was saved in between."""
+
+from __future__ import annotations
+
+import os
+import random
+import time
+from pathlib import Path
+
+import pytest
+
+from playground.errors import PlaygroundError, SketchError
+from playground.sketch.kept import RESTED, KeptTechniques
+from playground.sketch.load import load, load_with
+from playground.sketch.model import kernels_of
+from playground.sketch.places import noting_places
+
+KERNEL = """#include "part.glsl"
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return part(); }
+"""
+PART = "float part() { return 1.0; }\n"
+INNER = '[[pass]]\nname = "one"\nuse = "./k"\n[outputs]\nheight = "one"\n'
+OUTER = '[[pass]]\nname = "two"\nuse = "./inner"\n[outputs]\nheight = "two"\n'
+SKETCH = 'format = 1\n[[pass]]\nname = "height"\nuse = "./outer"\n[[pass]]\nname = "again"\nuse = "./k"\n'
+
+
+class Files:
+    """A sketch's folder, whose files all rested before they are read."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._saved = time.time() - 1e6
+
+    def save(self, name: str, text: str) -> None:
+        """Save a file as it was a while ago, and later than all saves before."""
+        self._saved += 1.0
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, (self._saved, self._saved))
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Files:
+    made = Files(tmp_path)
+    for name, text in (
+        ("part.glsl", PART),
+        ("k.glsl", KERNEL),
+        ("inner.toml", INNER),
+        ("outer.toml", OUTER),
+        ("sketch.toml", SKETCH),
+    ):
+        made.save(name, text)
+    return made
+
+
+def code_in(sketch) -> list[str]:
+    return [kernel.source.code for _, kernel in kernels_of(sketch.graph)]
+
+
+def test_what_rests_is_the_same_object_in_the_next_reading(files: Files):
+    techniques = KeptTechniques()
+    first = load_with(techniques.begin(), files.folder)
+    second = load_with(techniques.begin(), files.folder)
+    for name in ("height", "again", "view"):
+        assert first.graph.find(name).technique is second.graph.find(name).technique
+
+
+def test_a_save_of_what_is_included_deep_inside_is_seen(files: Files):
+    techniques = KeptTechniques()
+    view = load_with(techniques.begin(), files.folder).graph.find("view").technique
+    files.save("part.glsl", PART.replace("1.0", "2.0"))
+    sketch = load_with(techniques.begin(), files.folder)
+    assert sum("return 2.0;" in code for code in code_in(sketch)) == 2
+    assert sketch.graph.find("view").technique is view, "nothing of it was saved"
+
+
+def test_what_was_saved_just_before_it_was_read_is_read_again(files: Files):
+    """Two saves in one tick of a coarse clock, of one length: nothing but the text tells them apart."""
+    now = time.time_ns()
+    (files.folder / "inner.toml").write_text(INNER.replace("one", "abc"), encoding="utf-8")
+    os.utime(files.folder / "inner.toml", ns=(now, now))
+    techniques = KeptTechniques()
+    load_with(techniques.begin(), files.folder)
+    (files.folder / "inner.toml").write_text(INNER.replace("one", "xyz"), encoding="utf-8")
+    os.utime(files.folder / "inner.toml", ns=(now, now))
+    names = [path for path, _ in kernels_of(load_with(techniques.begin(), files.folder).graph)]
+    assert "height.two.xyz" in names
+
+
+def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
+    techniques = KeptTechniques()
+    load_with(techniques.begin(), files.folder)
+    files.save("inner.glsl", KERNEL)
+    with pytest.raises(SketchError, match="remove one"):
+        load_with(techniques.begin(), files.folder)
+    (files.folder / "inner.toml").unlink()
+    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+
+
+def test_the_places_of_a_reading_are_all_there_though_little_was_read(files: Files):
+    techniques = KeptTechniques()
+    with noting_places() as anew:
+        load(files.folder)
+    for _ in range(2):
+        with noting_places() as places:
+            load_with(techniques.begin(), files.folder)
+        assert places == anew
+
+
+def test_techniques_that_are_kept_may_nest_no_deeper(files: Files):
+    def chain(first: int, last: int) -> None:
+        for level in range(first, last):
+            files.save(f"n{level}.toml", INNER.replace("./k", f"./n{level + 1}"))
+
+    chain(0, 10)
+    files.save("n10.toml", INNER)
+    files.save("sketch.toml", SKETCH.replace("./outer", "./n0"))
+    techniques = KeptTechniques()
+    load_with(techniques.begin(), files.folder)
+    chain(20, 29)
+    files.save("n29.toml", INNER.replace("./k", "./n0"))
+    files.save("sketch.toml", SKETCH.replace("./outer", "./n20"))
+    with pytest.raises(SketchError, match="nest more than"):
+        load_with(techniques.begin(), files.folder)
+
+
+def test_a_circle_that_closes_through_what_is_kept_is_found(files: Files):
+    techniques = KeptTechniques()
+    load_with(techniques.begin(), files.folder)
+    files.save("inner.toml", INNER.replace("./k", "./outer"))
+    with pytest.raises(SketchError, match="circle"):
+        load_with(techniques.begin(), files.folder)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: int):
+    chance = random.Random(seed)
+    texts = {
+        "part.glsl": [PART, PART.replace("1.0", "2.0"), "float part( { }\n"],
+        "k.glsl": [
+            KERNEL,
+            KERNEL.replace("part()", "2.0 * part()"),
+            KERNEL.replace("part.glsl", "gone.glsl"),
+        ],
+        "inner.toml": [INNER, INNER.replace("one", "other"), INNER.replace("./k", "./outer")],
+        "outer.toml": [OUTER, OUTER.replace("./inner", "./k"), "format = "],
+        "sub.glsl": ["// nothing\n"],
+        "k.comp": ['#pragma compute(groups = "1, 1")\nvoid main() {}\n'],
+    }
+    techniques = KeptTechniques()
+    for _ in range(60):
+        name = chance.choice(list(texts))
+        if chance.random() < 0.25:
+            (files.folder / name).unlink(missing_ok=True)
+        else:
+            files.save(name, chance.choice(texts[name]))
+        with noting_places() as places:
+            seen = result_of(lambda: load_with(techniques.begin(), files.folder))
+        with noting_places() as wanted:
+            assert seen == result_of(lambda: load(files.folder))
+        assert wanted.keys() <= places.keys()
+
+
+def result_of(reading):
+    try:
+        return reading()
+    except PlaygroundError as error:
+        return str(error)
+
+
+def test_a_file_counts_as_rested_only_after_the_coarsest_clock_has_ticked():
+    assert RESTED > 2.0, "FAT tells times to two seconds"
