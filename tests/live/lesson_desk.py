@@ -85,7 +85,7 @@ set = { "height.seed" = 2 }
 
 ```code mean
 file   = "generation/diamond_square/raw.glsl"
-anchor = "mean"
+anchor = "height"
 ```
 
 ```break quarter
@@ -120,6 +120,10 @@ alt      = "Other rubble"
 ```exercise try
 ask      = "Try."
 solution = "Done."
+sketch   = "white_noise"
+view     = "height"
+alt      = "Greys"
+pixels   = [480, 480]
 ```
 
 ```exercise change
@@ -208,6 +212,7 @@ alt      = "D'autres gravats"
 ```exercise try
 ask      = "Essayez."
 solution = "Fait."
+alt      = "Des gris"
 ```
 
 ```exercise change

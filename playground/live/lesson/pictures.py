@@ -88,7 +88,7 @@ def draw_compare(block: Compare, page: Page) -> None:
 def _show(block: Figure, page: Page) -> None:
     reading = page.reading
     on = reading.is_on(block)
-    shows = page.say("on_view") if on else page.say("show")
+    shows = page.say("show" if not on else "coming" if reading.stage.busy else "on_view")
     if page.button(shows, block.alt or page.say("show_note"), on=on) and not on:
         reading.show(block)
     if on and reading.stage.changed:

@@ -10,6 +10,7 @@ from playground.engine.plan import repeated_in
 from playground.lessons.model import Scene
 from playground.live.edits import Edits
 from playground.live.session import is_seen_from_camera
+from playground.sketch.flatten import flatten
 from playground.sketch.maps import USE, Map
 from playground.sketch.model import Sketch, Value
 
@@ -50,8 +51,12 @@ def map_of(scene: Scene) -> Map | None:
     """Return the map that a picture is; None where it is the sketch's own view."""
     if not scene.view:
         return None
+    path, _, output = scene.view.partition(":")
+    if not output:  # a pass's texture is that of its own name, else its first
+        outputs, last = flatten(scene.sketch, compute=False).outputs[path], path.rpartition(".")[2]
+        output = last if last in outputs else next(iter(outputs))
     spec = scene.sketch.graph.find("view")
-    return Map(scene.view, spec.values if spec is not None and spec.use == USE else ())
+    return Map(f"{path}:{output}", spec.values if spec is not None and spec.use == USE else ())
 
 
 def _opened(degrees: float, pixels: tuple[int, int], room: tuple[int, int]) -> float:
