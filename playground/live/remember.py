@@ -112,8 +112,7 @@ class Rememberer:
         session, clock = self.session, self.session.clock
         self._recalled = not found.is_nothing
         clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
-        session.steps.update(found.steps)
-        session.map = Map(found.map, found.map_values) if found.map else None
+        session.view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
 
     def _snapshot(self, draft: Draft, window: tuple[int, int]) -> Remembered:
         session = self.session

@@ -375,3 +375,29 @@ def test_an_unknown_lesson_is_named_with_the_nearest(desk):
     assert not desk.reading.open("halvin")
     assert any("no lesson 'halvin'" in n.text and "halving" in n.text for n in desk.actions.notices)
     assert desk.reading.lesson is None and library.lesson_files() == ["after", "halving"]
+
+
+class Silent:
+    """A trial that never answers."""
+
+    def submit(self, request: object) -> None:
+        """Take a sketch, and forget it."""
+
+    def poll(self) -> None:
+        """Say nothing."""
+
+
+def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(desk):
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    seen = as_seen(desk)
+    desk.session._trial = Silent()
+    desk.reading.go(1)
+    desk.turn(3)
+    assert desk.reading.stage.busy and desk.session.steps == {}
+    np.testing.assert_array_equal(as_seen(desk), seen)
+    desk.session._trial = None
+    desk.reading.show(block(desk, "turns"))
+    desk.turn(3)
+    assert not desk.reading.stage.busy and desk.session.steps == {"height.raw": 0, "phase": 0}

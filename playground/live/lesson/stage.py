@@ -53,7 +53,6 @@ class Stage:
         self._path: Path | None = None
         self._set: tuple[Edits, Mapping[str, int]] = (Edits(), {})  # for the picture
         self._histories: dict[Path, tuple[History, Edits]] = {}
-        self._map: Map | None = None  # to be seen as soon as the sketch is
         self._waits = False
         self._first: Scene | None = None  # what the picture is to be compared with
 
@@ -98,11 +97,8 @@ class Stage:
             actions.history.call(f"Lesson: {key[0]}")
             session.read_as(texts)
             session.restore(edits)
-        session.steps.clear()
-        session.steps.update(steps)
-        session.map = self._map = map_of(scene)
+        session.view(steps, map_of(scene))
         session.clock.time, session.clock.playing = scene.time, False
-        session.look_again()
         self.scene, self.key, self._path, self._waits = scene, key, session.path, True
         self._set = edits, steps
 
@@ -132,9 +128,6 @@ class Stage:
             return
         if self._waits and session.stage is Coming.NONE and session.shown is not None:
             self._waits = False
-            if self._map is not None and session.map is None:
-                session.map = self._map
-                session.look_again()
             self._set = session.shown.edits, dict(session.steps)
             self._compare()
 
@@ -146,11 +139,10 @@ class Stage:
         self.actions.see.compare.end()
         session.open(own.path, edits=own.edits)
         self.actions.history = own.history
-        session.steps.update(own.steps)
-        session.map = own.map
+        session.view(own.steps, own.map)
         clock = session.clock
         clock.time, clock.playing, clock.loop = own.clock.time, own.clock.playing, own.clock.loop
-        self._map, self._waits = own.map, True
+        self._waits = False
         self._histories.pop(own.path, None)
         self.own = self.scene = self.key = None
         self._path = session.path
