@@ -310,6 +310,6 @@ class Live:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None:
+            if self._reloads is not None and self.lessons.reading.stage.own is None:
                 self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

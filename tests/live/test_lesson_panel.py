@@ -11,6 +11,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
 from playground.lessons.scenes import Sketches
+from playground.live.lesson.ways import follow
 from playground.sketch.find import find
 
 from .lesson_desk import Desk, shelved
@@ -154,7 +155,7 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
     desk.open(show=False)
     opened: list[str] = []
     monkeypatch.setattr(
-        "playground.live.lesson.reading.webbrowser.open", lambda address: bool(opened.append(address)) or True
+        "playground.live.lesson.ways.webbrowser.open", lambda address: bool(opened.append(address)) or True
     )
     for address in (
         "https://doi.org/10.1145/358523.358553",
@@ -162,7 +163,7 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
         "lesson:after",
         "sketch:white_noise",
     ):
-        desk.reading.follow(address)
+        follow(desk.reading, address)
         desk.turn(3)
     assert opened == ["https://doi.org/10.1145/358523.358553"]
     assert any("section 1.3.2" in notice.text for notice in desk.actions.notices)

@@ -18,6 +18,7 @@ from playground.live.edits import Draft
 from playground.live.lesson.faults import BROKEN, MENDED, TOLD
 from playground.live.lesson.reading import BOTH
 from playground.live.lesson.scene import edits_of, map_of, steps_of
+from playground.live.lesson.ways import play_on
 from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -135,6 +136,16 @@ def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_a
     assert desk.session.steps == {"height.raw": 0, "phase": 0}
 
 
+def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(desk):
+    desk.open(3)
+    assert desk.reading.stage.key == ("seeds", 1) and value(desk, "height.seed") == 2
+    desk.reading.show(block(desk, "land"))
+    desk.turn(2)
+    desk.reading.go(4)
+    desk.turn(2)
+    assert desk.reading.stage.key == ("land", 0), "what is shown stays"
+
+
 def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
     own = desk.session.path
     desk.session.set("height.seed", 5)
@@ -214,7 +225,7 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     desk.reading.show(block(desk, "land"))
     desk.turn(2)
     assert value(desk, "height.seed") == 3
-    desk.reading.play_on()
+    play_on(desk.reading)
     desk.turn(3)
     assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 41
     assert desk.reading.stage.own is None and desk.actions.panel_shown

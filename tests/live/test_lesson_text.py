@@ -127,6 +127,9 @@ def test_a_formula_is_set_as_one():
     bar = alpha.max(axis=1) > 128
     assert (alpha[bar] > 128).mean(axis=1).max() > 0.8, "and a bar between"
     assert 0 < fraction.baseline < fraction.pixels.shape[0]
+    for edge in (alpha[0], alpha[-1], alpha[:, 0], alpha[:, -1]):
+        assert edge.any(), "nothing empty around it"
+    assert letter.baseline >= letter.pixels.shape[0] - 2, "an a stands on the baseline"
     assert (fraction.pixels[alpha == 255][:, :3] == 0xEE).all()
 
 

@@ -9,6 +9,7 @@
     numbers.py    the lesson's numbers, computed while nothing else is to be done
     shelf.py      the lessons that there are
     reading.py    a reader and the lessons: pages, pictures, what was asked and answered
+    ways.py       where links and buttons lead from a page
 
     marks.py      Markdown as runs of one style
     lines.py      runs broken into lines

@@ -43,6 +43,7 @@ def draw_exercise(block: Exercise, page: Page) -> None:
         page.text(block.ask)
         if block.hint:
             _behind(block.name, "hint", block.hint, page)
+            page.beside(page.say("solution"))
         _behind(block.name, "solution", block.solution, page)
         if (block.name, "solution") in reading.shown and block.scene is not None:
             if page.button(page.say("solution_picture"), block.alt, on=reading.is_on(block)):

@@ -88,7 +88,17 @@ def set_formula(latex: str, size: int, colour: int, *, display: bool) -> Setting
         made = microtex.render(latex, float(size), colour, style)
     except Exception:  # nanobind's RuntimeError, of whatever MicroTeX threw
         return None
-    return Setting(made.pixels_as_array().copy(), made.baseline_y)
+    return _cut(Setting(made.pixels_as_array().copy(), made.baseline_y))
+
+
+def _cut(setting: Setting) -> Setting:
+    """Return a picture without the empty rows and columns around it."""
+    seen = setting.pixels[..., 3] > 0
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    if not rows.size:
+        return setting
+    top, left = int(rows[0]), int(columns[0])
+    return Setting(setting.pixels[top : rows[-1] + 1, left : columns[-1] + 1], setting.baseline - top)
 
 
 @cache

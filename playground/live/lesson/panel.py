@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -30,6 +31,7 @@ from playground.live.lesson.pictures import draw_compare, draw_figure, draw_slid
 from playground.live.lesson.progress import NARROWEST, WIDEST
 from playground.live.lesson.prose import Prose as Texts
 from playground.live.lesson.reading import Reading
+from playground.live.lesson.ways import follow, play_on
 from playground.live.panel_memory import Memory
 from playground.live.rows import fitting
 from playground.live.theme import Theme
@@ -66,7 +68,7 @@ class LessonPanel:
         if lesson is None or not reading.progress.shown:
             return 0.0
         if self._texts is None:
-            self._texts = Texts(lambda: self._formulas_of(reading), reading.follow)
+            self._texts = Texts(lambda: self._formulas_of(reading), lambda to: follow(reading, to))
         room, scale = imgui.get_main_viewport().size, look.scale
         widest = max(room.x - _LEAST * scale, 160.0)
         imgui.set_next_window_pos(ImVec2(0, 0))
@@ -121,11 +123,11 @@ def _head(page: Page) -> None:
         "##lessons", page.say("lesson", lesson.number), imgui.ComboFlags_.height_largest.value
     ):
         for one in reading.summaries:
-            done = "✓ " if one.name in reading.progress.done else ""
-            if imgui.selectable(f"{one.number}  {one.title}   {done}##{one.name}", one.name == lesson.name)[
-                0
-            ]:
+            done = one.name in reading.progress.done  # read to its end: in green
+            imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if done else theme.INK))
+            if imgui.selectable(f"{one.number}  {one.title}##{one.name}", one.name == lesson.name)[0]:
                 reading.open(one.name)
+            imgui.pop_style_color()
             imgui.set_item_tooltip(f"{one.goal}\n{page.say('minutes', one.minutes)}")
         imgui.end_combo()
     for code in LANGUAGES:
@@ -196,7 +198,8 @@ def _sources(page: Page) -> None:
     if thesis or lesson.papers:
         imgui.separator()
         page.label(page.say("sources"))
-        lines = [*thesis, *lesson.papers]
+        papers = [re.sub(r"(https?://\S+)", r"<\1>", paper) for paper in lesson.papers]
+        lines = [*thesis, *papers]
         page.text("\n".join(f"- {line}" for line in lines), size=theme.SMALL, dim=True)
 
 
@@ -234,7 +237,7 @@ def _foot(page: Page) -> None:
         imgui.dummy(ImVec2(half, imgui.get_frame_height()))
     imgui.same_line()
     if imgui.button(fitting(page.say("play_on"), half) + "##play on", ImVec2(half, 0)):
-        reading.play_on()
+        play_on(reading)
     imgui.set_item_tooltip(page.say("play_on_note", page.lesson.sketch))
 
 

@@ -6,7 +6,6 @@ Draws nothing. Whoever does calls ``turn`` once a turn.
 from __future__ import annotations
 
 import math
-import webbrowser
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +16,6 @@ from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, S
 from playground.lessons.read import Summary
 from playground.live.actions import Actions
 from playground.live.code_window import unsaved
-from playground.live.history import History
 from playground.live.lesson.faults import Faults
 from playground.live.lesson.numbers import Numbers
 from playground.live.lesson.progress import Progress, progress_file, write_progress
@@ -25,7 +23,6 @@ from playground.live.lesson.scene import steps_of
 from playground.live.lesson.shelf import Shelf
 from playground.live.lesson.stage import Stage, comparable
 from playground.live.lesson.words import words_in
-from playground.sketch.find import find
 
 _TURN, _VALUE = 0.8, 0.5
 """[s] that a turn, and a value of a sweep, is seen while it plays."""
@@ -127,13 +124,24 @@ class Reading:
         section = self.lesson.sections[page]
         self.numbers.want(self.lesson, section.blocks)
         self.remember()
-        first = next((b for b in section.blocks if isinstance(b, Figure | Steps | Slider | Compare)), None)
+        first = self._picture_of(page)
         if not show or first is None:
             return
         if unsaved(self.actions) or (self.stage.own is None and self.stage.changed):
             self.actions.say(words_in(self.language)["yours_stays"])
             return
         self.show(first)
+
+    def _picture_of(self, page: int) -> Block | None:
+        """Return what a page shows first; of one without, while nothing is shown yet, the one before."""
+        sections = self.lesson.sections if self.lesson else ()
+        mine, *earlier = [
+            [b for b in section.blocks if isinstance(b, Figure | Steps | Slider | Compare)]
+            for section in reversed(sections[: page + 1])
+        ]
+        if mine or self.stage.key is not None:
+            return next(iter(mine), None)
+        return next((blocks[-1] for blocks in earlier if blocks), None)
 
     def turn_page(self, pages: int) -> None:
         """Go so many pages on or back."""
@@ -225,49 +233,11 @@ class Reading:
         self.faults.put_away(drawn=False)
         self.stage.go_back()
 
-    def play_on(self) -> None:
-        """Open the lesson's sketch as the reader's own."""
-        if self.lesson is not None:
-            self.open_sketch(self.lesson.sketch)
-
-    def open_sketch(self, name: str) -> None:
-        """Open a sketch as the reader's own, with what was set by hand in it the last time."""
-        try:
-            path = find(name)
-        except PlaygroundError as error:
-            self.actions.say(str(error))
-            return
-        self.playing = ""
-        self.faults.put_away(drawn=False)
-        if self.stage.own is None:
-            self.begins()
-        self.stage.let_go()
-        self.actions.panel_shown = True
-        self.actions.history = History()
-        if self.play is not None:
-            self.play(path)
-        else:
-            self.actions.open(path)
-
     def _put(self, scene: Scene, name: str, index: int) -> None:
         if self.playing != name:
             self.playing = ""
         self.faults.leave()
         self.stage.show(scene, (name, index), self.faults.texts)
-
-    # ── links ────────────────────────────────────────────────────────────────
-
-    def follow(self, address: str) -> None:
-        """Go where a link leads."""
-        kind, _, name = address.partition(":")
-        if kind == "lesson":
-            self.open(name)
-        elif kind == "sketch":
-            self.open_sketch(name)
-        elif kind == "thesis":
-            self.actions.say(words_in(self.language)["thesis_section"].format(name))
-        elif kind in ("https", "http") and not webbrowser.open(address):
-            self.actions.say(address)
 
     # ── turns ────────────────────────────────────────────────────────────────
 
