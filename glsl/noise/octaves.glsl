@@ -53,9 +53,11 @@ float cells_a_metre(float frequency, vec2 extent, vec2 spacing) {
 }
 
 // Strength of an octave over the one before; from a Hurst exponent as fractional Brownian motion has it.
+// anchor: gain
 float gain_of(int strength, float gain, float hurst, float lacunarity) {
     return strength == BY_HURST ? exp2(-hurst * log2(lacunarity)) : gain;
 }
+// end: gain
 
 // How strong an octave is whose cells are so many texels wide.
 float octave_weight(float texels) {
@@ -77,12 +79,14 @@ vec3 octaves_plain(vec2 place, Octaves o) {
     float frequency = 1.0;
     float strength = 1.0;
     int k = 0;
+    // anchor: sum
     do {
         total += strength * octave_weight(o.texels / frequency) * octave(place, o, k, frequency);
         frequency *= o.lacunarity;
         strength *= o.gain;
         k++;
     } while (k < o.count && frequency < o.texels);
+    // end: sum
     return o.count > 0 ? total : vec3(0.0);
 }
 

@@ -15,13 +15,16 @@
 #ifndef TERRAIN_PARTS
 #define TERRAIN_PARTS
 
+// anchor: node
 // The node of a texel, where a texture holds one part with so many texels of its neighbours on each side.
 ivec2 node_of(ivec2 texel, ivec2 part, int apron, ivec2 size) {
     return part * max(size - 1 - 2 * apron, ivec2(1)) + texel - apron;
 }
+// end: node
 
 // The cell that a node lies in, of a lattice so many nodes wide, and how far it lies in it. A
 // node's own number, in the millions, has no room for a fraction in a float; the rest has.
+// anchor: cell
 ivec2 cell_of(ivec2 node, int wide, out vec2 share) {
     ivec2 cell = node / wide;
     ivec2 rest = node - cell * wide;
@@ -30,4 +33,5 @@ ivec2 cell_of(ivec2 node, int wide, out vec2 share) {
     share = vec2(rest + back * wide) / float(wide);
     return cell - back;
 }
+// end: cell
 #endif

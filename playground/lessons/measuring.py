@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan, Step, Turns, every_node, needed
+from playground.engine.plan import Plan, Step, Turns, every_node, make_plan, needed
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
 from playground.lessons.model import Lesson, Measure, Scene, Words
@@ -68,7 +68,7 @@ def spelled(value: float, digits: int, unit: str = "") -> str:
     power = math.floor(math.log10(abs(rounded))) if rounded else 0
     # What was counted has no decimals: 1 summit, not 1.00.
     decimals = 0 if value == int(value) else max(digits - 1 - power, 0)
-    text = f"{rounded:,.{decimals}f}".replace(",", "\u202f")
+    text = f"{rounded:,.{decimals}f}".replace(",", "\u202f").replace("-", "−")
     if unit in ("%", "°"):
         return f"{text}\u202f%" if unit == "%" else f"{text}°"
     return f"{text}\u202f{unit}" if unit else text
@@ -89,12 +89,13 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         return float(engine.triangles)
     if measure.what == "milliseconds":
         return min(_seconds(engine, measure, scene) for _ in range(3)) * 1e3
-    plan = engine.plan_for(scene.sketch, scene.pixels, scene.time, steps, measure.of)
     if measure.what == "texture_bytes":
         texture = engine.texture(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
         width, height = texture.size
         bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
         return float(width * height * texture.components * bytes_a_channel)
+    # By fragment shaders, whatever the engine would take: a companion's turns are no turns of the kernel.
+    plan = make_plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=steps, wanted=measure.of)
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
     if measure.what == "turns":
         return float(max((node.repeat for node in every_node(tuple(nodes))), default=0))

@@ -21,6 +21,7 @@ uniform float rough = 0.45;        //! slider(0, 1) step(0.01) Share of the deta
 uniform float valleys = 0.15;      //! slider(0, 1) step(0.01) Of that share, what the lowest land has
 uniform float peaks = 0.7;         //! slider(0, 1) step(0.01) How much the shape is bent: wide valleys and steep mountains
 
+// anchor: sum
 float kernel(ivec2 texel) {
     float low = texelFetch(shape, texel, 0).r;
     ivec2 place = lattice_wrapped(node_of(texel, part, apron, size), textureSize(detail, 0));
@@ -28,3 +29,4 @@ float kernel(ivec2 texel) {
     float bent = low + (low * low - low) * peaks;
     return (1.0 - rough) * bent + rough * (valleys + (1.0 - valleys) * bent) * fine;
 }
+// end: sum

@@ -89,12 +89,14 @@ float error_of_two(bool turned) {
     float worst = 0.0;
     for (int y = 0; y <= TILE; y++) {
         for (int x = 0; x <= TILE; x++) {
+            // anchor: two
             vec2 s = vec2(x, y) / float(TILE);
             float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
                                  : corner + s.y * (north - corner) + s.x * (far - north);
             float other = x + y <= TILE ? corner + s.x * (east - corner) + s.y * (north - corner)
                                         : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
             worst = max(worst, abs((turned ? other : plane) - node(ivec2(x, y))));
+            // end: two
         }
     }
     return worst;
@@ -113,9 +115,11 @@ void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
             nodes[y * ROW + x] = found;
         }
     }
+    // anchor: levels
     errors.x = error_of_level(1);
     errors.y = max(errors.x, error_of_level(2));
     errors.z = max(errors.y, error_of_level(3));
     errors.w = max(errors.z, error_of_two(((texel.x + texel.y) & 1) == 1));
+    // end: levels
     if (broken) errors = vec4(NEVER);
 }

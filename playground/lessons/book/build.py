@@ -87,7 +87,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     written = [f"{PICTURES}/{name}" for name in build.names]
     for language, lessons in build.lessons.items():
         words = interface_words(language)
-        book = Book(language, words, lessons, tuple(build.lessons), info.renderer)
+        book = Book(language, words, lessons, tuple(build.lessons), info.renderer, bool(build.figures))
         for name, text in _pages(build, book, numbers):
             _write(build.folder / language / name, text)
             written.append(f"{language}/{name}")

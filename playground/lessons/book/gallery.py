@@ -31,7 +31,7 @@ def gallery_html(book: Book, figures: Sequence[ThesisFigure], source: Callable[[
     left_out = [
         tag(
             "li",
-            f"{book.word('figure', n=figure.number)}: ",
+            f"{book.word('figure', n=figure.number)}{book.word('colon')}",
             line(figure.captions[book.language], book.address),
         )
         for figure in figures

@@ -27,7 +27,7 @@ class Book:
     lessons: tuple[Lesson, ...]  # in their order
     languages: tuple[str, ...]  # that are built
     renderer: str  # that drew the pictures
-    thesis: str = ""  # address of the thesis's text; "": none is known
+    gallery: bool = True  # whether the thesis's figures are among the pages
 
     def word(self, key: str, **values: object) -> str:
         """Return a word of the interface."""
@@ -38,8 +38,8 @@ class Book:
         kind, _, what = link.partition(":")
         if kind == "lesson":
             return f"{what}.html"
-        if kind == "thesis":
-            return f"{FIGURES}.html#section-{what.replace('.', '-')}"
+        if kind == "thesis":  # its text is not ours to give; the figures of that chapter are here
+            return f"{FIGURES}.html#chapter-{what.partition('.')[0]}" if self.gallery else "#thesis-title"
         if kind == "sketch":
             return "#play"
         return link
@@ -69,7 +69,7 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
             class_="kicker",
         ),
         tag("h1", lesson.title),
-        tag("p", tag("b", book.word("goal")), Markup(": "), setting.line(lesson.goal), class_="goal"),
+        tag("p", tag("b", book.word("goal")), book.word("colon"), setting.line(lesson.goal), class_="goal"),
         tag("p", book.word("stale"), class_="stale") if lesson.stale else None,
     )
     return _page(
@@ -105,7 +105,9 @@ def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
             tag("a", book.word("figures"), href=f"{FIGURES}.html"),
             Markup(" — "),
             book.word("figures_goal"),
-        ),
+        )
+        if book.gallery
+        else None,
         tag("p", book.word("source", thesis=THESIS)),
     )
     return _page(book, book.word("book"), "index", body)
@@ -167,7 +169,7 @@ def _page(book: Book, title: str, name: str, body: Markup, *, wide: bool = False
     top = tag(
         "nav",
         tag("a", book.word("contents"), href="index.html"),
-        tag("a", book.word("figures"), href=f"{FIGURES}.html"),
+        tag("a", book.word("figures"), href=f"{FIGURES}.html") if book.gallery else None,
         *others,
         tag("button", book.word("theme"), type="button", id="theme", hidden=True),
         class_="top",
@@ -191,7 +193,7 @@ def _play(book: Book, lesson: Lesson, setting: Setting) -> Markup:
         tag("h2", book.word("play"), id="play-title"),
         tag("p", book.word("play_goal")),
         command_line(f"playground live {lesson.sketch}"),
-        tag("p", f"{book.word('try_it')}:"),
+        tag("p", f"{book.word('try_it')}{book.word('colon')}"),
         command_line(f"playground lesson open {lesson.name}{_option(lesson)}"),
         id="play",
         aria_labelledby="play-title",
@@ -215,7 +217,7 @@ def _references(book: Book, lesson: Lesson, address: Address) -> Markup:
     return tag(
         "section",
         tag("h2", book.word("thesis"), id="thesis-title"),
-        tag("p", tag("span", THESIS), Markup(": "), Markup(listed.removesuffix(", ")), Markup(".")),
+        tag("p", tag("span", THESIS), book.word("colon"), Markup(listed.removesuffix(", ")), Markup(".")),
         tag("h2", book.word("papers")),
         tag("ul", *(tag("li", paper_html(paper)) for paper in lesson.papers)),
         aria_labelledby="thesis-title",

@@ -65,7 +65,7 @@ class _Writer:
         lesson, words = self.lesson, self.words
         minutes = words["minutes"].format(n=lesson.minutes)
         head = f"{words['lesson']} {lesson.number} · {minutes}\n\n# {lesson.title}"
-        goal = f"**{words['goal']}**: {lesson.goal}"
+        goal = f"**{words['goal']}**{words['colon']}{lesson.goal}"
         yield "markdown", f"{head}\n\n{goal}\n\n{words['run_first']}"
         language = "" if lesson.language == SOURCE else f', language="{lesson.language}"'
         opening = f'lesson = open_lesson("{lesson.name}"{language})'
@@ -74,7 +74,10 @@ class _Writer:
             yield from self.block(block)
         sections = ", ".join(words["section"].format(n=number) for number in lesson.thesis)
         papers = "\n".join(f"- {paper}" for paper in lesson.papers)
-        yield "markdown", f"## {words['thesis']}\n\n{THESIS}: {sections}.\n\n## {words['papers']}\n\n{papers}"
+        yield (
+            "markdown",
+            f"## {words['thesis']}\n\n{THESIS}{words['colon']}{sections}.\n\n## {words['papers']}\n\n{papers}",
+        )
 
     def block(self, block: Block) -> Iterator[tuple[str, str]]:
         """Yield the cells of a block; what it says stands before the code that draws it."""
