@@ -22,10 +22,22 @@ from playground.commands.arguments import (
     read_values,
     with_whole_paths,
 )
+from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
 
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
+]
+
+LessonOption = Annotated[
+    str,
+    typer.Option(
+        "--lesson",
+        metavar="NAME",
+        show_default=False,
+        help="Open a lesson beside it.",
+        autocompletion=complete_lesson,
+    ),
 ]
 
 HELP = help_text(
@@ -35,6 +47,7 @@ HELP = help_text(
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
+    "playground live --lesson diamond_square --lang fr",
     "playground live shader.frag",
 )
 
@@ -47,6 +60,8 @@ def live(
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
     fresh: FreshOption = False,
+    lesson: LessonOption = "",
+    lang: LanguageOption = "",
 ) -> None:
     """Open a sketch in a window."""
     from playground.gpu.doctor import where_to_show
@@ -60,7 +75,8 @@ def live(
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh)
+    given = read_driver(driver)
+    open_window(sketch, pixels, renderer, given, values, fresh=fresh, lesson=lesson, language=lang)
 
 
 def open_window(

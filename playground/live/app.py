@@ -22,6 +22,7 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.gpu.said import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
+from playground.lessons.library import SOURCE, lesson_file
 from playground.live.actions import Actions
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code, unsaved
@@ -80,9 +81,11 @@ def run(
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. With a ``time_limit`` [s] the window closes
     itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where there
-    is no such sketch, ``ParameterError`` for a value that does not fit; any other mistake in
-    the sketch is shown in the window.
+    is no such sketch, lesson or language, ``ParameterError`` for a value that does not fit; any
+    other mistake in the sketch is shown in the window.
     """
+    if lesson:
+        lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
     if software:
