@@ -20,6 +20,7 @@ import typer
 
 from playground._version import __version__
 from playground.commands import (
+    cache,
     check,
     doctor,
     export,
@@ -173,12 +174,12 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app)
+_GROUPS = (shots.app, lesson.app, cache.app)
 for _group in _GROUPS:
     app.add_typer(_group)
 _COMMANDS = (
     *(str(command.name) for command in app.registered_commands),
-    *(str(g.info.name) for g in _GROUPS),
+    *(str(group.info.name) for group in _GROUPS),
 )
 
 

@@ -28,6 +28,14 @@ from playground.errors import ContextError, PlaygroundError
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
 ]
+NoCacheOption = Annotated[
+    bool,
+    typer.Option(
+        "--no-cache",
+        metavar="",
+        help="Make all land anew, and keep none on disk (see playground cache).",
+    ),
+]
 
 LessonOption = Annotated[
     str,
@@ -48,6 +56,7 @@ HELP = help_text(
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
     "playground live --lesson diamond_square --lang fr",
+    "playground live my-land --no-cache",
     "playground live shader.frag",
 )
 
@@ -62,6 +71,7 @@ def live(
     fresh: FreshOption = False,
     lesson: LessonOption = "",
     lang: LanguageOption = "",
+    no_cache: NoCacheOption = False,
 ) -> None:
     """Open a sketch in a window."""
     from playground.gpu.doctor import where_to_show
@@ -75,8 +85,17 @@ def live(
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    given = read_driver(driver)
-    open_window(sketch, pixels, renderer, given, values, fresh=fresh, lesson=lesson, language=lang)
+    open_window(
+        sketch,
+        pixels,
+        renderer,
+        read_driver(driver),
+        values,
+        fresh=fresh,
+        lesson=lesson,
+        language=lang,
+        no_cache=no_cache,
+    )
 
 
 def open_window(
@@ -90,8 +109,12 @@ def open_window(
     lesson: str = "",
     language: str = "",
     beside: bool = False,
+    no_cache: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
+    from playground.engine.store import limit_in
+
+    keeps = 0 if no_cache else limit_in()
     from playground.live.app import run
 
     if values:
@@ -109,6 +132,7 @@ def open_window(
         lesson=lesson,
         language=language,
         beside=beside,
+        keeps=keeps,
     )
     if status:
         raise typer.Exit(status)

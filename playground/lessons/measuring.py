@@ -33,6 +33,7 @@ def measured(engine: Engine, measure: Measure) -> Number:
     if measure.over is not None:
         below = _value(engine, measure, measure.over)
         value = value / below if below else math.nan
+    value *= 100.0 if measure.unit == "%" else 1.0
     if not math.isfinite(value):
         raise SketchError(f"measure '{measure.name}': {value} is not a number to show", line=measure.line)
     return Number(value, spelled(value, measure.digits, measure.unit))
@@ -81,8 +82,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         values = engine.read(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
         first = values if values.ndim == 2 else values[..., 0]
         grid = _grid(engine.plan, first.shape)
-        share = 100.0 if measure.unit == "%" else 1.0
-        return share * found.function(first.astype(np.float64), grid, **dict(measure.arguments))
+        return found.function(first.astype(np.float64), grid, **dict(measure.arguments))
     if measure.what == "triangles":
         engine.cache.clear()
         engine.draw(scene.sketch, size=scene.pixels, time=scene.time, steps=steps)

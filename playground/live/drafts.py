@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from playground.engine.trial import TrySketch
+from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.begin import first_draft
 from playground.live.clock import Clock
@@ -43,6 +43,7 @@ class Drafts(ABC):
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
     ) -> None:
@@ -60,6 +61,7 @@ class Drafts(ABC):
             edits = edits.with_value(name, value)
         self._initial = edits  # set by hand in an earlier session; the values, on the command line
         self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
+        self._camera_in_file = camera_in_file
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
         self._techniques = KeptTechniques()
@@ -67,6 +69,7 @@ class Drafts(ABC):
         self._now = now
         self._started = 0.0  # when what is coming began to be read
         self._trial_seconds = 0.0
+        self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
         self._coming_notes: list[str] = []
         self._file_error: PlaygroundError | None = None  # of what is coming
         self._draw_error: PlaygroundError | None = None  # of what is shown
@@ -116,7 +119,9 @@ class Drafts(ABC):
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             old = None if self._another else self.shown or self.coming
             draft, notes = (
-                reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
+                reload_draft(old, loaded)
+                if old
+                else first_draft(loaded, self._initial, self._in_file, self._camera_in_file)
             )
         except Exception as error:
             self._drop_coming()
@@ -136,17 +141,19 @@ class Drafts(ABC):
         keep: bool = False,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         texts: Mapping[str, str] | None = None,
     ) -> None:
         """Open another sketch; the picture stays until that one has proved good.
 
-        ``keep``: it is a copy of this one, and what is set by hand goes on. ``edits``, ``in_file``
-        and ``texts``: what is set by hand in the other, what its files said then, and what stands in
-        for some of them.
+        ``keep``: it is a copy of this one, and what is set by hand goes on. ``edits``: what is set
+        by hand in the other; ``in_file`` and ``camera_in_file``: what its files said then; ``texts``:
+        what stands in for some of them.
         """
         self.path, self.texts = find(path), texts or {}
         if not keep:
             self._initial, self._in_file, self._another = edits or Edits(), dict(in_file or {}), True
+            self._camera_in_file = camera_in_file
             self._forget_view()
         self.reload()
 
@@ -172,8 +179,28 @@ class Drafts(ABC):
         if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
             return
-        self.stage = Stage.TRIAL
-        self._trial.submit(TrySketch(draft.sketch, time=self.clock.time, drivers=(self._driver,)))
+        self.stage, self._aside = Stage.TRIAL, None
+        self._submit(self._trial, draft.sketch)
+
+    def tried(self, sketch: Sketch) -> TrialReport | None:
+        """Return how the trial of a sketch ended that is seen beside this one; None while it is not known.
+
+        What is coming goes first.
+        """
+        if self._trial is None:
+            return TrialReport(True)
+        if self.stage is Stage.TRIAL:
+            return None
+        if self._aside is not sketch:
+            self._aside = sketch
+            self._submit(self._trial, sketch)
+        report = self._trial.poll()
+        if report is not None:
+            self._aside = None
+        return report
+
+    def _submit(self, trial: Tester, sketch: Sketch) -> None:
+        trial.submit(TrySketch(sketch, time=self.clock.time, drivers=(self._driver,)))
 
     @abstractmethod
     def _draws_anew(self, sketch: Sketch) -> bool:

@@ -18,6 +18,7 @@ from playground.sketch.model import Parameter, Preset, Sketch
 from playground.sketch.values import spell, write
 
 _OWN_VIEW = "the sketch's own view"
+_CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
 
@@ -39,6 +40,19 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
         imgui.set_item_tooltip("What there is to know of terrain, step by step (F2)")
     if sketch is None:
         return
+    _buttons(memory, actions, look)
+    if sketch.presets:
+        _presets(sketch, memory, actions)
+    _shown(actions)
+
+
+def _buttons(memory: Memory, actions: Actions, look: Theme) -> None:
+    """Draw two lines of buttons, closer than elsewhere: so both fit."""
+    style = imgui.get_style()
+    padding, spacing = style.frame_padding, style.item_spacing
+    closer = _CLOSER * look.scale
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(padding.x - closer, padding.y))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(spacing.x - closer, spacing.y))
     _undo(memory, actions, look)
     imgui.same_line()
     _chance(memory, actions, look)
@@ -59,9 +73,11 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("Capture"):
         actions.capture.shown = True
     imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
-    if sketch.presets:
-        _presets(sketch, memory, actions)
-    _shown(actions)
+    imgui.same_line()
+    if imgui.button("Graph"):
+        actions.see.graph.toggle()
+    imgui.set_item_tooltip("The passes as a graph, or no longer (G)")
+    imgui.pop_style_var(2)
 
 
 def draw_search(memory: Memory, look: Theme) -> None:

@@ -20,12 +20,12 @@ from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
 from playground.live.hasty import hastily
-from playground.live.maps import fitted, refs_of
+from playground.live.maps import fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
-from playground.sketch.model import Sketch, Value, kernels_of
+from playground.sketch.model import Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:
     import moderngl
@@ -52,12 +52,20 @@ class Session(Drafts):
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         super().__init__(
-            path, driver=engine.driver, values=values, edits=edits, in_file=in_file, trial=trial, now=now
+            path,
+            driver=engine.driver,
+            values=values,
+            edits=edits,
+            in_file=in_file,
+            camera_in_file=camera_in_file,
+            trial=trial,
+            now=now,
         )
         self.engine = engine
         self.map: Map | None = None  # what is shown instead of the sketch's own view
@@ -94,6 +102,10 @@ class Session(Drafts):
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
         return refs_of(self.plan) if self.plan is not None else []
+
+    def can_show(self, ref: str) -> bool:
+        """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
+        return ref in self.refs or (self.sketch is not None and in_view(self.sketch, ref))
 
     @property
     def repeats(self) -> dict[str, int]:
@@ -277,7 +289,7 @@ class Session(Drafts):
         self._drawn = self._wanted(size)
         sketch = self.shown.sketch
         try:
-            if self.map is not None and self.map.ref not in self.refs:
+            if self.map is not None and not self.can_show(self.map.ref):
                 self.notes.append(f"{self.map.ref} is gone, so the sketch's own view is shown")
                 self.map = None
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)

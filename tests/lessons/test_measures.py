@@ -136,6 +136,8 @@ def test_a_quotient_of_two_lands(make_lesson, engine):
     over = f'{level}\nover = {{ set = {{ "height.smoothing" = 0.6 }} }}'
     block = make_lesson(('what    = "spread"', over)).named["spread"]
     assert measured(engine, block).value == pytest.approx(0.5, rel=1e-4)
+    hundredths = make_lesson(('what    = "spread"', f'{over}\nunit = "%"')).named["spread"]
+    assert measured(engine, hundredths).value == pytest.approx(50.0, rel=1e-4)
 
 
 def test_numbers_of_the_engine_s_own(make_lesson, engine):

@@ -252,7 +252,7 @@ class Desk(Bare):
         for name in ("small_button", "radio_button"):
             self._watch(imgui, name)
         self.rememberer = Rememberer(self.session, memory_of(self.session.path))
-        self.lessons = Lessons(self.actions, self.rememberer, lambda: size)
+        self.lessons = Lessons(self.actions, self.rememberer, lambda: self.rememberer.look(size))
         self.actions.panel_shown = True
 
     @property

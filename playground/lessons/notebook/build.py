@@ -74,10 +74,8 @@ class _Writer:
             yield from self.block(block)
         sections = ", ".join(words["section"].format(n=number) for number in lesson.thesis)
         papers = "\n".join(f"- {paper}" for paper in lesson.papers)
-        yield (
-            "markdown",
-            f"## {words['thesis']}\n\n{THESIS}{words['colon']}{sections}.\n\n## {words['papers']}\n\n{papers}",
-        )
+        thesis = f"## {words['thesis']}\n\n{THESIS}{words['colon']}{sections}."
+        yield "markdown", f"{thesis}\n\n## {words['papers']}\n\n{papers}"
 
     def block(self, block: Block) -> Iterator[tuple[str, str]]:
         """Yield the cells of a block; what it says stands before the code that draws it."""

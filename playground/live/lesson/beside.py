@@ -16,14 +16,14 @@ Size = tuple[int, int]
 
 
 class Lessons:
-    """One window's; ``size`` gives the window's, in the screen's units."""
+    """One window's; ``remember`` takes in what is shown, for the next start."""
 
-    def __init__(self, actions: Actions, rememberer: Rememberer, size: Callable[[], Size]) -> None:
+    def __init__(self, actions: Actions, rememberer: Rememberer, remember: Callable[[], None]) -> None:
         file = progress_file()
         self.reading = Reading(actions, read_progress(file), file, self._keep_own, self._play)
         self._panel = LessonPanel()
         self._rememberer = rememberer
-        self._size = size
+        self._remember = remember
         actions.toggle_lessons, actions.turn_page = self.reading.toggle, self.reading.turn_page
 
     def begin(self, name: str, language: str, pixels: Size, density: float, *, beside: bool) -> None:
@@ -48,7 +48,7 @@ class Lessons:
     def turn(self, *, idle: bool) -> None:
         """Take in what a turn has brought; ``idle``: there is time to compute."""
         if self.reading.stage.own is None:  # what a lesson sets is not the reader's
-            self._rememberer.look(self._size())
+            self._remember()
         self.reading.turn(idle=idle)
 
     def release(self) -> None:
@@ -57,7 +57,7 @@ class Lessons:
 
     def _keep_own(self) -> None:
         """Remember what is shown, before a lesson shows something else."""
-        self._rememberer.look(self._size())
+        self._remember()
         self._rememberer.write()
 
     def _play(self, sketch: Path) -> None:
