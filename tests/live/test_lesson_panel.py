@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from imgui_bundle import ImVec2, imgui
 
+from playground import cli
 from playground.engine.engine import Engine
 from playground.lessons.scenes import Sketches
 from playground.live.lesson.ways import follow
@@ -195,3 +196,23 @@ def test_every_page_is_drawn_in_both_languages_at_every_size(desk):
 def test_lessons_are_read_only_when_they_are_opened(desk, monkeypatch):
     monkeypatch.setattr(Sketches, "load", lambda *_: pytest.fail("a sketch is loaded"))
     assert [one.title for one in desk.reading.summaries] == ["Halving", "After it"]
+
+
+def test_the_command_without_arguments_has_lessons_beside_its_window(monkeypatch):
+    given: list[dict[str, object]] = []
+    monkeypatch.setattr("playground.gpu.doctor.where_to_show", lambda *_: ":0")
+    monkeypatch.setattr(cli.live, "open_window", lambda *_, **rest: given.append(rest))
+    assert cli.main([]) == 0
+    assert given == [{"beside": True}]
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_lessons_beside_a_sketch_open_where_they_were_left_unless_they_were_closed(desk, shown):
+    desk.reading.progress.lesson, desk.reading.progress.shown = "after", shown
+    assert desk.lessons is not None
+    desk.lessons.begin("", "", (1280, 720), 1.0, beside=True)
+    assert desk.reading.stage.own is None, "the sketch stays in view"
+    assert (desk.reading.lesson.name if desk.reading.lesson else "") == ("after" if shown else "")
+    desk.lessons.begin("halving", "fr", (1280, 720), 1.0, beside=False)
+    desk.turn(3)
+    assert desk.reading.lesson.title == "Moitiés" and desk.session.path == find("white_noise")

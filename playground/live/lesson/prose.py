@@ -23,6 +23,8 @@ _CELL = 12.0
 _PAD = 3.0  # around code in a line
 _HEADINGS = {1: 6.0, 2: 4.0, 3: 2.0}  # how much larger
 _KEPT = 400
+INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
+"""What is written for what the text's font has not."""
 
 
 @dataclass(frozen=True)
@@ -276,7 +278,7 @@ def _font(run: Run, size: float, look: Theme) -> tuple[imgui.ImFont, float]:
 
 
 def _shown(run: Run) -> str:
-    return run.text.replace("\u202f", "\u00a0")
+    return run.text.translate(INSTEAD)
 
 
 def _shared(wanted: list[float], room: float) -> list[float]:

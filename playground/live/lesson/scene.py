@@ -30,10 +30,12 @@ def edits_of(scene: Scene, file: Sketch, room: tuple[int, int] | None = None) ->
     sees more above and below, so that nothing at the sides is lost.
     """
     values: dict[str, Value] = {}
+    parts = [_preset(file, scene.preset), dict(scene.values)]
     if scene.shot:
         shot = file.shot(scene.shot)
-        values |= _preset(file, shot.preset) | dict(shot.values)
-    values |= _preset(file, scene.preset) | dict(scene.values)
+        parts = [_preset(file, shot.preset), dict(shot.values), *parts]
+    for part in parts:  # what is set later comes later: of two names of one parameter, the last counts
+        values = {path: value for path, value in values.items() if path not in part} | part
     seen = scene.sketch
     camera = seen.camera
     if room is not None and is_seen_from_camera(seen) and not seen.keyframes:
