@@ -132,7 +132,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {})
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {}, beside=True)
         return
     note("no display here, so a picture is made instead; playground --help says what else there is")
     render.make_picture(render.Picture(), renderer)

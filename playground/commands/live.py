@@ -22,6 +22,7 @@ from playground.commands.arguments import (
     read_values,
     with_whole_paths,
 )
+from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
 
 FreshOption = Annotated[
@@ -36,6 +37,17 @@ NoCacheOption = Annotated[
     ),
 ]
 
+LessonOption = Annotated[
+    str,
+    typer.Option(
+        "--lesson",
+        metavar="NAME",
+        show_default=False,
+        help="Open a lesson beside it.",
+        autocompletion=complete_lesson,
+    ),
+]
+
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
     " What was set by hand, the camera and the time are there again the next time.",
@@ -43,6 +55,7 @@ HELP = help_text(
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
+    "playground live --lesson diamond_square --lang fr",
     "playground live my-land --no-cache",
     "playground live shader.frag",
 )
@@ -56,6 +69,8 @@ def live(
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
     fresh: FreshOption = False,
+    lesson: LessonOption = "",
+    lang: LanguageOption = "",
     no_cache: NoCacheOption = False,
 ) -> None:
     """Open a sketch in a window."""
@@ -70,7 +85,17 @@ def live(
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh, no_cache=no_cache)
+    open_window(
+        sketch,
+        pixels,
+        renderer,
+        read_driver(driver),
+        values,
+        fresh=fresh,
+        lesson=lesson,
+        language=lang,
+        no_cache=no_cache,
+    )
 
 
 def open_window(
@@ -81,6 +106,9 @@ def open_window(
     values: dict[str, object],
     *,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
     no_cache: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
@@ -101,6 +129,9 @@ def open_window(
         driver=driver,
         values=values,
         fresh=fresh,
+        lesson=lesson,
+        language=language,
+        beside=beside,
         keeps=keeps,
     )
     if status:

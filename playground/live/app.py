@@ -22,6 +22,7 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.gpu.said import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
+from playground.lessons.library import SOURCE, lesson_file
 from playground.live.actions import Actions
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code, unsaved
@@ -33,6 +34,7 @@ from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
+from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
@@ -68,18 +70,25 @@ def run(
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
     keeps: int = 0,
     time_limit: float | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
-    by hand the last time is set again, unless ``fresh``. Expensive land is kept on disk, in
-    at most ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window
-    closes itself. Raises ``ContextError`` where no window can be opened, ``SketchError`` where
-    there is no such sketch, ``ParameterError`` for a value that does not fit; any other
+    by hand the last time is set again, unless ``fresh``. ``lesson`` opens one by name, in a
+    ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
+    unless the reader has closed the lessons. Expensive land is kept on disk, in at most
+    ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
+    sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
     """
+    if lesson:
+        lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
     if software:
@@ -108,6 +117,8 @@ def run(
         live = Live(window, session, watcher, rememberer, Storing(session, keeps))
         if found.at is not None:
             live.place.stand_at(found.at)
+        density = window.scale * window.density
+        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -169,13 +180,17 @@ class Live:
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
         self.finite = FiniteWatch()
+        self.lessons = Lessons(self.actions, rememberer, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
         while self._stays():
-            patience = min(self._patience(), self.actions.see.patience(self.actions.now()))
+            now = self.actions.now()
+            patience = min(
+                self._patience(), self.actions.see.patience(now), self.lessons.reading.patience(now)
+            )
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -202,6 +217,7 @@ class Live:
     def release(self) -> None:
         """Give back all that was made in the window's context."""
         self.actions.see.release()
+        self.lessons.release()
         self.painter.release()
         self.session.release()
         self.session.engine.release()
@@ -257,7 +273,8 @@ class Live:
         take_dropped(actions, self.place.dropped())
         window.begin()
         actions.see.begin()
-        left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
+        left = self.lessons.draw(window.theme)
+        left += self.panel.draw(actions, window.theme, left) if actions.panel_shown else 0.0
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         draw_code(actions, window.theme, area)
@@ -268,6 +285,7 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
+        self.lessons.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
@@ -298,6 +316,10 @@ class Live:
         if not session.testing and self._settling == 0:
             self.warnings.look()
         self.status.write(actions, self.finite.found)
+        rests = self._settling == 0 and not session.testing and not imgui.is_mouse_down(0)
+        self.lessons.turn(idle=rests)
+
+    def _remember(self) -> None:
         stands = self.place.geometry()
         self.rememberer.look((stands.width, stands.height), (stands.x, stands.y))
 
@@ -313,6 +335,6 @@ class Live:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None:
+            if self._reloads is not None and self.lessons.reading.stage.own is None:
                 self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

@@ -28,8 +28,16 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     with look.font(look.bold, theme.TEXT_SIZE + 2):
         imgui.text_wrapped((sketch.title.strip() if sketch else "") or session.path.stem)
     with look.font(look.text, theme.SMALL):
-        imgui.text_disabled(fitting(shown(session.path), imgui.get_content_region_avail().x))
+        style = imgui.get_style()
+        room = imgui.get_content_region_avail().x
+        button = imgui.calc_text_size("Lessons").x + 2 * style.frame_padding.x
+        start = imgui.get_cursor_pos_x()
+        imgui.text_disabled(fitting(shown(session.path), room - button - style.item_spacing.x))
         imgui.set_item_tooltip(str(session.path))
+        imgui.same_line(start + room - button)
+        if imgui.small_button("Lessons"):
+            actions.toggle_lessons()
+        imgui.set_item_tooltip("What there is to know of terrain, step by step (F2)")
     if sketch is None:
         return
     _buttons(memory, actions, look)

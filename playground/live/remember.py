@@ -52,21 +52,27 @@ class Rememberer:
         self._seen_at = 0.0
         self._written_at = now()
         self._is_told = False
+        self._recalled = False  # what is shown was set in an earlier session
         self._in_file: tuple[Draft | None, tuple[tuple[str, Said], ...]] = (None, ())
-        found = found or Remembered()
-        self._compared = found.compared  # A of the last session, until it is there again
-        self._recalled = not found.is_nothing
-        clock = session.clock
-        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
-        if found.loop is not None:
-            clock.go_round(*found.loop)
-        session.steps.update(found.steps)
-        session.map = Map(found.map, found.map_values) if found.map else None
+        self._compared = Remembered().compared
+        self._recall(found or Remembered())
 
     @property
     def waits(self) -> bool:
         """Whether something is still to be written."""
         return self._seen != self._written or self._compared is not None
+
+    def open(self, sketch: Path) -> None:
+        """Open another sketch in the session, with what is remembered of it."""
+        self.close()
+        self._memory = Memory(sketch, self._memory.path.parent)
+        found, complaint = self._memory.read()
+        session = self.session
+        in_file = dict(found.in_file)
+        session.open(sketch, edits=found.edits, in_file=in_file, camera_in_file=found.camera_in_file)
+        session.notes.extend(filter(None, [complaint]))
+        self._path, self._seen, self._written, self._is_told = session.path, None, None, False
+        self._recall(found)
 
     def look(self, window: tuple[int, int], at: tuple[int, int] | None = None) -> None:
         """Take in what the session shows now, and write it if it is time to.
@@ -79,7 +85,7 @@ class Rememberer:
             self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
             self._seen = self._written = None
             self._is_told, self._compared = False, None
-        if session.shown is None:
+        if session.shown is None or session.leaves:
             if self._recalled and isinstance(session.error, TrialError):
                 session.notes.append("playground live --fresh opens it without what was set by hand")
                 self._recalled = False
@@ -115,6 +121,16 @@ class Rememberer:
         """Write what is still to be written, and let other windows remember."""
         self.write()
         self._memory.close()
+
+    def _recall(self, found: Remembered) -> None:
+        """Have the session show what is remembered beside what was set by hand."""
+        session, clock = self.session, self.session.clock
+        self._compared = found.compared  # A of the last session, until it is there again
+        self._recalled = not found.is_nothing
+        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
+        if found.loop is not None:
+            clock.go_round(*found.loop)
+        session.view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:
         session = self.session

@@ -36,6 +36,11 @@ REST = 0.2  # [s] without a change after which a hasty picture is drawn again in
 _SEEN_FROM = ("clip_from_world", "world_from_clip", "eye")
 
 
+def is_seen_from_camera(sketch: Sketch) -> bool:
+    """Say whether the camera moves anything in a sketch's picture."""
+    return any(kernel.reads(name) for _, kernel in kernels_of(sketch.graph) for name in _SEEN_FROM)
+
+
 class Session(Drafts):
     """One sketch, open."""
 
@@ -65,6 +70,7 @@ class Session(Drafts):
         self.engine = engine
         self.map: Map | None = None  # what is shown instead of the sketch's own view
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
+        self._next_view: tuple[dict[str, int], Map | None] | None = None  # of a sketch that was opened
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
@@ -90,7 +96,7 @@ class Session(Drafts):
         """Whether the picture is seen from the camera."""
         if self.sketch is None or self.map is not None:
             return False
-        return any(kernel.reads(name) for _, kernel in kernels_of(self.sketch.graph) for name in _SEEN_FROM)
+        return is_seen_from_camera(self.sketch)
 
     @property
     def refs(self) -> list[str]:
@@ -140,6 +146,19 @@ class Session(Drafts):
         self._revision += 1
         self.map = Map(ref) if ref else None
         self.fit_map()
+
+    def view(self, steps: Mapping[str, int], shown: Map | None) -> None:
+        """Stop repeats after so many turns, and show a map or, with None, the sketch's own view.
+
+        Where another sketch was opened, that one is seen so, as soon as it is drawn.
+        """
+        if self.leaves:
+            self._next_view = dict(steps), shown
+            return
+        self.steps.clear()
+        self.steps.update(steps)
+        self.map = shown
+        self._revision += 1
 
     def set_map(self, name: str, value: Value) -> None:
         """Set a parameter of the map."""
@@ -238,12 +257,15 @@ class Session(Drafts):
             return True
 
     def _forget_view(self) -> None:
-        self.map = None
+        self.map = self._next_view = None
         self.steps.clear()
         self.clock.rewind()
 
     def _draw_coming(self, size: tuple[int, int]) -> None:
         assert self.coming is not None
+        if self._next_view is not None:
+            (steps, self.map), self._next_view = self._next_view, None
+            self.steps.update(steps)
         try:
             self._draw(self.coming.sketch, size)
             self.engine.ctx.finish()

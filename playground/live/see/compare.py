@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -96,6 +96,12 @@ class Compare:
     def keep(self) -> None:
         """Take what is shown for A."""
         self._kept, self._drawn, self._told = self._now(), None, False
+
+    def keep_other(self, draft: Draft, steps: Mapping[str, int]) -> None:
+        """Take another state of the sketch that is shown for A; it is drawn as B is seen."""
+        now = self._now()
+        if now is not None:
+            self._kept, self._drawn, self._told = replace(now, draft=draft, steps=dict(steps)), None, False
 
     def end(self) -> None:
         """Let A go."""
@@ -222,7 +228,7 @@ class Compare:
         try:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
-            with _as_before(engine, plan):
+            with as_before(engine, plan):
                 texture = engine.draw(chosen, size=plan.frame_size, time=plan.time, steps=kept.steps)
                 self._picture.keep(texture)
         except Exception as error:
@@ -241,7 +247,7 @@ class Compare:
 
 
 @contextmanager
-def _as_before(engine: Engine, plan: Plan) -> Iterator[None]:
+def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     """Draw something else, and have the engine tell of the picture before it all the same."""
     ran, texels, times, triangles = engine.ran, engine.texels, engine.times, engine.triangles
     runs, profiling = engine.runs.copy(), engine.profiling
