@@ -74,17 +74,10 @@ def live(
     no_cache: NoCacheOption = False,
 ) -> None:
     """Open a sketch in a window."""
-    from playground.gpu.doctor import where_to_show
-
     renderer: Renderer = ctx.obj.or_else(software)
     pixels = read_pixels(size)
     values = read_values(settings)
-    if renderer.device is not None:
-        raise ContextError("--device is for pictures without a window; a window opens where its display is")
-    if not where_to_show(os.environ, sys.platform):
-        from playground.gpu.mend import mend
-
-        raise ContextError(mend("unable to open display", sys.platform, os.environ))
+    check_display(renderer)
     open_window(
         sketch,
         pixels,
@@ -96,6 +89,18 @@ def live(
         language=lang,
         no_cache=no_cache,
     )
+
+
+def check_display(renderer: Renderer) -> None:
+    """Raise ``ContextError`` where no window can be opened, or not by what is asked for."""
+    from playground.gpu.doctor import where_to_show
+
+    if renderer.device is not None:
+        raise ContextError("--device is for pictures without a window; a window opens where its display is")
+    if not where_to_show(os.environ, sys.platform):
+        from playground.gpu.mend import mend
+
+        raise ContextError(mend("unable to open display", sys.platform, os.environ))
 
 
 def open_window(
