@@ -159,6 +159,20 @@ def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, e
     assert "en/small.html" in names and "pictures/small-smooth-1.webp" in names
 
 
+def test_a_build_that_was_stopped_begins_again(tmp_path, lesson, engine):
+    class Stop(Exception):
+        pass
+
+    def stop():
+        raise Stop
+
+    folder = tmp_path / "stopped"
+    with pytest.raises(Stop):
+        write_book(prepare(folder, {"en": [lesson]}, gallery=False), engine, stop)
+    write_book(prepare(folder, {"en": [lesson]}, gallery=False), engine)
+    assert (folder / "en/small.html").is_file()
+
+
 def test_a_manifest_that_names_files_outside_removes_none(book, lesson, engine, tmp_path):
     victim = tmp_path / "victim.txt"
     victim.write_text("keep", encoding="utf-8")
