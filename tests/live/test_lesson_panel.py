@@ -115,7 +115,7 @@ def test_a_fault_is_mended_by_typing_in_the_copy(desk):
     desk.turn(3)
     (editing,) = desk.actions.editing
     lines = editing.text.base.split("\n")
-    start = next(n for n, line in enumerate(lines) if " kernel(" in line)
+    start = next(n for n, line in enumerate(lines) if line.startswith("float kernel("))
     wrong = next(n for n, line in enumerate(lines) if ": 9.0)" in line)
     for _ in range(wrong - start):
         desk.key(imgui.Key.down_arrow)

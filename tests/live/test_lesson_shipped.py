@@ -14,7 +14,7 @@ from playground.lessons.model import Break, Compare, Exercise, Figure, Slider, S
 from playground.lessons.read import read_lesson
 from playground.live.edits import Draft
 from playground.live.lesson.formulas import set_formula
-from playground.live.lesson.prose import INSTEAD
+from playground.live.lesson.marks import INSTEAD
 from playground.live.lesson.scene import edits_of, map_of, steps_of
 from playground.sketch.load import load
 

@@ -6,6 +6,7 @@ there again when they are opened the next time.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -26,7 +27,7 @@ from playground.sketch.model import kernels_of
 from playground.sketch.reread import with_texts
 from playground.sketch.source import read_text
 
-_BEGINS = " kernel("
+_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
 _SAME = 0.25
 """Mean difference of two pictures, of 255, below which they are the same."""
 
@@ -73,7 +74,9 @@ class Faults:
         except PlaygroundError as error:
             self.actions.say(str(error))
             return
-        self._open(block, path, text, line_of(text, _BEGINS))  # the fault itself is to be found
+        begins = _KERNEL.search(text)
+        line = line_of(text, begins[0]) if begins else 1  # the fault itself is to be found
+        self._open(block, path, text, line)
         self._on, self.state[block.name] = block, BROKEN
         self.stage.show(block.scene, (block.name, 1), self.texts)
         self._to_check = text != faulty(block)

@@ -27,6 +27,9 @@ class Run:
 
 Runs = tuple[Run, ...]
 
+INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
+"""What is written for what the text's font has not."""
+
 
 @dataclass(frozen=True)
 class Part:
@@ -48,13 +51,18 @@ def parts_of(words: str) -> tuple[Part, ...]:
     return tuple(_parts(parser().parse(words)))
 
 
+def written(text: str) -> str:
+    """Return a text as the font can show it."""
+    return text.translate(INSTEAD)
+
+
 def plain(words: str) -> str:
     """Return a text without its marks, on one line."""
     texts = []
     for part in parts_of(words):
         runs = [*part.runs, *(run for row in part.rows for cell in row for run in cell)]
         texts.append("".join(run.text or " " for run in runs))
-    return " ".join(" ".join(texts).split())
+    return written(" ".join(" ".join(texts).split()))
 
 
 def _parts(tokens: list[Token]) -> Iterator[Part]:

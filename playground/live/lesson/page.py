@@ -11,6 +11,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.lessons.model import Lesson, Words
 from playground.live import theme
 from playground.live.actions import Actions
+from playground.live.lesson.marks import written
 from playground.live.lesson.prose import Prose
 from playground.live.lesson.reading import Reading
 from playground.live.lesson.words import words_in
@@ -74,12 +75,12 @@ class Page:
         imgui.begin_disabled(not enabled)
         if on:
             imgui.push_style_color(imgui.Col_.button, theme.colour(theme.ACCENT, 0.45))
-        pressed = imgui.button(text)
+        pressed = imgui.button(written(text))
         if on:
             imgui.pop_style_color()
         imgui.end_disabled()
         if note:
-            imgui.set_item_tooltip(note)
+            imgui.set_item_tooltip(written(note))
         return bool(pressed)
 
     def beside(self, text: str) -> None:

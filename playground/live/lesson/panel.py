@@ -26,6 +26,7 @@ from playground.live import theme
 from playground.live.lesson.asking import draw_exercise, draw_measure, draw_prose, draw_question
 from playground.live.lesson.coding import draw_break, draw_code_block
 from playground.live.lesson.formulas import Formulas
+from playground.live.lesson.marks import plain, written
 from playground.live.lesson.page import Page
 from playground.live.lesson.pictures import draw_compare, draw_figure, draw_slider, draw_steps
 from playground.live.lesson.progress import NARROWEST, WIDEST
@@ -125,10 +126,12 @@ def _head(page: Page) -> None:
         for one in reading.summaries:
             done = one.name in reading.progress.done  # read to its end: in green
             imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if done else theme.INK))
-            if imgui.selectable(f"{one.number}  {one.title}##{one.name}", one.name == lesson.name)[0]:
+            if imgui.selectable(f"{one.number}  {written(one.title)}##{one.name}", one.name == lesson.name)[
+                0
+            ]:
                 reading.open(one.name)
             imgui.pop_style_color()
-            imgui.set_item_tooltip(f"{one.goal}\n{page.say('minutes', one.minutes)}")
+            imgui.set_item_tooltip(f"{plain(one.goal)}\n{page.say('minutes', one.minutes)}")
         imgui.end_combo()
     for code in LANGUAGES:
         imgui.same_line(0, 4 * look.scale)
@@ -138,7 +141,7 @@ def _head(page: Page) -> None:
     if page.button("×##close", page.say("close")):
         reading.toggle()
     with look.font(look.bold, theme.TEXT_SIZE + 5):
-        imgui.text_wrapped(lesson.title)
+        imgui.text_wrapped(written(lesson.title))
     with look.font(look.text, theme.SMALL):
         parts = [page.say("minutes", lesson.minutes), page.say("step", reading.index + 1, _count(page))]
         imgui.text_disabled("   ".join(parts))
@@ -163,7 +166,7 @@ def _pages(page: Page) -> None:
             low, high_corner, theme.packed(rgb, 1.0 if index == at or over else 0.5), high / 2
         )
         if over:
-            imgui.set_tooltip(section.title or page.lesson.title)
+            imgui.set_tooltip(plain(section.title or page.lesson.title))
             if imgui.is_mouse_clicked(0):
                 page.reading.go(index)
     imgui.dummy(ImVec2(1, high + 2 * scale))

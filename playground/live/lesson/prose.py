@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.live import theme
 from playground.live.lesson.formulas import Formulas
 from playground.live.lesson.lines import Extent, Line, Placed, broken
-from playground.live.lesson.marks import Part, Run, Runs, parts_of
+from playground.live.lesson.marks import Part, Run, Runs, parts_of, written
 from playground.live.theme import Theme
 
 _GAP, _CLOSE = 9.0, 4.0  # between parts, in units of scale 1
@@ -23,8 +23,6 @@ _CELL = 12.0
 _PAD = 3.0  # around code in a line
 _HEADINGS = {1: 6.0, 2: 4.0, 3: 2.0}  # how much larger
 _KEPT = 400
-INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
-"""What is written for what the text's font has not."""
 
 
 @dataclass(frozen=True)
@@ -278,7 +276,7 @@ def _font(run: Run, size: float, look: Theme) -> tuple[imgui.ImFont, float]:
 
 
 def _shown(run: Run) -> str:
-    return run.text.translate(INSTEAD)
+    return written(run.text)
 
 
 def _shared(wanted: list[float], room: float) -> list[float]:
