@@ -76,7 +76,11 @@ def test_commands_exist():
     shown = set(
         re.findall(r"(?:playground|\./play) ([a-z]+)", " ".join(path.read_text("utf-8") for path in READMES))
     )
-    known = {command.name for command in app.registered_commands} | {"shots", "cache", "lesson"} | {"test", "live"}
+    known = (
+        {command.name for command in app.registered_commands}
+        | {"shots", "cache", "lesson"}
+        | {"test", "live"}
+    )
     assert shown and shown <= known
 
 

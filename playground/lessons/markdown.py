@@ -38,7 +38,9 @@ class Piece:
 def parser() -> MarkdownIt:
     """Return the parser of lessons: CommonMark without HTML, with tables and formulas between dollars."""
     found = MarkdownIt("commonmark", {"html": False}).enable("table")
-    return found.use(dollarmath_plugin, allow_space=False, allow_digits=False, double_inline=False)
+    return found.use(
+        dollarmath_plugin, allow_space=False, allow_digits=False, allow_labels=False, double_inline=False
+    )
 
 
 def pieces(text: str) -> list[Piece]:
@@ -69,6 +71,13 @@ def links(words: str) -> Iterator[str]:
     for token in walk(parser().parse(words)):
         if token.type == "link_open":
             yield str(token.attrs["href"])
+
+
+def images(words: str) -> Iterator[str]:
+    """Yield the addresses of a text's images."""
+    for token in walk(parser().parse(words)):
+        if token.type == "image":
+            yield str(token.attrs["src"])
 
 
 def walk(tokens: list[Token]) -> Iterator[Token]:

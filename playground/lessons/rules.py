@@ -12,7 +12,7 @@ from playground.engine.frame import Frame
 from playground.errors import PlaygroundError
 from playground.lessons.excerpt import excerpt
 from playground.lessons.library import lesson_files
-from playground.lessons.markdown import formulas, links
+from playground.lessons.markdown import formulas, images, links
 from playground.lessons.measuring import measured, named_in
 from playground.lessons.model import (
     Block,
@@ -133,11 +133,12 @@ def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
     measures = {measure.name for measure in lesson.measures}
     for words in lesson.words():
         for latex in formulas(words):
-            if "\\" in convert(latex):  # a command that it does not know stays as it is
-                yield 1, f"formula ${latex}$ holds a command that cannot be shown"
+            yield from _formula(latex)
         for name in named_in(words):
             if name not in measures:
                 yield 1, f"{{{{{name}}}}}: there is no measure of that name"
+        for address in images(words):
+            yield 1, f"an image of '{address}': pictures are blocks of their own"
         for address in links(words):
             kind, _, what = address.partition(":")
             if kind == "lesson" and what not in lesson_files():
@@ -148,3 +149,14 @@ def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
                 yield 1, f"a link to section '{what}' of the thesis, which is no number"
             elif kind not in ("lesson", "sketch", "thesis", "https"):
                 yield 1, f"a link to '{address}': expected lesson:, sketch:, thesis: or https:"
+
+
+def _formula(latex: str) -> Iterator[tuple[int, str]]:
+    try:
+        known = "\\" not in convert(latex)  # a command that it does not know stays as it is
+    except Exception as error:  # its errors have no class in common
+        said = str(error) or type(error).__name__.removesuffix("Error")
+        yield 1, f"formula ${latex}$ cannot be read: {said}"
+        return
+    if not known:
+        yield 1, f"formula ${latex}$ holds a command that cannot be shown"

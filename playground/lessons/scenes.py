@@ -63,7 +63,8 @@ def read_scene(
     if under:
         for key in ("set", "steps"):
             if key in under and key in table:
-                whole[key] = {**under[key], **table[key]}
+                below = file.take(under, key, dict, {})
+                whole[key] = {**below, **file.take(table, key, dict, {}, *place)}
     sketch = _sketch(file, whole, place, sketches)
     shot = _shot(file, whole, place, sketch)
     preset = file.take(whole, "preset", str, "", *place)
@@ -83,6 +84,8 @@ def read_scene(
     view = file.take(whole, "view", str, "", *place)
     if view:
         made = _seen_from_above(file, whole, place, made)
+    elif "range" in whole:
+        raise file.error("range: there is no view, whose lowest and highest value it is", *place, "range")
     time = file.take(whole, "time", float, shot.time, *place)
     size = _pixels(file, whole, place, shot.size if shot.name else pixels)
     plain = bool(shot.name) and whole.keys() <= {"sketch", "shot"}

@@ -100,6 +100,19 @@ def test_a_texture_from_above(make_lesson, engine):
         ('ask      = "Predict."\n', "", None, 'needs ask = "…"'),
         ('caption = "Two lands."', 'caption = "Two lands.', None, "not TOML"),
         ('set = { "height.smoothing" = 0.9 }', 'set = { "height.smoothing" = 9 }', None, "9"),
+        ('labels  = ["even"', 'set = 3\nlabels = ["even"', 50, "set = 3: expected a table"),
+        (
+            'labels  = ["even", "uneven"]\n[[variant]]\nset = { "height.smoothing" = 0.0 }',
+            'labels = ["even", "uneven"]\nset = { "height.seed" = 1 }\n[[variant]]\nset = 3',
+            53,
+            "set = 3: expected a table",
+        ),
+        (
+            'alt     = "A lattice of discs."',
+            'alt = "A lattice of discs."\nrange = [0, 1]',
+            18,
+            "range: there is no view",
+        ),
     ],
 )
 def test_a_mistake_is_a_sentence_with_its_line(write_lesson, before, after, line, words):
@@ -123,3 +136,10 @@ def test_a_file_without_front_matter(tmp_path):
     path.write_text("# No front\n", encoding="utf-8")
     with pytest.raises(SketchError, match="begins with TOML between two lines"):
         read_file(path)
+
+
+def test_a_formula_with_a_label_is_a_formula(make_lesson):
+    """Nothing that stands in the text is lost."""
+    found = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
+    assert "x = 1" in found.blocks[0].words and "(one)" in found.blocks[0].words
+    assert found.blocks[1].words == "A picture first."

@@ -45,6 +45,13 @@ def test_the_small_lesson_keeps_to_all(lesson):
         ),
         ('thesis  = ["1.3.2"]', "thesis = []", "names sections of the thesis"),
         ('goal    = "Know $r^2$."', r"""goal = 'Know $\foo{r}$.' """, "formula"),
+        ('goal    = "Know $r^2$."', "goal = 'Know $r^2^3$.'", "formula $r^2^3$"),
+        ('goal    = "Know $r^2$."', r"""goal = 'Know $\left( r$.' """, r"formula $\left( r$"),
+        (
+            "A picture first.",
+            "![A picture](https://example.org/x.png) first.",
+            "an image of 'https://example.org/x.png'",
+        ),
         ('find   = "(all(inside) ? 4.0 : 3.0)"', 'find = "nothing of it"', "found 0 times"),
         (
             'file   = "generation/diamond_square/raw.glsl"',
