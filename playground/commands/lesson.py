@@ -278,14 +278,13 @@ def translated(name: NameArgument, lang: LanguageOption = "") -> None:
     """Note that a translation says what the English says today."""
     from playground.lessons.library import SOURCE, lesson_file
     from playground.lessons.read import part, read_lesson
-    from playground.lessons.translate import write_hashes
+    from playground.lessons.translate import mark
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
         raise SketchError("say which translation: --lang fr")
     path = lesson_file(name, lang)
-    write_hashes(part(lesson_file(name)), part(path))
-    read_lesson(name, lang)  # says what is wrong with it
+    mark(read_lesson(name), part(lesson_file(name)), part(path), lang)
     print(shown(path))
 
 

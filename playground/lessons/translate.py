@@ -12,6 +12,7 @@ import hashlib
 import re
 import tomllib
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -50,8 +51,11 @@ def hashes(text: Text) -> list[str]:
 
 
 def stale(english: Text, other: Text) -> Stale:
-    """Compare what a translation was made from with what the English says now; index 0 is the front."""
-    now, then = hashes(english), list(texts_of(other.front, "source"))
+    """Compare what a translation was made from with what the English says now; index 0 is the front.
+
+    Raises ``SketchError`` where the translation has other blocks than it was marked with.
+    """
+    now, then = hashes(english), _source(other)
     changed: list[int] = []
     added: list[int] = []
     removed = 0
@@ -73,35 +77,46 @@ def translated(lesson: Lesson, english: Text, other: Text, language: str) -> Les
 
     Raises ``SketchError`` where the translation has other blocks than the English had when it
     was made, says more than words, or lacks some. Of a stale translation, the English blocks
-    that are new stand in English.
+    that are new, or that its words no longer fit, stand in English.
     """
     front = other.front
     front.only(front.table, _FRONT)
-    then = texts_of(front, "source")
-    now = hashes(english)
-    if not then:
-        pairs = dict(enumerate(range(len(other.pieces))))
+    if then := _source(other):
+        pairs, lost = _pairs(then, hashes(english)), stale(english, other)
+    else:
+        pairs, lost = dict(enumerate(range(len(other.pieces)))), Stale()
         if len(other.pieces) != len(lesson.blocks):
             raise _other_shape(lesson, other)
-    else:
-        if len(then) != len(other.pieces) + 1:
-            message = f"{len(other.pieces)} blocks, but source names {len(then) - 1}"
-            raise front.error(message, "source")
-        pairs = _pairs(then, now)
     sketches = Sketches()
-    blocks = tuple(
-        _put(block, other.pieces[pairs[index]], other, sketches) if index in pairs else block
-        for index, block in enumerate(lesson.blocks)
-    )
-    lost = stale(english, other) if then else Stale()
+    changed = {index - 1 for index in lost.changed}
+    blocks = []
+    for index, block in enumerate(lesson.blocks):
+        try:
+            put = index in pairs
+            blocks.append(_put(block, other.pieces[pairs[index]], other, sketches) if put else block)
+        except SketchError:
+            if index not in changed:
+                raise
+            blocks.append(block)  # its English has become something else altogether
     return replace(
         lesson,
         language=language,
         title=front.take(front.table, "title", str, lesson.title),
         goal=front.take(front.table, "goal", str, lesson.goal),
-        blocks=blocks,
+        blocks=tuple(blocks),
         stale=tuple(index - 1 for index in (*lost.changed, *lost.added)),
     )
+
+
+def mark(lesson: Lesson, english: Text, other: Text, language: str) -> None:
+    """Write the hashes into a translation whose words all fit today's English; raise as ``translated``.
+
+    Nothing is written where it raises.
+    """
+    unmarked = copy(other.front)
+    unmarked.table = {key: value for key, value in other.front.table.items() if key != "source"}
+    translated(lesson, english, replace(other, front=unmarked), language)
+    write_hashes(english, other)
 
 
 def write_hashes(english: Text, other: Text) -> None:
@@ -120,6 +135,15 @@ def write_hashes(english: Text, other: Text) -> None:
     tomllib.loads(front.removeprefix("+++"))  # what is written can be read
     with replacing(other.path) as handle:
         handle.write((front + rest).encode())
+
+
+def _source(other: Text) -> tuple[str, ...]:
+    """Return the hashes that a translation holds, none where it was not marked yet."""
+    found = texts_of(other.front, "source")
+    if found and len(found) != len(other.pieces) + 1:
+        message = f"{len(other.pieces)} blocks, but source names {len(found) - 1}"
+        raise other.front.error(message, "source")
+    return found
 
 
 def _pairs(then: tuple[str, ...], now: list[str]) -> dict[int, int]:

@@ -7,7 +7,7 @@ import pytest
 from playground.errors import SketchError
 from playground.lessons import library, status
 from playground.lessons.read import part, read_file
-from playground.lessons.translate import stale, translated, write_hashes
+from playground.lessons.translate import mark, stale, translated, write_hashes
 
 
 @pytest.fixture
@@ -148,3 +148,48 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
     assert found.sentences == [f"changed: line {line}"]
     (tmp_path / "fr" / "small.md").unlink()
     assert status.status_of("small", "fr").word == "missing"
+
+
+def test_a_block_that_became_one_of_another_kind_stands_in_english(pair, write_lesson):
+    """A stale translation can be read, whatever the English has become."""
+    english, french = pair
+    write_lesson(("A picture first.\n", "* A list\n* first\n"))
+    found = translated(read_file(english), part(english), part(french), "fr")
+    assert found.blocks[0].words == "* A list\n* first" and found.stale == (0,)
+    assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
+
+
+def test_a_block_that_got_more_parts_stands_in_english(pair, write_lesson):
+    english, french = pair
+    write_lesson(
+        ('labels  = ["even", "uneven"]', 'labels = ["even", "uneven", "more"]'),
+        ("0.9 }\n```", '0.9 }\n[[variant]]\nset = { "height.smoothing" = 0.5 }\n```'),
+    )
+    found = translated(read_file(english), part(english), part(french), "fr")
+    assert found.named["two"].labels == ("even", "uneven", "more")
+    assert [found.blocks[i].name for i in found.stale] == ["two"]
+    assert found.named["third"].ask == "Changez."
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("## Une chose", "Une chose", "a paragraph stands here, where the English has a heading"),
+        ('labels  = ["uni", "inégal"]', 'labels = ["uni"]', "labels: 1 here, 2 in English"),
+    ],
+)
+def test_one_that_says_something_else_is_not_marked(pair, before, after, words):
+    english, french = pair
+    text = french.read_text(encoding="utf-8").replace(before, after)
+    french.write_text(text, encoding="utf-8")
+    with pytest.raises(SketchError, match=words):
+        mark(read_file(english), part(english), part(french), "fr")
+    assert french.read_text(encoding="utf-8") == text
+
+
+def test_one_with_fewer_blocks_than_it_was_marked_with_is_not_current(pair):
+    english, french = pair
+    text = french.read_text(encoding="utf-8").replace("Une image d’abord.\n", "")
+    french.write_text(text, encoding="utf-8")
+    with pytest.raises(SketchError, match="blocks, but source names"):
+        stale(part(english), part(french))
