@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import base64
 import io
 import json
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +21,9 @@ from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
 from playground.lessons.pictures import broken, draw
+
+NODE = shutil.which("node")
+WIDGET = Path(notebook_lesson.__file__).with_name("widget.js")
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
@@ -112,6 +119,47 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
         assert text.count("<details>") == 7
         assert len({cell["id"] for cell in cells}) == len(cells)
     assert "Pourquoi est-ce sombre" in text and 'language="fr"' in code[0]
+
+
+@pytest.mark.skipif(NODE is None, reason="needs node")
+@pytest.mark.parametrize(
+    ("events", "sent"),
+    [
+        ("0.1 0.2 0.3", [0.1]),  # nothing more until it is answered
+        ("0.1 0.2 0.3 picture drawn", [0.1, 0.3]),  # then the newest
+        ("0.1 0.2 picture 0.3 drawn", [0.1, 0.3]),  # a picture has one answer, not two
+        ("0.1 0.2 picture drawn 0.3 picture mistake 0.4", [0.1, 0.2]),
+        ("0.1 0.2 0.1 drawn 0.4", [0.1, 0.4]),  # dragged back to where it was: nothing to wait for
+        ("0.1 drawn 0.1 0.4", [0.1, 0.4]),
+        ("0.1 0.2 mistake drawn", [0.1, 0.2]),
+    ],
+)
+def test_one_picture_is_asked_for_at_a_time(events, sent):
+    here = Path(__file__).parent
+    command = [NODE, str(here / "widget_sends.mjs"), str(WIDGET), *events.split()]
+    found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    assert json.loads(found.stdout) == sent
+
+
+def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch):
+    """Whatever is raised: else nothing could be dragged any more."""
+    widget = opened.show("land")
+    told = []
+    monkeypatch.setattr(widget, "send", told.append)
+    monkeypatch.setattr(widget, "_draw", lambda _: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        widget.values = {"height.smoothing": 0.2}
+    assert told == [{"drawn": True}]
+
+
+@pytest.mark.parametrize("text", ["#define A(x) \\", "b = '\\n';"])
+def test_lines_to_mend_are_in_the_cell_as_they_are_in_the_file(lesson, engine, monkeypatch, text):
+    """A backslash stays one."""
+    monkeypatch.setattr("playground.lessons.notebook.build.around", lambda _: ("", text))
+    cells = json.loads(notebook_text(lesson, numbers_of(engine, lesson)))["cells"]
+    (cell,) = [cell for cell in cells if "lesson.mend(" in "".join(cell["source"])]
+    call = ast.parse("".join(cell["source"])).body[0].value
+    assert ast.literal_eval(call.args[1]) == f"\n{text}\n"
 
 
 @pytest.mark.slow

@@ -96,7 +96,7 @@ class _Writer:
             yield "markdown", f"### {words['fault']}\n\n{said(block.ask)}"
             yield "code", f'lesson.show("{block.name}")'
             yield "markdown", words["your_turn"]
-            yield "code", f'lesson.mend("{block.name}", """\n{around(block)[1]}\n""")'
+            yield "code", f'lesson.mend("{block.name}", r"""\n{around(block)[1]}\n""")'
             folded = (self.folded("hint", block.hint), self.folded("mend", block.mend))
             yield "markdown", "\n\n".join(folded)
         elif isinstance(block, Question):

@@ -1,7 +1,8 @@
 // widget.js -- a picture with sliders in a notebook.
 //
-// While one is dragged, a change is sent only when the picture of the one before has come:
-// so the newest position is drawn next, and none queue up.
+// While one is dragged, a change is sent only when the one before has been answered: so the
+// newest position is drawn next, and none queue up. The answer is the message after the
+// picture; it comes also where the picture is the same, or there is none.
 function render({ model, el }) {
   const make = (name, properties = {}, ...inside) => {
     const element = Object.assign(document.createElement(name), properties);
@@ -23,8 +24,10 @@ function render({ model, el }) {
     url = URL.createObjectURL(new Blob([bytes], { type: "image/png" }));
     image.src = url;
   };
+  const same = (one, other) => Object.keys(one).every((key) => one[key] === other[key]);
   const send = (values) => {
     if (waiting) { next = values; return; }
+    if (same(values, model.get("values"))) return; // it would not be sent, and so not be answered
     waiting = true;
     model.set("values", values);
     model.save_changes();
@@ -59,18 +62,15 @@ function render({ model, el }) {
     tell();
     rows.append(make("label", {}, make("span", { textContent: control.label }), input, told));
   }
-  const drawn = () => { show(); answered(); };
-  // The same picture again, or a mistake, changes no picture: the kernel's answer ends the wait as well.
-  const status = () => { said(); answered(); };
-  model.on("change:picture", drawn);
-  model.on("change:mistake", status);
+  model.on("change:picture", show);
+  model.on("change:mistake", said);
   model.on("msg:custom", answered);
   el.append(image, rows, mistake);
   show();
   said();
   return () => {
-    model.off("change:picture", drawn);
-    model.off("change:mistake", status);
+    model.off("change:picture", show);
+    model.off("change:mistake", said);
     model.off("msg:custom", answered);
     if (url) URL.revokeObjectURL(url);
   };

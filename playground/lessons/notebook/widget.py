@@ -51,7 +51,8 @@ class PictureWidget(anywidget.AnyWidget):
             self.mistake = ""
         except PlaygroundError as error:
             self.mistake = str(error)
-        self.send({"drawn": True})  # also where the picture is the same as before
+        finally:
+            self.send({"drawn": True})  # what the browser waits for before it asks for another
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """Show the picture where no widgets can be: in a saved notebook, on a page."""
