@@ -60,7 +60,7 @@ class Process(Generic[Answer]):
         self.started = time.monotonic()
         self._ready_at: float | None = None
         self._handed_at = 0.0
-        self._waits: Waits = {}  # when it was handed what it works on
+        self._waits: Waits = {}  # when it began with what it was handed
         self._requests: queue.Queue[object | None] = queue.Queue()
         self._errors = tempfile.TemporaryFile()  # closed in kill
         # -P: what lies in the user's folder is no module of ours, whatever its name.
@@ -151,6 +151,7 @@ class Process(Generic[Answer]):
         with contextlib.suppress(OSError), process.stdout:
             with contextlib.suppress(OSError, EOFError, ValueError, pickle.UnpicklingError):
                 if receive(process.stdout) is not None:
+                    self._waits = waits_of(self.pid)
                     self._ready_at = time.monotonic()
                     self._serve(process.stdin, process.stdout)
             with contextlib.suppress(OSError):

@@ -14,6 +14,16 @@ from playground.engine.trial_process import Process
 from playground.engine.waiting import waited_since, waits_of
 
 BUSY = "import os, time\nos.sched_setaffinity(0, {cpu})\nprint(flush=True)\nwhile True: pass"
+READY = """
+import sys
+import time
+from pathlib import Path
+from playground.engine.trial_process import Ready, send
+while not Path(sys.argv[1]).exists():
+    time.sleep(0.01)
+send(sys.stdout.buffer, Ready())
+sys.stdin.read()
+"""
 needs_counts = pytest.mark.skipif(
     not Path("/proc/self/schedstat").exists(), reason="this system does not count waits"
 )
@@ -65,5 +75,28 @@ def test_a_trial_s_time_is_what_it_had(monkeypatch):
         assert process.seconds == pytest.approx(1.0, abs=0.9)
         monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {})
         assert process.seconds >= 100.0
+    finally:
+        process.kill()
+
+
+def test_what_it_waited_before_it_was_ready_does_not_count(monkeypatch, tmp_path):
+    """Its time begins when it is ready, and so do its waits."""
+    (tmp_path / "ready_late.py").write_text(READY, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    waited = {"1": 0}
+    monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: dict(waited))
+    process = Process[object]("ready_late", [str(tmp_path / "now")])
+    try:
+        process.hand_over(object())
+        waited["1"] = 40_000_000_000  # while it started
+        (tmp_path / "now").touch()
+        end = time.monotonic() + 120.0
+        while not process.is_ready and time.monotonic() < end:
+            time.sleep(0.01)
+        assert process.is_ready
+        process._ready_at = time.monotonic() - 100.0
+        process._handed_at = process._ready_at
+        waited["1"] += 30_000_000_000
+        assert 70.0 <= process.seconds < 100.0
     finally:
         process.kill()
