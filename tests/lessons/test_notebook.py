@@ -15,12 +15,16 @@ import pytest
 from PIL import Image
 
 from playground.errors import SketchError
+from playground.lessons.library import interface_words, lesson_files
 from playground.lessons.measuring import numbers_of
+from playground.lessons.model import Figure
 from playground.lessons.notebook import lesson as notebook_lesson
 from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
 from playground.lessons.pictures import broken, draw
+from playground.lessons.read import read_lesson
+from playground.lessons.scenes import Sketches
 
 NODE = shutil.which("node")
 WIDGET = Path(notebook_lesson.__file__).with_name("widget.js")
@@ -79,6 +83,26 @@ def test_controls_of_each_kind_of_block(lesson, opened):
     assert [found[0].kind for found in kinds.values()] == ["range", "range", "choice"]
     assert kinds["smooth"][0].choices == ("0.1", "0.5", "0.9")
     assert scene_at(lesson.named["two"], {"frame": 9.0}) == lesson.named["two"].scenes[1]
+
+
+def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
+    block = read_lesson("heightfield").named["land"]
+    found = controls_of(block, "fr", interface_words("fr"))
+    assert [(c.key, c.label, c.value, c.low, c.high, c.unit) for c in found[:2]] == [
+        ("light.sun:0", "azimut", 105.0, 0.0, 360.0, "°"),
+        ("light.sun:1", "élévation", 22.0, -90.0, 90.0, "°"),
+    ]
+    assert dict(scene_at(block, {"light.sun:1": 40.0}).values)["light.sun"] == (105.0, 40.0)
+    assert dict(scene_at(block, {"light.sun:0": 9.0, "light.sun:1": 8.0}).values)["light.sun"] == (9.0, 8.0)
+
+
+def test_every_slider_of_a_shipped_lesson_can_be_dragged():
+    sketches = Sketches()
+    for name in lesson_files():
+        for block in read_lesson(name, "en", sketches).blocks:
+            if isinstance(block, Figure):
+                keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_words("en"))}
+                assert keys == set(block.sliders), (name, block.name)
 
 
 def test_a_saved_notebook_shows_the_picture(opened, lesson, engine):
@@ -167,8 +191,6 @@ def test_a_notebook_runs_from_end_to_end(engine):
     """In a kernel of its own; every cell that shows a picture shows one."""
     import nbformat
     from nbclient import NotebookClient
-
-    from playground.lessons.read import read_lesson
 
     for language in ("en", "fr"):
         found = read_lesson("diamond_square", language)

@@ -20,7 +20,7 @@ _STEPS = 200  # positions of a slider whose parameter says no step
 class Control:
     """Something to drag or to choose."""
 
-    key: str  # parameter path, or "frame"
+    key: str  # parameter path, with ":0" and ":1" for the parts of a direction; or "frame"
     label: str
     kind: str  # range | choice | checkbox
     value: float
@@ -41,7 +41,7 @@ def controls_of(
     """Return what can be dragged of a block."""
     if isinstance(block, Figure):
         assert block.scene is not None
-        return [found for path in block.sliders if (found := _parameter(block.scene, path))]
+        return [found for path in block.sliders for found in _parameter(block.scene, path, words)]
     if isinstance(block, Steps):
         label = words["step"]
         names = tuple(words["turn"].format(n=turn) for turn in block.turns)
@@ -64,24 +64,39 @@ def scene_at(block: Figure | Steps | Slider | Compare, values: Mapping[str, floa
     for path in block.sliders:
         if path in values:
             scene = with_value(scene, path, _value(scene, path, values[path]))
+        elif any(key in values for key in _parts(path)):
+            now = value_of(scene.sketch, path, values_of(scene.sketch))
+            assert isinstance(now, tuple)
+            both = zip(_parts(path), now, strict=True)
+            scene = with_value(scene, path, tuple(float(values.get(key, part)) for key, part in both))
     return scene
 
 
-def _parameter(scene: Scene, path: str) -> Control | None:
+def _parts(path: str) -> tuple[str, str]:
+    """Return the keys of a direction's azimuth and elevation."""
+    return f"{path}:0", f"{path}:1"
+
+
+def _parameter(scene: Scene, path: str, words: Mapping[str, str]) -> list[Control]:
     parameter = resolve(scene.sketch.graph, path)[0].parameter
     value = value_of(scene.sketch, path, values_of(scene.sketch))
     widget = parameter.widget
     if widget.kind == "menu":
-        return Control(path, parameter.title, "choice", float(_scalar(value)), choices=widget.choices)
+        return [Control(path, parameter.title, "choice", float(_scalar(value)), choices=widget.choices)]
     if parameter.type == "bool":
-        return Control(path, parameter.title, "checkbox", float(bool(value)))
+        return [Control(path, parameter.title, "checkbox", float(bool(value)))]
+    if widget.kind == "direction" and isinstance(value, tuple):
+        azimuth, elevation = _parts(path)
+        return [
+            Control(azimuth, words["azimuth"], "range", value[0] % 360.0, 0.0, 360.0, 0.5, unit="°"),
+            Control(elevation, words["elevation"], "range", float(value[1]), -90.0, 90.0, 0.5, unit="°"),
+        ]
     if isinstance(value, tuple | str) or widget.low is None or widget.high is None:
-        return None  # vectors and files are set in code: with_values
+        return []  # other vectors and files are set in code: with_values
     whole = is_whole(parameter.type)
     step = 1.0 if whole else parameter.step or (widget.high - widget.low) / _STEPS
-    return Control(
-        path, parameter.title, "range", float(value), widget.low, widget.high, step, unit=parameter.unit
-    )
+    unit = parameter.unit
+    return [Control(path, parameter.title, "range", float(value), widget.low, widget.high, step, unit=unit)]
 
 
 def _value(scene: Scene, path: str, given: float) -> Value:
