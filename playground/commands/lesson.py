@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -102,16 +102,15 @@ def complete_language(incomplete: str) -> list[str]:
     return [code for code in LANGUAGES if code.startswith(incomplete)]
 
 
-LanguageOption = Annotated[
-    str,
-    typer.Option(
-        "--lang",
-        help="Language: en or fr; that of the system by default.",
-        metavar="CODE",
-        show_default=False,
-        autocompletion=complete_language,
-    ),
-]
+def _language_option(says: str) -> Any:
+    return typer.Option(
+        "--lang", help=says, metavar="CODE", show_default=False, autocompletion=complete_language
+    )
+
+
+LanguageOption = Annotated[str, _language_option("Language: en or fr; that of the system by default.")]
+LanguagesOption = Annotated[str, _language_option("Language: en or fr; both by default.")]
+TranslationOption = Annotated[str, _language_option("Language of the translation: fr.")]
 NameArgument = Annotated[
     str, typer.Argument(help="A lesson.", metavar="NAME", autocompletion=complete_lesson)
 ]
@@ -248,7 +247,7 @@ def build(
     output: Annotated[
         Path, typer.Option("-o", "--output", help="The folder of the book.", metavar="FOLDER")
     ] = Path("book"),
-    lang: LanguageOption = "",
+    lang: LanguagesOption = "",
     notebooks: Annotated[
         bool, typer.Option("--notebooks", metavar="", help="Write Jupyter notebooks, not pages.")
     ] = False,
@@ -274,7 +273,7 @@ def build(
 
 
 @app.command("translated", help=TRANSLATED_HELP)
-def translated(name: NameArgument, lang: LanguageOption = "") -> None:
+def translated(name: NameArgument, lang: TranslationOption = "") -> None:
     """Note that a translation says what the English says today."""
     from playground.lessons.library import SOURCE, lesson_file
     from playground.lessons.read import part, read_lesson

@@ -2,7 +2,7 @@
 
 A function is given ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
 channel, and the ``Grid`` that they stand on. Lessons name it in ``what``, and give the rest
-of its arguments in ``with``.
+of its arguments in ``with``; it raises ``ValueError`` for one that does not fit the texture.
 """
 
 from __future__ import annotations
@@ -92,12 +92,11 @@ def local_maxima(values: Values, grid: Grid) -> float:
 
 def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
     """Return which share of the local maxima has a row and a column that ``every`` divides, 0..1."""
+    step = int(every)
+    if step < 1:
+        raise ValueError(f"every = {every:g}: expected 1 or more")
     rows, columns = np.nonzero(_peaks(values))
-    return (
-        float((((rows + 1) % int(every) == 0) & ((columns + 1) % int(every) == 0)).mean())
-        if rows.size
-        else 0.0
-    )
+    return float((((rows + 1) % step == 0) & ((columns + 1) % step == 0)).mean()) if rows.size else 0.0
 
 
 def _peaks(values: Values) -> NDArray[np.bool_]:
@@ -167,7 +166,9 @@ def diagonal_crease(values: Values, grid: Grid) -> float:
 
 def step_across(values: Values, grid: Grid, at: float) -> float:
     """Return the mean step from column ``at`` − 1 to ``at``, over that of four pairs of columns beside."""
-    column = int(at)
+    column, count = int(at), values.shape[1]
+    if not 4 <= column <= count - 4:
+        raise ValueError(f"column {column} of {count} has not four on each side")
     steps = np.abs(np.diff(values, axis=1)).mean(axis=0)
     beside = [steps[column - 1 + k] for k in (-3, -2, 2, 3)]
     return float(steps[column - 1] / np.mean(beside))
@@ -176,8 +177,11 @@ def step_across(values: Values, grid: Grid, at: float) -> float:
 def correlation(values: Values, grid: Grid, dx: float, dy: float) -> float:
     """Return the correlation of a texture with itself, moved by so many texels, over what they share."""
     x, y = int(dx), int(dy)
-    first = values[max(y, 0) : values.shape[0] + min(y, 0), max(x, 0) : values.shape[1] + min(x, 0)]
-    second = values[max(-y, 0) : values.shape[0] + min(-y, 0), max(-x, 0) : values.shape[1] + min(-x, 0)]
+    ny, nx = values.shape
+    if abs(x) >= nx or abs(y) >= ny:
+        raise ValueError(f"moved by {x}, {y}: expected less than {nx}, {ny}")
+    first = values[max(y, 0) : ny + min(y, 0), max(x, 0) : nx + min(x, 0)]
+    second = values[max(-y, 0) : ny + min(-y, 0), max(-x, 0) : nx + min(-x, 0)]
     return float(np.corrcoef(first.ravel(), second.ravel())[0, 1])
 
 

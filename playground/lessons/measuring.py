@@ -82,7 +82,10 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         values = engine.read(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
         first = values if values.ndim == 2 else values[..., 0]
         grid = _grid(engine.plan, first.shape)
-        return found.function(first.astype(np.float64), grid, **dict(measure.arguments))
+        try:
+            return found.function(first.astype(np.float64), grid, **dict(measure.arguments))
+        except ValueError as error:
+            raise SketchError(f"measure '{measure.name}': {error}", line=measure.line) from None
     if measure.what == "triangles":
         engine.cache.clear()
         engine.draw(scene.sketch, size=scene.pixels, time=scene.time, steps=steps)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from playground.lessons.model import Slider
-from playground.sketch.assign import LAND, resolve
+from playground.sketch.assign import resolve
 from playground.sketch.model import Value
 from playground.sketch.values import write
 
 
 def spelled_value(slider: Slider, value: Value, language: str) -> str:
     """Return a value of a slider's parameter: menu choices by name, numbers with their unit."""
-    if slider.parameter in LAND:
-        return f"{value:g}" if isinstance(value, float | int) else " × ".join(map(str, value))
     parameter = resolve(slider.scenes[0].sketch.graph, slider.parameter)[0].parameter
     text = write(parameter, value).replace(",", "; ")
     if language == "fr" and parameter.widget.kind not in ("menu", "file"):

@@ -111,6 +111,17 @@ def test_notebooks(texts, tmp_path, capsys):
         assert found["nbformat"] == 4 and len(found["cells"]) > 15
 
 
+def test_languages_are_promised_as_they_are(capsys):
+    """Building takes all, marking one that is named; reading takes the system's."""
+    said = {}
+    for command in ("list", "open", "build", "translated"):
+        assert run(command, "--help") == 0
+        said[command] = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "that of the system by default" in said["list"] and "that of the system" in said["open"]
+    assert "both by default" in said["build"] and "that of the system" not in said["build"]
+    assert "that of the system" not in said["translated"]
+
+
 def test_open_needs_a_screen_and_a_lesson(texts, capsys, monkeypatch):
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)

@@ -160,6 +160,23 @@ def test_triangles_of_a_land_that_is_drawn(make_lesson, engine):
     assert measured(engine, make_lesson(change).named["spread"]).value >= 2 * 8 * 8
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ('what = "step_across"\nwith = { at = 0 }', "column 0 of 5 has not four on each side"),
+        ('what = "step_across"\nwith = { at = 40 }', "column 40 of 5 has not four on each side"),
+        ('what = "peaks_on_lattice"\nwith = { every = 0 }', "every = 0: expected 1 or more"),
+        ('what = "correlation"\nwith = { dx = 5, dy = 0 }', "moved by 5, 0: expected less than 5"),
+        ('what = "local_maxima"\nof = "nowhere"', "no pass 'nowhere'"),
+    ],
+)
+def test_arguments_that_do_not_fit_are_a_sentence(make_lesson, engine, change, words):
+    block = make_lesson(('what    = "spread"', change)).named["spread"]
+    with pytest.raises(SketchError) as caught:
+        measured(engine, block)
+    assert words in caught.value.diagnostics[0].message
+
+
 def test_what_is_no_number_is_refused(make_lesson, engine):
     level = '"height.corners" = [0.5, 0.5, 0.5, 0.5], "height.smoothing" = 0.0'
     over = f'what = "spread"\nover = {{ set = {{ {level} }} }}'

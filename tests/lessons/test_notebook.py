@@ -8,6 +8,7 @@ import io
 import json
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from PIL import Image
 from playground.errors import SketchError
 from playground.lessons.library import interface_words, lesson_files
 from playground.lessons.measuring import numbers_of
-from playground.lessons.model import Figure
+from playground.lessons.model import Figure, Prose
 from playground.lessons.notebook import lesson as notebook_lesson
 from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
@@ -184,6 +185,13 @@ def test_lines_to_mend_are_in_the_cell_as_they_are_in_the_file(lesson, engine, m
     (cell,) = [cell for cell in cells if "lesson.mend(" in "".join(cell["source"])]
     call = ast.parse("".join(cell["source"])).body[0].value
     assert ast.literal_eval(call.args[1]) == f"\n{text}\n"
+
+
+def test_code_in_prose_is_the_translation_s(french, engine):
+    """As it stands there: its indentation is what makes it code."""
+    code = Prose(1, "    in English", "code", 0, "    en français")
+    cells = json.loads(notebook_text(replace(french, blocks=(code,)), {}))["cells"]
+    assert ["".join(cell["source"]) for cell in cells[2:3]] == ["    en français"]
 
 
 @pytest.mark.slow

@@ -81,10 +81,8 @@ class _Writer:
         """Yield the cells of a block; what it says stands before the code that draws it."""
         words, said = self.words, self.said
         if isinstance(block, Prose):
-            yield (
-                "markdown",
-                said(block.text if block.kind == "code" else f"{'#' * block.level} {block.words}".strip()),
-            )
+            mark = f"{'#' * block.level} " if block.kind == "heading" else ""
+            yield "markdown", said(f"{mark}{block.words}")
         elif isinstance(block, Figure | Steps | Slider | Compare):
             yield "markdown", f"*{said(block.caption)}*"
             yield "code", f'lesson.show("{block.name}")'
