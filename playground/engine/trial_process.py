@@ -32,6 +32,9 @@ _CRASHES = ("SIGSEGV", "SIGBUS", "SIGILL", "SIGFPE", "SIGABRT", "SIGTRAP", *_WIN
 _NO_MEMORY = ("out of memory", "bad_alloc", "memoryerror", "cannot allocate")
 
 
+_SLOWEST = 8.0  # times longer that something may take on a busy machine
+
+
 @dataclass(frozen=True)
 class Ready:
     """The process has what it needs and waits for its first request."""
@@ -94,12 +97,13 @@ class Process(Generic[Answer]):
     def seconds(self) -> float:
         """How long it has worked on what it was handed, from when it was ready for it [s].
 
-        What it waited for a processor that others had does not count.
+        What it waited for a processor does not count, but for a share: its own threads wait for
+        each other too, and what never ends must be stopped on the busiest machine.
         """
         if not self.busy or self._ready_at is None:
             return 0.0
         passed = time.monotonic() - max(self._handed_at, self._ready_at)
-        return max(passed - waited_since(self._waits, waits_of(self.pid)), 0.0)
+        return max(passed - waited_since(self._waits, waits_of(self.pid)), passed / _SLOWEST)
 
     def hand_over(self, request: object) -> None:
         """Give it a request; never waits."""

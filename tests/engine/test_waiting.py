@@ -66,13 +66,15 @@ def test_processes_that_share_one_processor_wait_for_each_other():
 
 
 def test_a_trial_s_time_is_what_it_had(monkeypatch):
-    """One that waited for a processor for all but a second has worked for a second."""
+    """One that waited for a processor has worked for the rest, and for an eighth at least."""
     process = Process[object]("playground.engine.trial_child", ["0", "any", "60.0"])
     try:
         process.busy, process._ready_at = True, time.monotonic() - 100.0
         process._handed_at = process._ready_at
-        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {"1": 99_000_000_000})
-        assert process.seconds == pytest.approx(1.0, abs=0.9)
+        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {"1": 80_000_000_000})
+        assert process.seconds == pytest.approx(20.0, abs=9.0)
+        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {"1": 99_900_000_000})
+        assert process.seconds == pytest.approx(100.0 / 8, abs=2.0)
         monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {})
         assert process.seconds >= 100.0
     finally:
