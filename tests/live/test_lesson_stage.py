@@ -19,6 +19,7 @@ from playground.live.lesson.faults import BROKEN, MENDED, TOLD
 from playground.live.lesson.reading import BOTH
 from playground.live.lesson.scene import edits_of, map_of, steps_of
 from playground.live.lesson.ways import play_on
+from playground.live.sources import open_source
 from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -433,6 +434,24 @@ def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     desk.turn(3)
     assert not faults.is_edited(code) and not desk.session.texts and not desk.actions.editing
     assert FILE.read_text(encoding="utf-8") == before
+
+
+def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(desk):
+    desk.open(3)
+    fault = block(desk, "quarter")
+    open_source(desk.actions, FILE, here=True)  # the reader has the file itself open
+    (own,) = desk.actions.editing
+    desk.reading.faults.break_it(fault)
+    desk.turn(3)
+    copy = desk.actions.editing[-1]
+    open_source(desk.actions, FILE, 5, here=True)
+    assert (copy.line, copy.asked) == (5, True) and not own.asked
+    desk.actions.editing.remove(copy)
+    open_source(desk.actions, FILE, 6)
+    assert desk.actions.editing == [own, copy] and copy.line == 6
+    desk.reading.faults.mend_it(fault)
+    open_source(desk.actions, FILE, 7, here=True)
+    assert desk.actions.editing == [own] and own.line == 7
 
 
 def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):

@@ -58,6 +58,9 @@ class Copies:
     open: dict[Path, Copy] = field(default_factory=dict)
     _windows: dict[Path, Editing] = field(default_factory=dict)  # also of one whose window was closed
 
+    def __post_init__(self) -> None:
+        self.actions.copy_of = self._windows.get
+
     def edit(self, copy: Copy, line: int = 1) -> None:
         """Open a copy in the window's own editor, in place of another of the same file."""
         self.close(copy.path)
