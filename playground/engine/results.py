@@ -48,6 +48,7 @@ class Result:
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
     turn: int = 0  # turns done, of a pass that repeats
+    number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
     _framebuffer: moderngl.Framebuffer | None = None
@@ -94,6 +95,7 @@ class Pool:
         self.ctx = ctx
         self.limit = limit  # [bytes]
         self.made = 0  # how often a texture was made anew
+        self._taken = 0
         self._spare: OrderedDict[int, Result] = OrderedDict()
         self._bytes = 0
 
@@ -109,13 +111,14 @@ class Pool:
         """Return a result with undefined texels; raise ``ContextError`` where the driver refuses its size."""
         wanted = tuple(outputs)
         formats = [o.format for o in wanted]
+        self._taken += 1
         for number in reversed(self._spare):
             spare = self._spare[number]
             if spare.size == size and [o.format for o in spare.outputs] == formats:
                 del self._spare[number]
                 self._bytes -= spare.bytes
                 textures = dict(zip((o.name for o in wanted), spare.textures.values(), strict=True))
-                return Result(size, wanted, textures, _framebuffer=spare._framebuffer)
+                return Result(size, wanted, textures, number=self._taken, _framebuffer=spare._framebuffer)
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
         try:
@@ -125,7 +128,7 @@ class Pool:
             for texture in made.values():
                 texture.release()
             raise
-        return Result(size, wanted, made)
+        return Result(size, wanted, made, number=self._taken)
 
     def give(self, result: Result) -> None:
         """Take a result that nobody reads any more; it may be released at once."""

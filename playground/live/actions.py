@@ -59,6 +59,7 @@ class Actions:
     problems: Problems = field(default_factory=Problems)
     opener: Opener = field(default_factory=Opener)  # starts the user's editor
     editing: list[Editing] = field(default_factory=list)  # files open in windows of our own
+    copy_of: Callable[[Path], Editing | None] = lambda path: None  # what is drawn in place of a file
     leaving: bool = False  # the window is to close, and something is not saved: it is asked what to do
     reveal: str = ""  # the pass that the panel is to bring into sight
     toggle_lessons: Callable[[], None] = lambda: None  # shows the lessons, or no longer

@@ -80,6 +80,12 @@ def unsaved(actions: Actions) -> list[str]:
     return [e.text.path.name for e in actions.editing if e.text.kept and _view_of(e).changed]
 
 
+def typed_in(editing: Editing) -> str | None:
+    """Return the text of an open file where it has changes that are not saved; else None."""
+    view = _view_of(editing)
+    return view.editor.get_text() if view.changed else None
+
+
 def typing(actions: Actions) -> list[str]:
     """Return the name of the open file that takes what is typed, once it does; none where no file does."""
     return [e.text.path.name for e in actions.editing if _view_of(e).held > 1]
@@ -94,6 +100,7 @@ def _view_of(editing: Editing) -> _View:
         editor.set_tab_size(4)
         editor.set_insert_spaces_on_tabs(True)
         editor.set_show_whitespaces_enabled(False)
+        editor.set_complete_paired_glyphs(False)  # it would put a second one beside each that is typed
         editor.set_text(editing.text.base)
         editing.view = _View(editor, editor.get_undo_index())
     return editing.view

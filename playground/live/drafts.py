@@ -23,7 +23,7 @@ from playground.live.edits import Draft, Edits, reload_draft, taken
 from playground.live.files import watched
 from playground.live.stages import Stage, Tester, explained
 from playground.live.sunlight import suns_of, turned
-from playground.live.words import Said
+from playground.live.words import Said, said_by_files
 from playground.sketch.find import find
 from playground.sketch.kept import KeptTechniques
 from playground.sketch.load import load_with
@@ -212,6 +212,18 @@ class Drafts(ABC):
 
     def _drop_coming(self) -> None:
         self.coming, self.stage, self._coming_notes = None, Stage.NONE, []
+
+    def set_by_hand(self) -> tuple[Edits, Mapping[str, Said], Camera | None]:
+        """Return what ``open`` takes to bring back what is set by hand in the sketch that is open.
+
+        It may not be shown yet. The edits, what the files say of each of their values, and what of
+        the camera where another is set.
+        """
+        draft = self.coming if self._another else self.shown or self.coming
+        if draft is None:  # it has not loaded yet
+            return self._initial, self._in_file, self._camera_in_file
+        said = said_by_files(draft.base, [path for path, _ in draft.edits.values])
+        return draft.edits, said, draft.file.camera if draft.edits.camera is not None else None
 
     # ── edits by hand ────────────────────────────────────────────────────────
 

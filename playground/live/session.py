@@ -160,6 +160,12 @@ class Session(Drafts):
         self.map = shown
         self._revision += 1
 
+    def seen_next(self) -> tuple[dict[str, int], Map | None]:
+        """Return what ``view`` takes to see the sketch that is open so again, drawn already or not."""
+        if self._next_view is not None:
+            return self._next_view
+        return dict(self.steps), self.map
+
     def set_map(self, name: str, value: Value) -> None:
         """Set a parameter of the map."""
         if self.map is not None:

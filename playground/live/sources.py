@@ -42,9 +42,9 @@ def open_source(actions: Actions, path: Path, line: int = 0, column: int = 0, *,
     if not path.is_file():
         actions.say(f"there is no file {shown(path)} to open")
         return
-    known = next((wanted for wanted in actions.editing if wanted.text.path == path), None)
-    stands_in = known is not None and not known.text.kept
-    if not here and not stands_in:
+    copy = actions.copy_of(path)
+    known = copy or next((wanted for wanted in actions.editing if wanted.text.path == path), None)
+    if not here and copy is None:
         editor, complaint = find_editor()
         if complaint:
             actions.say(complaint)
@@ -57,6 +57,7 @@ def open_source(actions: Actions, path: Path, line: int = 0, column: int = 0, *,
         except PlaygroundError as error:
             actions.say(str(error))
             return
+    if all(other is not known for other in actions.editing):
         actions.editing.append(known)
     known.line, known.column, known.asked = max(line, 1), max(column, 1), True
 

@@ -132,6 +132,17 @@ def test_a_fault_is_mended_by_typing_in_the_copy(desk):
     assert FILE.read_bytes() == before
 
 
+def test_brackets_that_are_typed_stand_as_they_were_typed(desk):
+    desk.open(3)
+    desk.click("Break it")
+    desk.turn(3)
+    (editing,) = desk.actions.editing
+    desk.key(imgui.Key.home)
+    desk.type('(all(inside) ? a[0] : "b")')
+    desk.turn(2)
+    assert '(all(inside) ? a[0] : "b")float kernel(' in editing.view.editor.get_text()
+
+
 def test_languages_are_buttons(desk):
     desk.open(1)
     desk.click("FR##fr")

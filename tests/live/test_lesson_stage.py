@@ -14,11 +14,12 @@ from playground.lessons import library
 from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
 from playground.lessons.pictures import broken, draw
 from playground.lessons.read import read_lesson
-from playground.live.edits import Draft
+from playground.live.edits import Draft, Edits
 from playground.live.lesson.faults import BROKEN, MENDED, TOLD
 from playground.live.lesson.reading import BOTH
 from playground.live.lesson.scene import edits_of, map_of, steps_of
 from playground.live.lesson.ways import play_on
+from playground.live.sources import open_source
 from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -55,6 +56,12 @@ def block(desk: Desk, name: str):
 
 def value(desk: Desk, path: str):
     return dict(desk.session.shown.applied)[path]
+
+
+def text_window(desk: Desk):
+    """Return the editor of the one file that is open."""
+    (editing,) = desk.actions.editing
+    return editing.view.editor
 
 
 def as_seen(desk: Desk) -> np.ndarray:
@@ -197,6 +204,89 @@ def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(de
     desk.actions.undo()
     desk.turn(2)
     assert value(desk, "height.seed") == 77
+
+
+def test_what_is_compared_with_comes_back_with_what_was_open(desk):
+    compare = desk.actions.see.compare
+    desk.session.set("height.seed", 5)
+    desk.turn(2)
+    compare.keep()
+    desk.session.set("height.seed", 6)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "seeds"))
+    desk.turn(4)
+    desk.reading.go_back()
+    desk.turn(4)
+    assert value(desk, "height.seed") == 6
+    assert compare.on, "A is there again"
+    assert dict(compare.remembered().edits.values) == {"height.seed": 5}
+
+
+def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(desk):
+    own = desk.session.path
+    own.write_text(OWN.replace("white_noise", "white_noyse"), encoding="utf-8")
+    desk.session.open(own, edits=Edits((("height.seed", 5),)))
+    desk.turn(2)
+    assert desk.session.error is not None and desk.session.leaves
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    assert value(desk, "height.seed") == 3
+    desk.reading.go_back()
+    desk.turn(3)
+    own.write_text(OWN, encoding="utf-8")
+    desk.session.reload()
+    desk.turn(3)
+    assert desk.session.error is None and value(desk, "height.seed") == 5
+
+
+def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_hand(desk):
+    own = desk.session.path
+    own.write_text(OWN.replace("[view]", "set = { seed = 2 }\n[view]"), encoding="utf-8")
+    desk.session.reload()
+    desk.turn(2)
+    desk.session.set("height.seed", 5)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    own.write_text(OWN.replace("[view]", "set = { seed = 9 }\n[view]"), encoding="utf-8")
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and "height.seed" not in dict(desk.session.shown.edits.values)
+
+
+def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_asked_again(desk):
+    own = desk.session.path
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    own.rename(own.with_name("away.toml"))
+    desk.reading.go_back()
+    desk.turn(3)
+    assert any("sketch.toml" in notice.text for notice in desk.actions.notices)
+    assert desk.session.path == find("white_noise") and desk.session.error is None
+    own.with_name("away.toml").rename(own)
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and desk.reading.stage.own is None
+
+
+def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
+    own = desk.session.path
+    desk.open(3, show=False)
+    desk.reading.faults.edit(block(desk, "mean"))
+    desk.turn(3)
+    assert desk.session.texts and desk.reading.stage.own is None
+    desk.session.set("height.seed", 7)
+    desk.turn(3)
+    assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
+    desk.reading.show(block(desk, "seeds"))
+    desk.turn(4)
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and value(desk, "height.seed") == 7
 
 
 def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
@@ -344,6 +434,58 @@ def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     desk.turn(3)
     assert not faults.is_edited(code) and not desk.session.texts and not desk.actions.editing
     assert FILE.read_text(encoding="utf-8") == before
+
+
+def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(desk):
+    desk.open(3)
+    fault = block(desk, "quarter")
+    open_source(desk.actions, FILE, here=True)  # the reader has the file itself open
+    (own,) = desk.actions.editing
+    desk.reading.faults.break_it(fault)
+    desk.turn(3)
+    copy = desk.actions.editing[-1]
+    open_source(desk.actions, FILE, 5, here=True)
+    assert (copy.line, copy.asked) == (5, True) and not own.asked
+    desk.actions.editing.remove(copy)
+    open_source(desk.actions, FILE, 6)
+    assert desk.actions.editing == [own, copy] and copy.line == 6
+    desk.reading.faults.mend_it(fault)
+    open_source(desk.actions, FILE, 7, here=True)
+    assert desk.actions.editing == [own] and own.line == 7
+
+
+def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):
+    desk.open(3)
+    fault, code, faults = block(desk, "quarter"), block(desk, "mean"), desk.reading.faults
+    faults.break_it(fault)
+    desk.turn(4)
+    text_window(desk).replace_text_in_current_cursor("// mine\n")
+    desk.turn(2)
+    desk.reading.turn_page(1)
+    desk.turn(3)
+    assert not desk.actions.editing
+    desk.reading.turn_page(-1)
+    faults.break_it(fault)
+    desk.turn(3)
+    assert "// mine" in text_window(desk).get_text()
+    text_window(desk).replace_text_in_current_cursor("// more\n")
+    desk.actions.editing.clear()  # its window is closed
+    desk.turn(2)
+    faults.focus(fault)
+    assert "// more" in text_window(desk).get_text()
+    faults.mend_it(fault)
+    desk.turn(3)
+    faults.break_it(fault)
+    desk.turn(3)
+    assert "// mine" not in text_window(desk).get_text(), "the lesson's mend forgets what was typed"
+    faults.mend_it(fault)
+    faults.edit(code)
+    desk.turn(3)
+    text_window(desk).replace_text_in_current_cursor("// other\n")
+    faults.put_back(code)
+    faults.edit(code)
+    desk.turn(3)
+    assert "// other" not in text_window(desk).get_text(), "so does putting the file back"
 
 
 def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):

@@ -18,6 +18,7 @@ from playground.errors import ContextError
 from playground.live import storing as storing_module
 from playground.live.actions import Actions
 from playground.live.finite import REST, FiniteWatch
+from playground.live.see.thumbnails import Thumbnails
 from playground.live.session import Session
 from playground.live.storing import Storing
 
@@ -280,3 +281,26 @@ class TestWindow:
                 second.close()
         finally:
             screen.close()
+
+
+def test_land_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk: Desk) -> None:
+    """What is read does not run, and its texture may be one that held other land before."""
+    desk.turn()
+    session = desk.session
+    assert session is not None
+    engine, name = session.engine, "height:height"
+    thumbnails = Thumbnails(session)
+    thumbnails.refresh([name], now=0.0)
+    assert thumbnails.is_current(name)
+    pool, outputs = engine.pool, engine.results["height"].outputs
+    first = pool.take((5, 3), outputs)
+    engine.results = {**engine.results, "height": first}
+    thumbnails.refresh([name], now=1.0)
+    assert thumbnails.is_current(name)
+    pool.give(first)
+    again = pool.take((5, 3), outputs)
+    assert again.textures["height"] is first.textures["height"]
+    engine.results = {**engine.results, "height": again}
+    assert not thumbnails.is_current(name)
+    thumbnails.release()
+    again.release()

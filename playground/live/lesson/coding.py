@@ -42,8 +42,8 @@ def draw_break(block: Break, page: Page) -> None:
     with page.frame(block.name, rgb):
         page.label(page.say("fault"), rgb)
         page.text(block.ask)
-        if page.button(page.say("break"), block.alt, on=state == BROKEN) and state != BROKEN:
-            faults.break_it(block)
+        if page.button(page.say("break"), block.alt, on=state == BROKEN):
+            (faults.focus if state == BROKEN else faults.break_it)(block)
         if state == BROKEN:
             imgui.same_line()
             if page.button(page.say("mend"), f"glsl/{block.file}"):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.live.actions import Actions
+from playground.live.code_window import typed_in
 from playground.live.texts import Editing, OpenText
 from playground.paths import shown
 
@@ -16,6 +17,7 @@ class Copy(OpenText):
     """A text that stands in for a file; saving it draws it."""
 
     apply: Callable[[str], None] = field(default=lambda text: None)
+    leave: Callable[[str], None] = field(default=lambda text: None)  # told what was typed and not saved
     note: str = ""  # said when it is applied
     label: str = ""  # stands behind its name
 
@@ -54,28 +56,37 @@ class Copies:
 
     actions: Actions
     open: dict[Path, Copy] = field(default_factory=dict)
+    _windows: dict[Path, Editing] = field(default_factory=dict)  # also of one whose window was closed
+
+    def __post_init__(self) -> None:
+        self.actions.copy_of = self._windows.get
 
     def edit(self, copy: Copy, line: int = 1) -> None:
         """Open a copy in the window's own editor, in place of another of the same file."""
         self.close(copy.path)
         self.open[copy.path] = copy
-        editing = Editing(copy)
+        editing = self._windows[copy.path] = Editing(copy)
         editing.line = max(line, 1)
         self.actions.editing.append(editing)
 
     def focus(self, path: Path, line: int = 1) -> bool:
-        """Bring the copy of a file to the front; say whether one is open."""
-        for editing in self.actions.editing:
-            if editing.text is self.open.get(path):
-                editing.line, editing.column, editing.asked = max(line, 1), 1, True
-                return True
-        return False
+        """Bring the copy of a file to the front, also where its window was closed; say if there is one."""
+        editing = self._windows.get(path)
+        if editing is None:
+            return False
+        if all(other is not editing for other in self.actions.editing):
+            self.actions.editing.append(editing)
+        editing.line, editing.column, editing.asked = max(line, 1), 1, True
+        return True
 
     def close(self, path: Path | None = None) -> None:
-        """Close the copy of a file, or all of them."""
+        """Close the copy of a file, or all of them; each is told what was typed in it and not saved."""
         gone = [copy for file, copy in self.open.items() if path is None or file == path]
         self.actions.editing[:] = [e for e in self.actions.editing if all(e.text is not c for c in gone)]
         for copy in gone:
+            typed = typed_in(self._windows.pop(copy.path))
+            if typed is not None:
+                copy.leave(typed)
             del self.open[copy.path]
 
     def text_of(self, path: Path) -> str | None:

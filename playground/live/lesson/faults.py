@@ -81,12 +81,16 @@ class Faults:
         self.stage.show(block.scene, (block.name, 1), self.texts)
         self._to_check = text != faulty(block)
 
+    def focus(self, block: Break) -> None:
+        """Bring the copy of a fault to the front, also where its window was closed."""
+        self.copies.focus(file_of(block))
+
     def mend_it(self, block: Break) -> None:
         """Draw the file's own text again."""
         if block.scene is None:
             return
-        self.typed.pop(block.name, None)
         self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
         self._on, self._to_check = None, False
         self.state[block.name] = TOLD
         self.stage.show(block.scene, (block.name, 0), self.texts)
@@ -152,8 +156,8 @@ class Faults:
 
     def put_back(self, block: Code) -> None:
         """Draw the file's own text again, and forget what was typed."""
-        self.typed.pop(block.name, None)
         self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
         if self._on is not None and file_of(self._on) == file_of(block):
             self.typed.pop(self._on.name, None)
             self.leave()
@@ -189,7 +193,10 @@ class Faults:
             self._draw()
             self._to_check = self._on is not None
 
-        copy = Copy(path, text, apply=apply, note=self.say("applied"), label=self.say("copy"))
+        def leave(new: str) -> None:
+            self.typed[block.name] = new
+
+        copy = Copy(path, text, apply=apply, leave=leave, note=self.say("applied"), label=self.say("copy"))
         self.copies.edit(copy, line)
 
     def _draw(self) -> None:

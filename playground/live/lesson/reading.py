@@ -232,6 +232,8 @@ class Reading:
         self.playing = ""
         self.faults.put_away(drawn=False)
         self.stage.go_back()
+        if self.stage.own is not None:  # it is gone: the lesson's picture stays, without copies
+            self.faults.put_away()
 
     def _put(self, scene: Scene, name: str, index: int) -> None:
         if self.playing != name:

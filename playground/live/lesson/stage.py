@@ -16,13 +16,15 @@ from playground.errors import PlaygroundError
 from playground.lessons.model import Scene
 from playground.live.actions import Actions
 from playground.live.clock import Clock
-from playground.live.edits import Draft, Edits
+from playground.live.edits import Edits
 from playground.live.history import History, state_of
 from playground.live.lesson.scene import edits_of, map_of, path_of, steps_of
-from playground.live.see.compare import Mode
+from playground.live.see.compare import Kept, Mode
 from playground.live.stages import Stage as Coming
+from playground.live.words import Said
 from playground.sketch.load import load
 from playground.sketch.maps import Map
+from playground.sketch.model import Camera
 
 Key = tuple[str, int]
 """A picture of a lesson: the name of its block, and which of the block's."""
@@ -34,10 +36,13 @@ class Own:
 
     path: Path
     edits: Edits
+    in_file: Mapping[str, Said]  # what its files said of each value set by hand
+    camera_in_file: Camera | None
     steps: Mapping[str, int]
     map: Map | None
     clock: Clock
     history: History
+    compared: Kept | None  # the A that it was compared with
 
 
 class Stage:
@@ -55,6 +60,7 @@ class Stage:
         self._histories: dict[Path, tuple[History, Edits]] = {}
         self._waits = False
         self._first: Scene | None = None  # what the picture is to be compared with
+        self._compared: Kept | None = None  # the A that comes back with what was open
 
     @property
     def busy(self) -> bool:
@@ -103,8 +109,7 @@ class Stage:
         self._set = edits, steps
 
     def set_texts(self, texts: Mapping[str, str]) -> None:
-        """Have texts stand in for shaders' files in what is shown now."""
-        self._begin()
+        """Have texts stand in for shaders' files in what is shown now; the reader's own stays that."""
         self.actions.session.read_as(texts)
 
     def stop_at(self, steps: Mapping[str, int], key: Key) -> None:
@@ -123,6 +128,9 @@ class Stage:
     def turn(self) -> None:
         """Take in what has become of the picture that was asked for; once a turn."""
         session = self.actions.session
+        if self._compared is not None and not session.leaves:
+            self.actions.see.compare.take_up(self._compared)
+            self._compared = None
         if self.own is not None and session.path != self._path:
             self.let_go()  # the reader opened a sketch
             return
@@ -132,12 +140,17 @@ class Stage:
             self._compare()
 
     def go_back(self) -> None:
-        """Show what was open before the lesson took the stage, as it was."""
+        """Show what was open before the lesson took the stage, as it was; say so where it is gone."""
         own, session = self.own, self.actions.session
         if own is None:
             return
+        try:
+            session.open(own.path, edits=own.edits, in_file=own.in_file, camera_in_file=own.camera_in_file)
+        except PlaygroundError as error:
+            self.actions.say(str(error))
+            return
         self.actions.see.compare.end()
-        session.open(own.path, edits=own.edits)
+        self._compared, self._first = own.compared, None
         self.actions.history = own.history
         session.view(own.steps, own.map)
         clock = session.clock
@@ -154,10 +167,10 @@ class Stage:
         self._begins()
         actions, session = self.actions, self.actions.session
         actions.look_back(False)
-        draft: Draft | None = session.coming if session.leaves else session.shown or session.coming
-        clock = replace(session.clock)
-        edits = draft.edits if draft else Edits()
-        self.own = Own(session.path, edits, dict(session.steps), session.map, clock, actions.history)
+        by_hand, (steps, shown) = session.set_by_hand(), session.seen_next()
+        clock, compared = replace(session.clock), self._compared or actions.see.compare.kept
+        self._compared = None
+        self.own = Own(session.path, *by_hand, steps, shown, clock, actions.history, compared)
         self._path = session.path
 
     def _leave(self) -> None:

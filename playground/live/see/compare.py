@@ -80,6 +80,11 @@ class Compare:
         return self._kept is not None
 
     @property
+    def kept(self) -> Kept | None:
+        """A itself, to be taken up again later."""
+        return self._kept
+
+    @property
     def picture(self) -> moderngl.Texture | None:
         """A's picture; None where there is no A."""
         return self._picture.texture if self.on and self._picture is not None else None
@@ -96,6 +101,10 @@ class Compare:
     def keep(self) -> None:
         """Take what is shown for A."""
         self._kept, self._drawn, self._told = self._now(), None, False
+
+    def take_up(self, kept: Kept) -> None:
+        """Compare with an A that was kept before; it is let go where another sketch is open by now."""
+        self._kept, self._drawn, self._told = kept, None, False
 
     def keep_other(self, draft: Draft, steps: Mapping[str, int]) -> None:
         """Take another state of the sketch that is shown for A; it is drawn as B is seen."""

@@ -209,4 +209,4 @@ class Counter:
             return None
         texture = result.textures[ref.output]
         # The same texture's numbers change only when its pass runs again.
-        return texture, (session.map.ref, id(engine), texture.glo, engine.runs[ref.path])
+        return texture, (session.map.ref, id(engine), result.number, engine.runs[ref.path])

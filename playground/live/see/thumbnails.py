@@ -105,7 +105,7 @@ class Thumbnails:
         if ref is None or result is None:
             return None
         texture = result.textures[ref.output]
-        return texture, (id(engine), texture.glo, engine.runs[ref.path])
+        return texture, (id(engine), result.number, engine.runs[ref.path])
 
 
 def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -> NDArray[np.uint8]:
