@@ -148,6 +148,23 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     assert "4.0 : 3.0" in page.text and "8.0" in page.text
 
 
+def test_a_figure_with_sliders_says_where_they_are(book):
+    for language, option in (("en", ""), ("fr", " --lang fr")):
+        page = Page(book / language / "small.html")
+        words = interface_words(language)
+        said = f"{words['in_window']}{words['colon']}playground lesson open small{option}"
+        assert page.text.count(said) == 1  # of its figures one has sliders
+
+
+def test_a_page_has_few_landmarks(book):
+    """Questions, exercises and code are many on a page: one finds them by their headings."""
+    page = Page(book / "en/small.html")
+    assert not [a for tag, a in page.elements if a.get("role") == "region"]
+    named = [a["aria-labelledby"] for tag, a in page.elements if tag == "section" and "aria-labelledby" in a]
+    headings = {a["id"] for tag, a in page.elements if tag == "h2" and "id" in a}
+    assert set(named) <= headings and len(named) >= 3
+
+
 def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, engine, make_lesson):
     own = book / "my-notes.txt"
     own.write_text("mine", encoding="utf-8")
@@ -181,6 +198,11 @@ def test_formulas_become_mathml():
     html = prose("Let $a^2$ be\n\n$$\\frac{a}{b}$$\n", str)
     assert html.count("<math") == 2 and "<msup>" in html and "<mfrac>" in html and "$" not in html
     assert 'display="block"' in formula("x", alone=True)
+
+
+def test_every_block_of_code_can_be_scrolled():
+    for words in ("```glsl\nint a;\n```\n", "```\na\n```\n", "Before\n\n    indented\n"):
+        assert '<pre class="code" tabindex="0"' in prose(words, str), words
 
 
 def test_html_in_a_lesson_is_text():
