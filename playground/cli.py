@@ -20,6 +20,7 @@ import typer
 
 from playground._version import __version__
 from playground.commands import (
+    cache,
     check,
     doctor,
     export,
@@ -131,7 +132,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {})
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {}, beside=True)
         return
     note("no display here, so a picture is made instead; playground --help says what else there is")
     render.make_picture(render.Picture(), renderer)
@@ -173,12 +174,12 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app)
+_GROUPS = (shots.app, lesson.app, cache.app)
 for _group in _GROUPS:
     app.add_typer(_group)
 _COMMANDS = (
     *(str(command.name) for command in app.registered_commands),
-    *(str(g.info.name) for g in _GROUPS),
+    *(str(group.info.name) for group in _GROUPS),
 )
 
 

@@ -11,6 +11,6 @@ from playground.sketch.techniques import Techniques, WithLibrary
 _LIBRARY = Techniques()
 
 
-def load(name: str | Path) -> Sketch:
+def load(name: str | Path = "") -> Sketch:
     """Load a sketch as the playground does, but read each of the library's techniques once a session."""
     return load_with(WithLibrary(_LIBRARY), name)

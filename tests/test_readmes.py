@@ -49,8 +49,23 @@ def test_the_first_kernel_fits_the_sketch_that_new_writes(any_engine: Engine, tm
     assert any_engine.render(sketch, size=(64, 36)).array[..., :3].std() > 1
 
 
+def smaller(text: str) -> str:
+    """Return the code with pictures of a quarter of the sides: what runs is the same."""
+    return re.sub(r"\((\d{3,4}), (\d{3,4})\)", lambda m: f"({int(m[1]) // 4}, {int(m[2]) // 4})", text)
+
+
 @pytest.mark.parametrize("text", blocks("python"))
 def test_python_runs(text: str, tmp_path: Path):
+    runs(smaller(text), tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", blocks("python"))
+def test_python_runs_as_it_stands(text: str, tmp_path: Path):
+    runs(text, tmp_path)
+
+
+def runs(text: str, tmp_path: Path) -> None:
     here = os.environ | {"PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-W", "error", "-c", text]
     done = subprocess.run(command, cwd=tmp_path, env=here, capture_output=True, text=True)
@@ -61,7 +76,7 @@ def test_commands_exist():
     shown = set(
         re.findall(r"(?:playground|\./play) ([a-z]+)", " ".join(path.read_text("utf-8") for path in READMES))
     )
-    known = {command.name for command in app.registered_commands} | {"shots"} | {"test", "live"}
+    known = {command.name for command in app.registered_commands} | {"shots", "cache", "lesson"} | {"test", "live"}
     assert shown and shown <= known
 
 

@@ -95,6 +95,16 @@ SetOption = Annotated[
         autocompletion=complete_setting,
     ),
 ]
+TimeOption = Annotated[str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)]
+StepsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--steps",
+        help="Stop a repeated pass after so many turns. May be repeated.",
+        metavar="PASS=TURNS",
+        show_default=False,
+    ),
+]
 DriverOption = Annotated[
     str,
     typer.Option(

@@ -74,4 +74,5 @@ def _print_report(report: FileReport) -> None:
     skipped = f"  (skipped: {', '.join(report.skipped)})" if report.skipped else ""
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
     for diagnostic in report.errors:
-        print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")), flush=True)
+        print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")))
+    sys.stdout.flush()  # a pipe's reader sees each file as it is done

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import typer
 
@@ -18,6 +18,7 @@ from playground.commands.arguments import (
     SoftwareOption,
     help_text,
 )
+from playground.commands.cache import kept_text
 from playground.terminal import complain
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 
 HELP = help_text(
     "Say what this machine offers, and what to do where something is missing.\n\n"
-    "The OpenGL context, its limits, the display, the packages. Exit status 1 when no context opens.",
+    "The OpenGL context, its limits, the display, the packages, the land kept on disk."
+    " Exit status 1 when no context opens.",
     "playground doctor",
     "playground doctor --software",
     "playground doctor --json",
@@ -45,7 +47,7 @@ def doctor(
     renderer: Renderer = ctx.obj.or_else(software, device)
     health = examine(software=renderer.software, device=renderer.device)
     if as_json:
-        print(json.dumps(health.as_json(), indent=2, ensure_ascii=False))
+        print(json.dumps(health.as_json() | {"cache": _cache()}, indent=2, ensure_ascii=False))
     else:
         findings = list(_findings(health))
         width = max(len(label) for label, _ in findings) + 2
@@ -77,3 +79,21 @@ def _findings(health: Health) -> Iterator[tuple[str, str]]:
     yield "playground", __version__
     for name, version in health.packages.items():
         yield name, version or "missing"
+    kept = _cache()
+    yield "land kept on disk", kept_text(kept["folder"], kept["files"], kept["bytes"], kept["most_bytes"])
+
+
+class _Cache(TypedDict):
+    """What is kept of expensive land."""
+
+    folder: str
+    files: int
+    bytes: int
+    most_bytes: int
+
+
+def _cache() -> _Cache:
+    from playground.engine.store import bytes_in, limit_in, place
+
+    files, size = bytes_in(place())
+    return {"folder": str(place()), "files": files, "bytes": size, "most_bytes": limit_in()}

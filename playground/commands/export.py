@@ -16,6 +16,8 @@ from playground.commands.arguments import (
     SetOption,
     SketchArgument,
     SoftwareOption,
+    StepsOption,
+    TimeOption,
     either,
     help_text,
     moment_of,
@@ -125,18 +127,8 @@ def export(
     preset: Annotated[
         str, typer.Option("--preset", help="Begin with a preset.", metavar="NAME", show_default=False)
     ] = "",
-    steps: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--steps",
-            help="Stop a repeated pass after so many turns. May be repeated.",
-            metavar="PASS=TURNS",
-            show_default=False,
-        ),
-    ] = None,
-    time: Annotated[
-        str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)
-    ] = "",
+    steps: StepsOption = None,
+    time: TimeOption = "",
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
     device: DeviceOption = "",

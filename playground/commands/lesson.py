@@ -38,6 +38,13 @@ LIST_HELP = help_text(
     "playground lesson list --lang fr",
     "playground lesson list --json",
 )
+OPEN_HELP = help_text(
+    "Open a lesson beside the live window, with the sketch that it ends with.\n\n"
+    "Its figures are the window's picture, its sliders act on it; its faults are put into a copy, no file"
+    " is written. Next time it opens at the page where you were.",
+    "playground lesson open diamond_square",
+    "playground lesson open shadows --lang fr",
+)
 STATUS_HELP = help_text(
     "Say which translations have gone stale.\n\n"
     "A translation holds a hash of each English block that it was made from. Listed are the blocks whose"
@@ -143,6 +150,22 @@ def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
         return
     table = [(str(one.number), one.name, one.title, f"{one.minutes} min") for one in found]
     print_table("Lessons (playground lesson open NAME)", ("", "lesson", "title", "time"), table)
+
+
+@app.command("open", help=OPEN_HELP)
+def open_(
+    ctx: typer.Context, name: NameArgument, lang: LanguageOption = "", software: SoftwareOption = False
+) -> None:
+    """Open a lesson beside the live window."""
+    from playground.commands.live import check_display, open_window
+    from playground.lessons.library import lesson_file
+    from playground.lessons.read import part
+
+    language = read_language(lang)
+    sketch = str(part(lesson_file(name)).front.table.get("sketch", ""))
+    renderer: Renderer = ctx.obj.or_else(software)
+    check_display(renderer)
+    open_window(sketch, None, renderer, "auto", {}, lesson=name, language=language)
 
 
 @app.command("status", help=STATUS_HELP)

@@ -22,10 +22,30 @@ from playground.commands.arguments import (
     read_values,
     with_whole_paths,
 )
+from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
 
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
+]
+NoCacheOption = Annotated[
+    bool,
+    typer.Option(
+        "--no-cache",
+        metavar="",
+        help="Make all land anew, and keep none on disk (see playground cache).",
+    ),
+]
+
+LessonOption = Annotated[
+    str,
+    typer.Option(
+        "--lesson",
+        metavar="NAME",
+        show_default=False,
+        help="Open a lesson beside it.",
+        autocompletion=complete_lesson,
+    ),
 ]
 
 HELP = help_text(
@@ -35,6 +55,8 @@ HELP = help_text(
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
+    "playground live --lesson diamond_square --lang fr",
+    "playground live my-land --no-cache",
     "playground live shader.frag",
 )
 
@@ -47,20 +69,38 @@ def live(
     driver: DriverOption = "auto",
     software: SoftwareOption = False,
     fresh: FreshOption = False,
+    lesson: LessonOption = "",
+    lang: LanguageOption = "",
+    no_cache: NoCacheOption = False,
 ) -> None:
     """Open a sketch in a window."""
-    from playground.gpu.doctor import where_to_show
-
     renderer: Renderer = ctx.obj.or_else(software)
     pixels = read_pixels(size)
     values = read_values(settings)
+    check_display(renderer)
+    open_window(
+        sketch,
+        pixels,
+        renderer,
+        read_driver(driver),
+        values,
+        fresh=fresh,
+        lesson=lesson,
+        language=lang,
+        no_cache=no_cache,
+    )
+
+
+def check_display(renderer: Renderer) -> None:
+    """Raise ``ContextError`` where no window can be opened, or not by what is asked for."""
+    from playground.gpu.doctor import where_to_show
+
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
     if not where_to_show(os.environ, sys.platform):
         from playground.gpu.mend import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
-    open_window(sketch, pixels, renderer, read_driver(driver), values, fresh=fresh)
 
 
 def open_window(
@@ -71,8 +111,15 @@ def open_window(
     values: dict[str, object],
     *,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
+    no_cache: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
+    from playground.engine.store import limit_in
+
+    keeps = 0 if no_cache else limit_in()
     from playground.live.app import run
 
     if values:
@@ -80,6 +127,17 @@ def open_window(
 
         with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
             values = with_whole_paths(load(sketch), values)
-    status = run(sketch, size=size, software=renderer.software, driver=driver, values=values, fresh=fresh)
+    status = run(
+        sketch,
+        size=size,
+        software=renderer.software,
+        driver=driver,
+        values=values,
+        fresh=fresh,
+        lesson=lesson,
+        language=language,
+        beside=beside,
+        keeps=keeps,
+    )
     if status:
         raise typer.Exit(status)

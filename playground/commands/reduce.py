@@ -21,6 +21,8 @@ from playground.commands.arguments import (
     SizeOption,
     SketchArgument,
     SoftwareOption,
+    StepsOption,
+    TimeOption,
     help_text,
     moment_of,
     quoted,
@@ -161,18 +163,8 @@ def reduce(
     ] = False,
     settings: SetOption = None,
     size: SizeOption = None,
-    time: Annotated[
-        str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)
-    ] = "",
-    steps: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--steps",
-            help="Stop a repeated pass after so many turns.",
-            metavar="PASS=TURNS",
-            show_default=False,
-        ),
-    ] = None,
+    time: TimeOption = "",
+    steps: StepsOption = None,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:

@@ -19,6 +19,8 @@ from playground.commands.arguments import (
     SizeOption,
     SketchArgument,
     SoftwareOption,
+    StepsOption,
+    TimeOption,
     either,
     help_text,
     moment_of,
@@ -98,9 +100,7 @@ def render(
         ),
     ] = "",
     size: SizeOption = None,
-    time: Annotated[
-        str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)
-    ] = "",
+    time: TimeOption = "",
     settings: SetOption = None,
     driver: DriverOption = "auto",
     shot: Annotated[
@@ -118,15 +118,7 @@ def render(
             show_default=False,
         ),
     ] = "",
-    steps: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--steps",
-            help="Stop a repeated pass after so many turns. May be repeated.",
-            metavar="PASS=TURNS",
-            show_default=False,
-        ),
-    ] = None,
+    steps: StepsOption = None,
     profile: Annotated[
         bool, typer.Option("--profile", metavar="", help="Print the milliseconds of each pass.")
     ] = False,

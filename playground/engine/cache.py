@@ -78,6 +78,10 @@ class Cache:
         self._in_use.add(key)
         return kept
 
+    def peek(self, key: str) -> Kept | None:
+        """Return what is kept, as if nobody had looked."""
+        return self._kept.get(key)
+
     def put(self, key: str, kept: Kept) -> None:
         """Keep something, used by the current frame; what is over the bound goes."""
         self.drop(key)

@@ -23,8 +23,8 @@ from playground.engine.drawn import Drawn
 from playground.engine.execution import Execution, would_run
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
-from playground.engine.keys import Form, KeyMaker
-from playground.engine.plan import Plan, Step, Window, make_plan, needed, repeated_in
+from playground.engine.keys import Form, KeyMaker, Keys
+from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -40,6 +40,8 @@ from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.engine.store_keeping import Keeping
 
 CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
@@ -77,6 +79,7 @@ class Engine:
         self.cache = Cache(cache_bytes, self.pool)
         self.runner = Runner(ctx, self.info, self.pool)
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
+        self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
         self._keys = KeyMaker()
         self._drawn = Drawn()
         self._finite = FiniteCheck(self)
@@ -308,7 +311,7 @@ class Engine:
 
     def _hash_of(self, plan: Plan) -> str:
         shown = next(iter(plan.flat.outputs["view"].values()))
-        return self._drawn.hash_of(plan, shown, self.form_of, self._given_for, _continued(plan))
+        return self._drawn.hash_of(plan, shown, self.form_of, self._given_for, continued(plan))
 
     def forget_unused(self) -> None:
         """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
@@ -324,9 +327,16 @@ class Engine:
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
         plan = self.plan_for(sketch, size, time, steps)
+        keys, shown = self.keys_of(plan), next(iter(plan.flat.outputs["view"].values()))
+        nodes = needed(plan.nodes, shown)
+        if self.keeping is not None:
+            nodes = self.keeping.would_run(self.cache, plan, keys, shown, continued(plan))
+        return would_run(keys, self.cache, nodes, plan)
+
+    def keys_of(self, plan: Plan) -> Keys:
+        """Return what each pass's textures depend on: see ``keys``."""
         with self._supposing(plan):
-            keys = self._keys.keys_of(plan, self.form_of, self._given_for, _continued(plan))
-        return would_run(keys, self.cache, needed(plan.nodes, next(iter(plan.flat.outputs["view"].values()))))
+            return self._keys.keys_of(plan, self.form_of, self._given_for, continued(plan))
 
     @contextmanager
     def _supposing(self, plan: Plan) -> Iterator[None]:
@@ -351,8 +361,8 @@ class Engine:
         self.runner.draws.drawn = 0
         self.cache.begin()
         self.runner.begin(plan)
-        continued = _continued(plan)
-        keys = self._keys.keys_of(plan, self.form_of, self._given_for, continued)
+        goes_on = continued(plan)
+        keys = self._keys.keys_of(plan, self.form_of, self._given_for, goes_on)
 
         def make(
             step: Step,
@@ -360,11 +370,14 @@ class Engine:
             turn: tuple[int, int] | None,
             start: Result | None,
         ) -> Result:
-            return self._make(step, inputs, turn, start, step.path in continued)
+            return self._make(step, inputs, turn, start, step.path in goes_on)
 
         execution = Execution(keys, self.cache, self.runner, make, plan.steps)
+        nodes = needed(plan.nodes, ref)
+        if self.keeping is not None:
+            nodes = self.keeping.begin(self, execution, plan, ref, goes_on)
         with self.borrowed():
-            execution.run(needed(plan.nodes, ref))
+            execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
         return execution.results[ref.path].textures[ref.output]
@@ -464,15 +477,6 @@ class Engine:
 def opened(sketch: Sketch | str | Path) -> Sketch:
     """Return the sketch itself, or the one of that name or path."""
     return sketch if isinstance(sketch, Sketch) else load(sketch)
-
-
-def _continued(plan: Plan) -> frozenset[str]:
-    """Return the paths of the draws that a later draw goes on from, with their samples and depth."""
-    found = set()
-    for step in plan.walk():
-        if step.kernel.kind == "draw":
-            found |= {s.path for name, s in step.inputs if name == "initial" and isinstance(s, Ref)}
-    return frozenset(found)
 
 
 def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:

@@ -7,10 +7,11 @@ belongs to the cache. A pass inside a loop that does not change with it runs onc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 
 from playground.engine.cache import Cache, Kept
 from playground.engine.keys import Keys
-from playground.engine.plan import PlanNode, Step, Turns, walk
+from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
@@ -23,17 +24,27 @@ Make = Callable[[Step, Mapping[str, Wired], Turn | None, Result | None], Result]
 """Runs a step: its inputs, the turn of the loop around it, the same step after fewer turns to go on from."""
 
 
+Timed = Callable[[str, str], AbstractContextManager[None]]
+"""Measures what the step or the loop of that path and that key takes."""
+
+
 class Execution:
     """One frame's run over a plan."""
 
     def __init__(
-        self, keys: Keys, cache: Cache, runner: Runner, make: Make, stopped: Mapping[str, int]
+        self,
+        keys: Keys,
+        cache: Cache,
+        runner: Runner,
+        make: Make,
+        stopped: Mapping[str, int],
     ) -> None:
         self.keys = keys
         self.cache = cache
         self.runner = runner
         self.make = make
         self.stopped = stopped  # repeats that are stopped early, by path
+        self.timed: Timed = lambda path, key: nullcontext()
         self.results: dict[str, Result] = {}  # by the step's path; good until the next frame
         self._settled: set[int] = set()  # identities of nodes that change with no loop, and have run
 
@@ -84,7 +95,8 @@ class Execution:
         if kept is None:
             goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)
             earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
-            kept = Kept({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
+            with self.timed(step.path, key):
+                kept = Kept({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
             self.cache.put(key, kept)
             if goes_on:
                 self.cache.note_turn(step.path, unfinished, key, step.repeat)
@@ -110,7 +122,8 @@ class Execution:
         if state is None or state.turn > loop.repeat:
             state = Kept({})
             self.cache.put(key, state)
-        self._loop(loop, state, {}, {})
+        with self.timed(loop.path, key) if state.turn < loop.repeat else nullcontext():
+            self._loop(loop, state, {}, {})
         self.cache.trim()
 
     def _loop(self, loop: Turns, state: Kept, around: Mapping[Fed, Wired], owned: dict[str, Result]) -> None:
@@ -153,10 +166,10 @@ class Execution:
         return found
 
 
-def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode]) -> list[str]:
-    """Return the paths of the steps that an execution would run: those that the cache does not keep."""
+def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -> list[str]:
+    """Return the paths of the steps that running some nodes of a plan would run: those not in the cache."""
     wanted = tuple(nodes)
-    steps = {step.path: step for step in walk(wanted)}
+    steps = {step.path: step for step in plan.walk()}
     found: list[str] = []
     for node in wanted:
         if isinstance(node, Turns):

@@ -123,6 +123,15 @@ def every_node(nodes: tuple[PlanNode, ...]) -> Iterator[PlanNode]:
             yield from every_node(node.body)
 
 
+def continued(plan: Plan) -> frozenset[str]:
+    """Return the paths of the draws that a later draw goes on from, with their samples and depth."""
+    found = set()
+    for step in plan.walk():
+        if step.kernel.kind == "draw":
+            found |= {s.path for name, s in step.inputs if name == "initial" and isinstance(s, Ref)}
+    return frozenset(found)
+
+
 def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     """Return the nodes that a texture depends on, in order."""
     wanted = {ref.path}

@@ -11,6 +11,7 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 from playground.gpu.program import compile_wrapped
+from playground.gpu.triangle import TRIANGLE
 from playground.gpu.wrap import with_choices, wrap
 from playground.sketch.model import Kernel
 
@@ -21,9 +22,6 @@ Choices = tuple[tuple[str, int], ...]
 """Checkboxes and menus with their values."""
 
 _SPARE = 64  # programs kept beyond those of the current frame
-_TRIANGLE = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 
 
 class Program:
@@ -109,9 +107,9 @@ class Programs:
 
     def own(self, fragment: str) -> Program:
         """Return the program of a fragment shader of the engine's own."""
-        text = (_TRIANGLE, fragment)
+        text = (TRIANGLE, fragment)
         if text not in self._by_text:
-            self._keep(text, self.ctx.program(vertex_shader=_TRIANGLE, fragment_shader=fragment))
+            self._keep(text, self.ctx.program(vertex_shader=TRIANGLE, fragment_shader=fragment))
         return self._used(text)
 
     def forget_mesh(self, mesh: object) -> None:

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import IO, Generic, TypeVar
 
 from playground.engine.trial_wire import Writer
+from playground.engine.waiting import Waits, waited_since, waits_of
 
 Answer = TypeVar("Answer")
 
@@ -59,6 +60,7 @@ class Process(Generic[Answer]):
         self.started = time.monotonic()
         self._ready_at: float | None = None
         self._handed_at = 0.0
+        self._waits: Waits = {}  # when it was handed what it works on
         self._requests: queue.Queue[object | None] = queue.Queue()
         self._errors = tempfile.TemporaryFile()  # closed in kill
         # -P: what lies in the user's folder is no module of ours, whatever its name.
@@ -90,14 +92,19 @@ class Process(Generic[Answer]):
 
     @property
     def seconds(self) -> float:
-        """How long it has worked on what it was handed, from when it was ready for it [s]."""
+        """How long it has worked on what it was handed, from when it was ready for it [s].
+
+        What it waited for a processor that others had does not count.
+        """
         if not self.busy or self._ready_at is None:
             return 0.0
-        return time.monotonic() - max(self._handed_at, self._ready_at)
+        passed = time.monotonic() - max(self._handed_at, self._ready_at)
+        return max(passed - waited_since(self._waits, waits_of(self.pid)), 0.0)
 
     def hand_over(self, request: object) -> None:
         """Give it a request; never waits."""
         self.busy, self.doing, self._handed_at = True, None, time.monotonic()
+        self._waits = waits_of(self.pid)
         self._requests.put(request)
 
     def cause_of_death(self) -> str:

@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from playground.flight.plot import Plot
 from playground.gpu.textures import make_framebuffer
+from playground.gpu.triangle import TRIANGLE
 
 if TYPE_CHECKING:
     import moderngl
 
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 _HEIGHTS = """#version 330
 uniform sampler2D source;
 uniform int apron;
@@ -45,7 +43,7 @@ class Cutter:
     def __init__(self, ctx: moderngl.Context, plot: Plot) -> None:
         self.ctx: Any = ctx
         self.plot = plot
-        self._programs = [ctx.program(vertex_shader=_VERTEX, fragment_shader=t) for t in (_HEIGHTS, _GROUND)]
+        self._programs = [ctx.program(vertex_shader=TRIANGLE, fragment_shader=t) for t in (_HEIGHTS, _GROUND)]
         self._arrays = [ctx.vertex_array(program, []) for program in self._programs]
         self._surfaces: dict[int, moderngl.Framebuffer] = {}  # by the texture's own number
 

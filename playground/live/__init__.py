@@ -22,6 +22,8 @@
     actions.py    what a button or a key asks for that is more than one call of the session
     status.py     what the window shows, as JSON lines for another program
 
+    lesson/       lessons: a panel of text, and the picture as their figure
+
     theme.py      fonts, colours, margins
     window.py     GLFW, an OpenGL context, Dear ImGui: the one place that knows of screens
     dividers.py   the lines that part a picture, moved by the mouse

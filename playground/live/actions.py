@@ -61,6 +61,8 @@ class Actions:
     editing: list[Editing] = field(default_factory=list)  # files open in windows of our own
     leaving: bool = False  # the window is to close, and something is not saved: it is asked what to do
     reveal: str = ""  # the pass that the panel is to bring into sight
+    toggle_lessons: Callable[[], None] = lambda: None  # shows the lessons, or no longer
+    turn_page: Callable[[int], None] = lambda pages: None  # goes so many pages of a lesson on
 
     def __post_init__(self) -> None:
         self.painting = Painting(self.session, self.folder)

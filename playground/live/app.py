@@ -22,6 +22,7 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.gpu.said import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
+from playground.lessons.library import SOURCE, lesson_file
 from playground.live.actions import Actions
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code, unsaved
@@ -33,6 +34,7 @@ from playground.live.follow import Follower
 from playground.live.hand import Hand
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
+from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
@@ -45,6 +47,7 @@ from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
+from playground.live.storing import Storing
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
@@ -67,16 +70,25 @@ def run(
     driver: str = "auto",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
+    lesson: str = "",
+    language: str = "",
+    beside: bool = False,
+    keeps: int = 0,
     time_limit: float | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
-    by hand the last time is set again, unless ``fresh``. With a ``time_limit`` [s] the
-    window closes itself. Raises ``ContextError`` where no window
-    can be opened, ``SketchError`` where there is no such sketch, ``ParameterError`` for a
-    value that does not fit; any other mistake in the sketch is shown in the window.
+    by hand the last time is set again, unless ``fresh``. ``lesson`` opens one by name, in a
+    ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
+    unless the reader has closed the lessons. Expensive land is kept on disk, in at most
+    ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
+    sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
+    mistake in the sketch is shown in the window.
     """
+    if lesson:
+        lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
     path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
     checked = _checked(path, values or {})
     if software:
@@ -87,7 +99,7 @@ def run(
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
-        window = stack.enter_context(Window(f"{path.stem} – terrain shader playground", opens))
+        window = stack.enter_context(Window(title_of(path), opens))
         engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
@@ -95,16 +107,22 @@ def run(
             values=checked,
             edits=found.edits,
             in_file=dict(found.in_file),
+            camera_in_file=found.camera_in_file,
             trial=trial,
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer)
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        if found.at is not None:
+            live.place.stand_at(found.at)
+        density = window.scale * window.density
+        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
+        stack.callback(live.storing.close)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
@@ -117,6 +135,12 @@ def find_default() -> Path:
     from playground.paths import DEFAULT_SKETCH
 
     return find(DEFAULT_SKETCH)
+
+
+def title_of(path: Path) -> str:
+    """Return the title of a window on a sketch."""
+    name = path.parent.name if path.name == "sketch.toml" else path.stem
+    return f"{name} – terrain shader playground"
 
 
 def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
@@ -135,9 +159,12 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
 class Live:
     """The window, the session and the watcher, turn by turn."""
 
-    def __init__(self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer) -> None:
+    def __init__(
+        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+    ) -> None:
         self.window = window
         self.rememberer = rememberer
+        self.storing = storing
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
@@ -147,18 +174,23 @@ class Live:
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
+        rememberer.compare = self.actions.see.compare
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.hand = Hand(session, self.actions.painting)
         self.finite = FiniteWatch()
+        self.lessons = Lessons(self.actions, rememberer, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.follower.follow()
         while self._stays():
-            patience = min(self._patience(), self.actions.see.patience(self.actions.now()))
+            now = self.actions.now()
+            patience = min(
+                self._patience(), self.actions.see.patience(now), self.lessons.reading.patience(now)
+            )
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -185,6 +217,7 @@ class Live:
     def release(self) -> None:
         """Give back all that was made in the window's context."""
         self.actions.see.release()
+        self.lessons.release()
         self.painter.release()
         self.session.release()
         self.session.engine.release()
@@ -196,6 +229,7 @@ class Live:
             self.release()
         self.window.reopen()
         self.session.rebuild(Engine(self.window.ctx, driver=driver))
+        self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
 
@@ -213,6 +247,8 @@ class Live:
             return REST / 2
         if self.finite.patience is not None:
             return self.finite.patience
+        if self.storing.patience is not None:
+            return min(self.storing.patience, QUIET / 2)
         if self.rememberer.waits:
             return QUIET / 2
         if self.actions.capture.working is not None:
@@ -233,10 +269,12 @@ class Live:
 
     def _turn(self) -> None:
         window, session, actions = self.window, self.session, self.actions
+        window.call(title_of(session.path))
         take_dropped(actions, self.place.dropped())
         window.begin()
         actions.see.begin()
-        left = self.panel.draw(actions, window.theme) if actions.panel_shown else 0.0
+        left = self.lessons.draw(window.theme)
+        left += self.panel.draw(actions, window.theme, left) if actions.panel_shown else 0.0
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
         draw_code(actions, window.theme, area)
@@ -247,10 +285,12 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
+        self.lessons.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
         self.finite.turn(actions, imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
         actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
@@ -276,8 +316,12 @@ class Live:
         if not session.testing and self._settling == 0:
             self.warnings.look()
         self.status.write(actions, self.finite.found)
+        rests = self._settling == 0 and not session.testing and not imgui.is_mouse_down(0)
+        self.lessons.turn(idle=rests)
+
+    def _remember(self) -> None:
         stands = self.place.geometry()
-        self.rememberer.look((stands.width, stands.height))
+        self.rememberer.look((stands.width, stands.height), (stands.x, stands.y))
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""
@@ -291,6 +335,6 @@ class Live:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None:
+            if self._reloads is not None and self.lessons.reading.stage.own is None:
                 self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

@@ -6,19 +6,23 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from playground.errors import PlaygroundError
-from playground.live.edits import Draft, Edits
+from playground.live.edits import Draft, Edits, with_camera_of
 from playground.live.words import Said, newer_word, notice, said_by_files
-from playground.sketch.model import Sketch
+from playground.sketch.model import Camera, Sketch
 
 
-def first_draft(loaded: Sketch, edits: Edits, in_file: Mapping[str, Said]) -> tuple[Draft, list[str]]:
+def first_draft(
+    loaded: Sketch, edits: Edits, in_file: Mapping[str, Said], camera_in_file: Camera | None = None
+) -> tuple[Draft, list[str]]:
     """Return the draft to begin with, and a sentence for each edit that gave way.
 
     ``in_file`` is what the files said of a value when it was last shown: see ``words`` for
-    where what they say now goes before it.
+    where what they say now goes before it. ``camera_in_file`` is what they said of the camera then,
+    if that is known; where they say another now, theirs is taken.
     """
+    edits, note = with_camera_of(edits, camera_in_file or loaded.camera, loaded.camera)
     draft = Draft(loaded, loaded, replace(edits, techniques=()))
-    notes = []
+    notes = [note] if note else []
     for name, use in edits.techniques:
         try:
             draft = draft.choose(name, use)

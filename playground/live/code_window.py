@@ -15,7 +15,6 @@ from playground.live.files import path_named
 from playground.live.overlay import Area
 from playground.live.texts import Editing
 from playground.live.theme import Theme
-from playground.paths import shown
 
 _TALLEST = 0.46  # share of the picture's height, so that the list below stays in sight
 _CLASH = "Saved by others meanwhile"
@@ -61,7 +60,7 @@ def _ask_to_leave(actions: Actions) -> None:
         imgui.text_unformatted(f"Not saved: {', '.join(unsaved(actions))}")
         if imgui.button("Save and quit"):
             actions.leaving = False
-            if all([save(e, actions) for e in actions.editing if _view_of(e).changed]):
+            if all([save(e, actions) for e in actions.editing if e.text.kept and _view_of(e).changed]):
                 actions.quit()
         imgui.same_line()
         if imgui.button("Quit"):
@@ -78,7 +77,7 @@ def _ask_to_leave(actions: Actions) -> None:
 
 def unsaved(actions: Actions) -> list[str]:
     """Return the names of open files with changes that are not saved."""
-    return [e.text.path.name for e in actions.editing if _view_of(e).changed]
+    return [e.text.path.name for e in actions.editing if e.text.kept and _view_of(e).changed]
 
 
 def typing(actions: Actions) -> list[str]:
@@ -103,7 +102,7 @@ def _view_of(editing: Editing) -> _View:
 def _draw(editing: Editing, view: _View, actions: Actions, look: Theme, area: Area, at: int) -> bool:
     """Draw one file; return False once it is closed."""
     x, y, wide, high = area
-    path, scale = editing.text.path, look.scale
+    scale = look.scale
     size = ImVec2(min(wide * 0.7, 720 * scale), min(high * _TALLEST, 640 * scale))
     imgui.set_next_window_size(size, imgui.Cond_.appearing)
     step = at * 24 * scale
@@ -119,7 +118,7 @@ def _draw(editing: Editing, view: _View, actions: Actions, look: Theme, area: Ar
     imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.98))
     imgui.push_style_color(imgui.Col_.title_bg_active, theme.colour(theme.RAISED))
     star = " *" if view.changed else ""
-    _, stays = imgui.begin(f"{shown(path)}{star}###{path}", True, flags)
+    _, stays = imgui.begin(f"{editing.text.title}{star}###{editing.text.title}", True, flags)
     focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows) and not editing.asked
     view.held = view.held + 1 if focused else 0
     if imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
@@ -139,7 +138,7 @@ def _draw(editing: Editing, view: _View, actions: Actions, look: Theme, area: Ar
         view.editor.set_focus()
     with look.font(look.code):
         view.editor.render("##text", ImVec2(0, 0))
-    if stays is False and view.changed:
+    if stays is False and view.changed and editing.text.kept:
         view.closing, stays = True, True
     stays = _ask(editing, view, actions) and stays is not False
     imgui.end()
@@ -159,7 +158,7 @@ def save(editing: Editing, actions: Actions, *, over: bool = False) -> bool:
         actions.say(str(error))
         return False
     view.saved_at = view.editor.get_undo_index()
-    actions.say(f"saved {shown(editing.text.path)}")
+    actions.say(editing.text.saved())
     return True
 
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from playground.engine.trial import TrySketch
+from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.live.begin import first_draft
 from playground.live.clock import Clock
@@ -29,6 +29,7 @@ from playground.sketch.kept import KeptTechniques
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
+from playground.sketch.reread import with_texts
 
 
 class Drafts(ABC):
@@ -42,6 +43,7 @@ class Drafts(ABC):
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
     ) -> None:
@@ -53,11 +55,13 @@ class Drafts(ABC):
         self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them takes them out
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
+        self.texts: Mapping[str, str] = {}  # what stands in for shaders' files, by absolute path
         edits = edits or Edits()
         for name, value in (values or {}).items():
             edits = edits.with_value(name, value)
         self._initial = edits  # set by hand in an earlier session; the values, on the command line
         self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
+        self._camera_in_file = camera_in_file
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
         self._techniques = KeptTechniques()
@@ -65,6 +69,7 @@ class Drafts(ABC):
         self._now = now
         self._started = 0.0  # when what is coming began to be read
         self._trial_seconds = 0.0
+        self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
         self._coming_notes: list[str] = []
         self._file_error: PlaygroundError | None = None  # of what is coming
         self._draw_error: PlaygroundError | None = None  # of what is shown
@@ -88,6 +93,11 @@ class Drafts(ABC):
         return self.stage is Stage.TRIAL
 
     @property
+    def leaves(self) -> bool:
+        """Whether another sketch was opened, and the one before is still shown."""
+        return self._another
+
+    @property
     def files(self) -> frozenset[Path]:
         """Every file worth watching: of the drafts, those that an error points at, and where others may come.
 
@@ -106,32 +116,52 @@ class Drafts(ABC):
         self._started = self._now()
         try:
             with noting_places() as self.places:
-                loaded = load_with(self._techniques.begin(), self.path)
+                loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             old = None if self._another else self.shown or self.coming
             draft, notes = (
-                reload_draft(old, loaded) if old else first_draft(loaded, self._initial, self._in_file)
+                reload_draft(old, loaded)
+                if old
+                else first_draft(loaded, self._initial, self._in_file, self._camera_in_file)
             )
         except Exception as error:
             self._drop_coming()
             self._file_error = explained(error)
             return
-        if self.shown is not None and loaded == self.shown.file:
+        if self.shown is not None and loaded == self.shown.file and not self._another:
             self._drop_coming()
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
             return
         self._propose(draft, notes)
 
-    def open(self, path: Path, *, keep: bool = False) -> None:
+    def open(
+        self,
+        path: Path,
+        *,
+        keep: bool = False,
+        edits: Edits | None = None,
+        in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
+        texts: Mapping[str, str] | None = None,
+    ) -> None:
         """Open another sketch; the picture stays until that one has proved good.
 
-        ``keep``: it is a copy of this one, and what is set by hand goes on.
+        ``keep``: it is a copy of this one, and what is set by hand goes on. ``edits``: what is set
+        by hand in the other; ``in_file`` and ``camera_in_file``: what its files said then; ``texts``:
+        what stands in for some of them.
         """
-        self.path = find(path)
+        self.path, self.texts = find(path), texts or {}
         if not keep:
-            self._initial, self._in_file, self._another = Edits(), {}, True
+            self._initial, self._in_file, self._another = edits or Edits(), dict(in_file or {}), True
+            self._camera_in_file = camera_in_file
             self._forget_view()
         self.reload()
+
+    def read_as(self, texts: Mapping[str, str]) -> None:
+        """Have texts, by absolute path, stand in for shaders' files; nothing is written."""
+        if texts != self.texts:
+            self.texts = dict(texts)
+            self.reload()
 
     def choose(self, pass_name: str, use: str) -> None:
         """Fill a pass with another technique, once that has proved good."""
@@ -149,8 +179,28 @@ class Drafts(ABC):
         if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
             return
-        self.stage = Stage.TRIAL
-        self._trial.submit(TrySketch(draft.sketch, time=self.clock.time, drivers=(self._driver,)))
+        self.stage, self._aside = Stage.TRIAL, None
+        self._submit(self._trial, draft.sketch)
+
+    def tried(self, sketch: Sketch) -> TrialReport | None:
+        """Return how the trial of a sketch ended that is seen beside this one; None while it is not known.
+
+        What is coming goes first.
+        """
+        if self._trial is None:
+            return TrialReport(True)
+        if self.stage is Stage.TRIAL:
+            return None
+        if self._aside is not sketch:
+            self._aside = sketch
+            self._submit(self._trial, sketch)
+        report = self._trial.poll()
+        if report is not None:
+            self._aside = None
+        return report
+
+    def _submit(self, trial: Tester, sketch: Sketch) -> None:
+        trial.submit(TrySketch(sketch, time=self.clock.time, drivers=(self._driver,)))
 
     @abstractmethod
     def _draws_anew(self, sketch: Sketch) -> bool:

@@ -143,14 +143,19 @@ def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
 def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
     """Return the draft after its files changed, and a sentence for each edit that gave way."""
     notes: list[str] = []
-    edits = old.edits
-    if loaded.camera != old.file.camera and edits.camera is not None:
-        if edits.camera != loaded.camera:
-            notes.append("camera: the file's new one is taken")
-        edits = replace(edits, camera=None)
+    edits, note = with_camera_of(old.edits, old.file.camera, loaded.camera)
+    notes += filter(None, [note])
     base, techniques = _with_techniques(old.file, loaded, edits.techniques, notes)
     values = tuple(_kept(old, base, notes))
     return Draft(loaded, base, replace(edits, techniques=techniques, values=values)), notes
+
+
+def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
+    """Return edits without their camera where the file has moved its own, and a sentence if one is due."""
+    if edits.camera is None or now == was:
+        return edits, ""
+    note = "" if edits.camera == now else "camera: the file's new one is taken"
+    return replace(edits, camera=None), note
 
 
 def _with_techniques(

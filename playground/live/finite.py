@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from imgui_bundle import ImVec2, imgui
 
@@ -98,10 +99,15 @@ class FiniteWatch:
         assert session.plan is not None
         kept: list[NotFinite] = []
         if session.map is not None and self._of is session.sketch:
-            there = {step.path for step in session.plan.walk() if step.path in session.engine.results}
+            ran = (step.path for step in session.plan.walk() if step.path in session.engine.results)
+            there = {session.map.own_path(path) for path in ran}
             kept = [f for f in self.found if f.path not in there]
         self._of = session.sketch
-        self.found = (*(f for f in self._coming if session.map is None or f.path != "view"), *kept)
+        coming = self._coming
+        if session.map is not None:
+            found = [(f, session.map.own_path(f.path)) for f in coming]
+            coming = [replace(f, path=path) for f, path in found if path]
+        self.found = (*coming, *kept)
 
 
 def said(found: tuple[NotFinite, ...]) -> str:
@@ -161,7 +167,7 @@ def draw_not_finite(watch: FiniteWatch, actions: Actions, look: Theme, area: Are
     if shows:
         if imgui.small_button("Back to the picture"):
             actions.show(None)
-    elif ref in session.refs:
+    elif session.can_show(ref):
         if imgui.small_button("Show it"):
             actions.show(ref)
         imgui.set_item_tooltip("That texture from above, those texels in magenta")

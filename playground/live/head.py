@@ -18,6 +18,7 @@ from playground.sketch.model import Parameter, Preset, Sketch
 from playground.sketch.values import spell, write
 
 _OWN_VIEW = "the sketch's own view"
+_CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
 
@@ -27,10 +28,31 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     with look.font(look.bold, theme.TEXT_SIZE + 2):
         imgui.text_wrapped((sketch.title.strip() if sketch else "") or session.path.stem)
     with look.font(look.text, theme.SMALL):
-        imgui.text_disabled(fitting(shown(session.path), imgui.get_content_region_avail().x))
+        style = imgui.get_style()
+        room = imgui.get_content_region_avail().x
+        button = imgui.calc_text_size("Lessons").x + 2 * style.frame_padding.x
+        start = imgui.get_cursor_pos_x()
+        imgui.text_disabled(fitting(shown(session.path), room - button - style.item_spacing.x))
         imgui.set_item_tooltip(str(session.path))
+        imgui.same_line(start + room - button)
+        if imgui.small_button("Lessons"):
+            actions.toggle_lessons()
+        imgui.set_item_tooltip("What there is to know of terrain, step by step (F2)")
     if sketch is None:
         return
+    _buttons(memory, actions, look)
+    if sketch.presets:
+        _presets(sketch, memory, actions)
+    _shown(actions)
+
+
+def _buttons(memory: Memory, actions: Actions, look: Theme) -> None:
+    """Draw two lines of buttons, closer than elsewhere: so both fit."""
+    style = imgui.get_style()
+    padding, spacing = style.frame_padding, style.item_spacing
+    closer = _CLOSER * look.scale
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(padding.x - closer, padding.y))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(spacing.x - closer, spacing.y))
     _undo(memory, actions, look)
     imgui.same_line()
     _chance(memory, actions, look)
@@ -51,9 +73,11 @@ def draw_head(memory: Memory, actions: Actions, look: Theme) -> None:
     if imgui.button("Capture"):
         actions.capture.shown = True
     imgui.set_item_tooltip("Large pictures, numbered ones, films, sheets of a sweep (C)")
-    if sketch.presets:
-        _presets(sketch, memory, actions)
-    _shown(actions)
+    imgui.same_line()
+    if imgui.button("Graph"):
+        actions.see.graph.toggle()
+    imgui.set_item_tooltip("The passes as a graph, or no longer (G)")
+    imgui.pop_style_var(2)
 
 
 def draw_search(memory: Memory, look: Theme) -> None:

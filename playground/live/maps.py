@@ -8,10 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.sketch.maps import Map
-from playground.sketch.model import Value
+from playground.sketch.model import Graph, Sketch, Technique, Value
+from playground.sketch.wiring import output_names
 
 if TYPE_CHECKING:
     from playground.engine.plan import Plan
+
+
+def in_view(sketch: Sketch, ref: str) -> bool:
+    """Say whether a texture is one of the sketch's view: a map can show it, though no list has it."""
+    path, _, output = ref.partition(":")
+    found: Technique | None = None
+    for number, name in enumerate(path.split(".")):
+        around = found if number else sketch.graph
+        spec = around.find(name) if isinstance(around, Graph) else None
+        if spec is None or (number == 0 and name != "view"):
+            return False
+        found = spec.technique
+    return found is not None and output in output_names(found)
 
 
 def refs_of(plan: Plan) -> list[str]:

@@ -27,6 +27,17 @@ _LARGEST = 4 * 2**20  # [bytes] no session sets so much by hand
 
 
 @dataclass(frozen=True)
+class Compared:
+    """The A that what is shown was compared with, and how."""
+
+    edits: Edits
+    steps: tuple[tuple[str, int], ...] = ()
+    mode: str = "divider"
+    split: float = 0.5  # share of the picture's width where the two meet
+    gain: float = 8.0  # of the difference
+
+
+@dataclass(frozen=True)
 class Remembered:
     """What is remembered of one sketch."""
 
@@ -39,11 +50,15 @@ class Remembered:
     map_values: tuple[tuple[str, Value], ...] = ()
     steps: tuple[tuple[str, int], ...] = ()
     window: tuple[int, int] = (0, 0)  # in the screen's units; (0, 0): as it opens
+    at: tuple[int, int] | None = None  # where its upper left corner is; None: wherever the system puts it
+    camera_in_file: Camera | None = None  # the file's, where another was set by hand
+    loop: tuple[float, float] | None = None  # [s] the times between which time goes round
+    compared: Compared | None = None
 
     @property
     def is_nothing(self) -> bool:
         """Whether it says no more than the sketch does."""
-        return replace(self, window=(0, 0)) == Remembered()
+        return replace(self, window=(0, 0), at=None) == Remembered()
 
 
 class Memory:
@@ -131,25 +146,41 @@ def _locked(file: IO[bytes]) -> bool:
 
 def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
     edits, known = remembered.edits, dict(remembered.in_file)
-    values: dict[str, dict[str, Any]] = {path: {"value": value} for path, value in edits.values}
+    table = _edits_written(edits)
     for path, said in known.items():
-        if path in values:
-            values[path] |= {"file": said.value, "own": said.own}
+        if path in table["values"]:
+            table["values"][path] |= {"file": said.value, "own": said.own}
+    stood = remembered.camera_in_file
     return {
         "format": FORMAT,
         "sketch": sketch,
-        "values": values,
-        "techniques": dict(edits.techniques),
-        "camera": asdict(edits.camera) if edits.camera else None,
-        **{name: list(getattr(edits, name)) for name in _lists()},
+        **table,
+        "camera_in_file": asdict(stood) if stood else None,
         "time": remembered.time,
         "playing": remembered.playing,
         "speed": remembered.speed,
+        "loop": list(remembered.loop) if remembered.loop else None,
         "map": remembered.map,
         "map_values": dict(remembered.map_values),
         "steps": dict(remembered.steps),
+        "compared": _compared_written(remembered.compared) if remembered.compared else None,
         "window": list(remembered.window),
+        "at": list(remembered.at) if remembered.at else None,
     }
+
+
+def _edits_written(edits: Edits) -> dict[str, Any]:
+    return {
+        "values": {path: {"value": value} for path, value in edits.values},
+        "techniques": dict(edits.techniques),
+        "camera": asdict(edits.camera) if edits.camera else None,
+        **{name: list(getattr(edits, name)) for name in _lists()},
+    }
+
+
+def _compared_written(compared: Compared) -> dict[str, Any]:
+    how = {"mode": compared.mode, "split": compared.split, "gain": compared.gain}
+    return {**_edits_written(compared.edits), "steps": dict(compared.steps), **how}
 
 
 def _lists() -> list[str]:
@@ -161,31 +192,47 @@ def _read(table: Any) -> Remembered:
     """Return what a file says; raise ``ValueError``, ``TypeError`` or ``KeyError`` for another's."""
     if table["format"] != FORMAT:
         raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
-    values = tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items())
     in_file = tuple(
         (str(path), Said(None if entry["file"] is None else _value(entry["file"]), bool(entry.get("own"))))
         for path, entry in table["values"].items()
         if "file" in entry
     )
-    camera = table["camera"]
-    edits = Edits(
-        values,
-        tuple((str(name), str(use)) for name, use in table["techniques"].items()),
-        _camera(camera) if camera is not None else None,
-        **{name: tuple(str(path) for path in table.get(name, ())) for name in _lists()},
-    )
     width, height = (int(side) for side in table["window"])
+    stood, loop, compared, at = (table.get(name) for name in ("camera_in_file", "loop", "compared", "at"))
     return Remembered(
-        edits,
+        _edits(table),
         in_file,
         max(_number(table["time"]), 0.0),
         bool(table["playing"]),
         _number(table["speed"]),
         str(table["map"]),
         tuple((str(name), _value(value)) for name, value in table["map_values"].items()),
-        tuple((str(path), int(turn)) for path, turn in table["steps"].items()),
+        _steps(table),
         (width, height) if 0 < min(width, height) and max(width, height) <= 16384 else (0, 0),
+        (int(at[0]), int(at[1])) if at is not None else None,
+        _camera(stood) if stood is not None else None,
+        (_number(loop[0]), _number(loop[1])) if loop is not None else None,
+        _compared(compared) if compared is not None else None,
     )
+
+
+def _edits(table: Any) -> Edits:
+    camera = table["camera"]
+    return Edits(
+        tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items()),
+        tuple((str(name), str(use)) for name, use in table["techniques"].items()),
+        _camera(camera) if camera is not None else None,
+        **{name: tuple(str(path) for path in table.get(name, ())) for name in _lists()},
+    )
+
+
+def _steps(table: Any) -> tuple[tuple[str, int], ...]:
+    return tuple((str(path), int(turn)) for path, turn in table["steps"].items())
+
+
+def _compared(table: Any) -> Compared:
+    split = min(max(_number(table["split"]), 0.0), 1.0)
+    return Compared(_edits(table), _steps(table), str(table["mode"]), split, _number(table["gain"]))
 
 
 def _camera(table: Any) -> Camera:

@@ -38,12 +38,15 @@ class Panel:
         self._sections = Sections(self.memory)
         self._keyframes = KeyframeList()
 
-    def draw(self, actions: Actions, look: Theme) -> float:
-        """Draw the panel over the window's left side; return the width it takes, in the window's units."""
+    def draw(self, actions: Actions, look: Theme, left: float = 0.0) -> float:
+        """Draw the panel over the window's left side; return the width it takes, in the window's units.
+
+        ``left``: what is taken there already.
+        """
         room = imgui.get_main_viewport().size
-        widest = max(room.x - 160 * look.scale, 160.0)
+        widest = max(room.x - left - 160 * look.scale, 160.0)
         wanted = min(self.width * look.scale, widest)
-        imgui.set_next_window_pos(ImVec2(0, 0))
+        imgui.set_next_window_pos(ImVec2(left, 0))
         imgui.set_next_window_size(ImVec2(wanted, room.y))
         imgui.set_next_window_size_constraints(
             ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
@@ -72,7 +75,8 @@ class Panel:
         _footer(look, actions.session.orbits)
         width = imgui.get_window_size().x
         imgui.end()
-        self.width = width / look.scale
+        if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
+            self.width = width / look.scale
         return width
 
 

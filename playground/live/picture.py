@@ -11,13 +11,11 @@ import numpy as np
 
 from playground.engine.frame import Frame
 from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
 
 if TYPE_CHECKING:
     import moderngl
 
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 # Texels are fetched, not sampled, so that whatever sampler is bound changes nothing; a
 # picture kept from another size is stretched.
 _FRAGMENT = """#version 330
@@ -39,7 +37,7 @@ class Painter:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=_VERTEX, fragment_shader=_FRAGMENT)
+        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
         self._triangle = ctx.vertex_array(self._program, [])
 
     def paint(

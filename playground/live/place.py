@@ -49,6 +49,15 @@ class Place:
         (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
         return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
 
+    def stand_at(self, at: tuple[int, int]) -> None:
+        """Put its upper left corner somewhere, or as near as all of it is on a screen."""
+        handle = self._handle()
+        width, height = glfw.get_window_size(handle)
+        left, top, right, bottom = glfw.get_window_frame_size(handle)
+        frame = at[0] - left, at[1] - top, width + left + right, height + top + bottom
+        x, y = on_screen(frame, screens())
+        glfw.set_window_pos(handle, x + left, y + top)
+
     def toggle_full(self) -> None:
         """Fill the screen that most of it is on, or go back to where it stood."""
         handle = self._handle()
@@ -93,6 +102,20 @@ def screens() -> list[Rectangle]:
         (x, y), mode = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor)
         found.append((x, y, mode.size.width, mode.size.height))
     return found
+
+
+def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
+    """Return where a window's upper left corner goes, so that screens show all of it, or all that fits.
+
+    It stays where they do, also across several; else it goes into the one that shows most of it.
+    """
+    x, y, width, height = window
+    stood = Geometry(x, y, width, height)
+    shares = [_shared(stood, area) for area in areas]
+    if not areas or sum(shares) >= width * height:
+        return x, y
+    left, top, wide, high = areas[shares.index(max(shares))]
+    return max(min(x, left + wide - width), left), max(min(y, top + high - height), top)
 
 
 def _shared(place: Geometry, area: Rectangle) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from imgui_bundle import imgui
@@ -24,13 +25,7 @@ def save_values(actions: Actions) -> None:
     if draft.sketch == draft.file:
         actions.say("nothing differs from the file")
         return
-    try:
-        save(draft.file, draft.sketch)
-    except ReadOnlySketch as error:
-        actions.offer, actions.opening = f"{str(error).rpartition(': ')[2].capitalize()}.", "offer"
-        return
-    except PlaygroundError as error:
-        actions.say(str(error))
+    if not _is_written(actions, lambda: save(draft.file, draft.sketch)):
         return
     actions.history.saved(_before(draft))
     actions.say(f"saved {_what(draft)} into {shown(draft.file.file)}")
@@ -61,16 +56,23 @@ def save_as_preset(actions: Actions, name: str) -> None:
     if not values:
         actions.say("no value is set by hand, so the preset would be empty")
         return
-    try:
-        save_preset(draft.file, name.strip(), values)
-    except ReadOnlySketch as error:
-        actions.offer, actions.opening = f"{str(error).rpartition(': ')[2].capitalize()}.", "offer"
-        return
-    except PlaygroundError as error:
-        actions.say(str(error))
+    if not _is_written(actions, lambda: save_preset(draft.file, name.strip(), values)):
         return
     actions.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
     actions.session.reload()
+
+
+def _is_written(actions: Actions, write: Callable[[], None]) -> bool:
+    """Write into the sketch's file; where that cannot be, offer a copy or say why."""
+    try:
+        write()
+    except ReadOnlySketch as error:
+        actions.offer, actions.opening = f"{str(error).rpartition(': ')[2].capitalize()}.", "offer"
+    except PlaygroundError as error:
+        actions.say(str(error))
+    else:
+        return True
+    return False
 
 
 def copy_toml(actions: Actions) -> None:

@@ -20,12 +20,12 @@ from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
 from playground.live.hasty import hastily
-from playground.live.maps import fitted, refs_of
+from playground.live.maps import fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
-from playground.sketch.model import Sketch, Value, kernels_of
+from playground.sketch.model import Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:
     import moderngl
@@ -34,6 +34,11 @@ if TYPE_CHECKING:
 
 REST = 0.2  # [s] without a change after which a hasty picture is drawn again in full
 _SEEN_FROM = ("clip_from_world", "world_from_clip", "eye")
+
+
+def is_seen_from_camera(sketch: Sketch) -> bool:
+    """Say whether the camera moves anything in a sketch's picture."""
+    return any(kernel.reads(name) for _, kernel in kernels_of(sketch.graph) for name in _SEEN_FROM)
 
 
 class Session(Drafts):
@@ -47,16 +52,25 @@ class Session(Drafts):
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
+        camera_in_file: Camera | None = None,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         super().__init__(
-            path, driver=engine.driver, values=values, edits=edits, in_file=in_file, trial=trial, now=now
+            path,
+            driver=engine.driver,
+            values=values,
+            edits=edits,
+            in_file=in_file,
+            camera_in_file=camera_in_file,
+            trial=trial,
+            now=now,
         )
         self.engine = engine
         self.map: Map | None = None  # what is shown instead of the sketch's own view
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
+        self._next_view: tuple[dict[str, int], Map | None] | None = None  # of a sketch that was opened
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
@@ -82,12 +96,16 @@ class Session(Drafts):
         """Whether the picture is seen from the camera."""
         if self.sketch is None or self.map is not None:
             return False
-        return any(kernel.reads(name) for _, kernel in kernels_of(self.sketch.graph) for name in _SEEN_FROM)
+        return is_seen_from_camera(self.sketch)
 
     @property
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
         return refs_of(self.plan) if self.plan is not None else []
+
+    def can_show(self, ref: str) -> bool:
+        """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
+        return ref in self.refs or (self.sketch is not None and in_view(self.sketch, ref))
 
     @property
     def repeats(self) -> dict[str, int]:
@@ -128,6 +146,19 @@ class Session(Drafts):
         self._revision += 1
         self.map = Map(ref) if ref else None
         self.fit_map()
+
+    def view(self, steps: Mapping[str, int], shown: Map | None) -> None:
+        """Stop repeats after so many turns, and show a map or, with None, the sketch's own view.
+
+        Where another sketch was opened, that one is seen so, as soon as it is drawn.
+        """
+        if self.leaves:
+            self._next_view = dict(steps), shown
+            return
+        self.steps.clear()
+        self.steps.update(steps)
+        self.map = shown
+        self._revision += 1
 
     def set_map(self, name: str, value: Value) -> None:
         """Set a parameter of the map."""
@@ -226,12 +257,15 @@ class Session(Drafts):
             return True
 
     def _forget_view(self) -> None:
-        self.map = None
+        self.map = self._next_view = None
         self.steps.clear()
         self.clock.rewind()
 
     def _draw_coming(self, size: tuple[int, int]) -> None:
         assert self.coming is not None
+        if self._next_view is not None:
+            (steps, self.map), self._next_view = self._next_view, None
+            self.steps.update(steps)
         try:
             self._draw(self.coming.sketch, size)
             self.engine.ctx.finish()
@@ -255,7 +289,7 @@ class Session(Drafts):
         self._drawn = self._wanted(size)
         sketch = self.shown.sketch
         try:
-            if self.map is not None and self.map.ref not in self.refs:
+            if self.map is not None and not self.can_show(self.map.ref):
                 self.notes.append(f"{self.map.ref} is gone, so the sketch's own view is shown")
                 self.map = None
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)

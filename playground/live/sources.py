@@ -42,14 +42,15 @@ def open_source(actions: Actions, path: Path, line: int = 0, column: int = 0, *,
     if not path.is_file():
         actions.say(f"there is no file {shown(path)} to open")
         return
-    if not here:
+    known = next((wanted for wanted in actions.editing if wanted.text.path == path), None)
+    stands_in = known is not None and not known.text.kept
+    if not here and not stands_in:
         editor, complaint = find_editor()
         if complaint:
             actions.say(complaint)
         if editor is not None and actions.opener.open(editor, path, line, column):
             actions.say(f"opened {shown(path)} in {editor.name}")
             return
-    known = next((wanted for wanted in actions.editing if wanted.text.path == path), None)
     if known is None:
         try:
             known = Editing(OpenText.read(path))

@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from imgui_bundle import imgui
+
 from playground.engine.finite import NotFinite
 from playground.live.actions import Actions
 from playground.live.code_window import typing, unsaved
@@ -46,6 +48,7 @@ class Status:
             "notices": [n.text for n in actions.notices],
             "playing": session.clock.playing,
             "typing": typing(actions),
+            "takes_text": imgui.get_io().want_text_input,
             "unsaved": unsaved(actions),
             "map": session.map.ref if session.map else "",
             "steps": dict(session.steps),

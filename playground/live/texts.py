@@ -27,6 +27,20 @@ class OpenText:
     _ending: str = "\n"
     _mark: bool = field(default=False)  # it begins with a byte order mark
 
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return shown(self.path)
+
+    @property
+    def kept(self) -> bool:
+        """Whether it is lost where it is not saved."""
+        return True
+
+    def saved(self) -> str:
+        """Return what is said when it was saved."""
+        return f"saved {self.title}"
+
     @classmethod
     def read(cls, path: Path) -> OpenText:
         """Read a file; raise ``DataError`` in a sentence where it cannot be edited as a text."""

@@ -31,6 +31,8 @@ class Theme:
         atlas = imgui.get_io().fonts
         self.text = atlas.add_font_from_file_ttf(str(fonts / "Roboto" / "Roboto-Regular.ttf"), TEXT_SIZE)
         self.bold = atlas.add_font_from_file_ttf(str(fonts / "Roboto" / "Roboto-Bold.ttf"), TEXT_SIZE)
+        italic = fonts / "Roboto" / "Roboto-RegularItalic.ttf"
+        self.italic = atlas.add_font_from_file_ttf(str(italic), TEXT_SIZE)
         self.code = atlas.add_font_from_file_ttf(str(fonts / "Inconsolata-Medium.ttf"), TEXT_SIZE)
         self.scale = 0.0  # of text and margins
         self.rescale(1.0)

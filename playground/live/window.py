@@ -99,6 +99,12 @@ class Window:
             self._screen, self._screen_size = self.ctx.detect_framebuffer(0), self.pixels
         return self._screen
 
+    def call(self, title: str) -> None:
+        """Give it another title."""
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(self._handle, title)
+
     def ask_to_close(self) -> None:
         """Close it at the end of this turn."""
         glfw.set_window_should_close(self._handle, True)

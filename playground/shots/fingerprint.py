@@ -9,11 +9,9 @@ means for that:
     vendor                GL's word for who wrote the driver. Told, but not a build: between two
                           versions Mesa changed it from "Mesa/X.org" to "Mesa".
     mesa, llvm            read out of the two strings, for people; they decide nothing twice.
-    cpu, simd             of a renderer that draws on the processor, part of the build: reciprocal
-                          square roots are estimated, and the estimates of Intel and AMD differ;
-                          with `fma` a product and a sum are rounded once, not twice; with `f16c`
-                          half floats are rounded by the processor. Where a graphics card draws,
-                          they say nothing, and are left out of the comparison.
+    cpu, simd             of a renderer that draws on the processor, part of the build: `gpu.build` says
+                          why. Where a graphics card draws, they say nothing, and are left out of the
+                          comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
                           files (see ``engine.drawn``). It never makes a comparison less strict:
                           that an edit changed the picture is what the test is there to tell.
@@ -27,23 +25,16 @@ There is no date in it, so that the same picture again gives the same file.
 
 from __future__ import annotations
 
-import os
-import platform
 import re
-import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from functools import lru_cache
-from pathlib import Path
 
 from playground._version import __version__
+from playground.gpu.build import processor
 from playground.gpu.context import ContextInfo
 
 _MESA = re.compile(r"\bMesa (\d\S*(?: \(git-\w+\))?)")
 _LLVM = re.compile(r"\bLLVM (\d[\w.]*)")
-_SIMD = ("avx", "fma", "f16c")  # that change what llvmpipe's code computes, not only how fast
-_ARM = {"0x41": "ARM", "0x46": "Fujitsu", "0x48": "HiSilicon", "0x4e": "NVIDIA", "0x51": "Qualcomm"}
-_ARM |= {"0x61": "Apple", "0xc0": "Ampere"}
 
 BUILD = ("renderer", "version", "cpu", "simd")
 """The parts that are the renderer's build."""
@@ -134,32 +125,3 @@ def fingerprint_of(renderer: ContextInfo, size: tuple[int, int], drawn: str = ""
 def read_fingerprint(texts: Mapping[str, str]) -> Fingerprint:
     """Return the fingerprint that a PNG's texts hold; what they do not say is ""."""
     return Fingerprint(**{field.name: texts.get(field.name, "") for field in fields(Fingerprint)})
-
-
-@lru_cache(maxsize=1)
-def processor() -> tuple[str, str]:
-    """Return who made this machine's processor, and which instructions it has that change a picture."""
-    if sys.platform.startswith("linux"):
-        try:
-            return processor_in(Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace"))
-        except OSError:
-            return "", ""
-    if sys.platform == "win32":
-        return os.environ.get("PROCESSOR_IDENTIFIER", "").rpartition(", ")[2], ""
-    return ("Apple" if platform.machine() == "arm64" else "GenuineIntel"), ""
-
-
-def processor_in(cpuinfo: str) -> tuple[str, str]:
-    """Return the same from the text of Linux's ``/proc/cpuinfo``."""
-    said: dict[str, str] = {}
-    for line in cpuinfo.splitlines():
-        name, colon, text = line.partition(":")
-        if colon:
-            said.setdefault(name.strip(), text.strip())
-    if "CPU implementer" in said:
-        code = said["CPU implementer"]
-        return _ARM.get(code, f"ARM implementer {code}"), ""
-    if "flags" not in said:
-        return said.get("vendor_id", ""), ""
-    there = set(said["flags"].split())
-    return said.get("vendor_id", ""), " ".join(name for name in _SIMD if name in there) or "none"

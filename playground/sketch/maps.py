@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from playground.paths import GLSL
-from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.sketch.model import Export, Graph, Kernel, PassSpec, Sketch, Value
 from playground.sketch.techniques import read_technique
+from playground.sketch.wiring import input_names
 
 USE = "view/map"
+_SEEN = "seen"  # what the view is called inside the one that shows a texture of it
 
 
 @dataclass(frozen=True)
@@ -21,10 +23,20 @@ class Map:
 
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch with this map for its view."""
+        view = sketch.graph.find("view")
+        if _is_of_view(self.ref) and view is not None:
+            return _within(sketch, view, self)
         spec = PassSpec("view", USE, self.kernel, inputs=(("shown", self.ref),), values=self.values)
         passes = (*(p for p in sketch.graph.passes if p.name != "view"), spec)
         overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
         return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
+
+    def own_path(self, path: str) -> str:
+        """Return the sketch's own path of a pass that ran for this map; "" for the map's."""
+        if path.partition(".")[0] != "view":
+            return path
+        inside = f"view.{_SEEN}"
+        return f"view{path.removeprefix(inside)}" if path.startswith(inside) else ""
 
     def with_value(self, name: str, value: Value) -> Map:
         """Return the map with one of its parameters set."""
@@ -35,6 +47,32 @@ class Map:
         known = dict(self.values)
         parameter = self.kernel.parameter(name)
         return known[name] if name in known or parameter is None else parameter.default
+
+
+def _is_of_view(ref: str) -> bool:
+    return ref.partition(":")[0].partition(".")[0] == "view"
+
+
+def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
+    """Return a sketch whose view is its own one, and after it a map of a texture in that.
+
+    Both are passes of the view, so that each has the size that it has there.
+    """
+    names = dict.fromkeys((*input_names(view.technique), *(n for n, _ in view.inputs if "." not in n)))
+    inputs = tuple((f"{_SEEN}.{name}" if "." in name else name, ref) for name, ref in view.inputs)
+    own = replace(view, name=_SEEN, inputs=())
+    of = PassSpec(
+        "map", USE, shown.kernel, inputs=(("shown", f"{_SEEN}{shown.ref[4:]}"),), values=shown.values
+    )
+    exports = tuple(Export(name, (f"{_SEEN}.{name}",)) for name in names)
+    both = Graph(USE, view.technique.path, (own, of), inputs=exports)
+    spec = replace(view, use=USE, technique=both, inputs=inputs, values=())
+    passes = tuple(spec if p.name == "view" else p for p in sketch.graph.passes)
+    overrides = tuple(
+        (f"view.{_SEEN}{path[4:]}" if path.startswith("view.") else path, value)
+        for path, value in sketch.overrides
+    )
+    return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
 
 
 def map_kernel() -> Kernel:

@@ -21,13 +21,12 @@ from pathlib import Path
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError
 from playground.paths import GLSL, shown
 from playground.sketch.assign import LAND, resolve, values_of
-from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
 from playground.sketch.places import leads_outside
+from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
 from playground.sketch.toml_lines import Place
-from playground.sketch.toml_spans import Spans, append, drop, put, text_of
-from playground.sketch.values import is_whole
+from playground.sketch.toml_spans import append, drop, put, text_of
 
 
 class ReadOnlySketch(DataError):
@@ -42,7 +41,7 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
     for key in LAND:
         value = getattr(wanted, key)
         if value is not None and value != getattr(file, key):
-            text = put(text, (), key, _land(value))
+            text = put(text, (), key, written_land(value))
     for spec in wanted.graph.passes:
         was = file.graph.find(spec.name)
         assert was is not None
@@ -61,9 +60,9 @@ def with_preset(text: str, sketch: Sketch, name: str, values: Mapping[str, Value
     if name in known:
         table: Place = ("preset", known.index(name), "set")
         for path, value in values.items():
-            text = put(text, table, path, _written(sketch, path, value, ""))
+            text = put(text, table, path, written_value(sketch, path, value, ""))
         return text
-    pairs = [f'"{path}" = {_written(sketch, path, value, "")}' for path, value in values.items()]
+    pairs = [f'"{path}" = {written_value(sketch, path, value, "")}' for path, value in values.items()]
     return append(text, ["[[preset]]", f"name = {text_of(name)}", "[preset.set]", *pairs])
 
 
@@ -75,7 +74,9 @@ def save(file: Sketch, wanted: Sketch) -> None:
     say what is wanted.
     """
     path = Path(file.file)
-    _write(path, file, lambda text: saved_text(text, file, _with_files_inside(wanted)), _same_as(wanted))
+    write_over(
+        path, file, lambda text: saved_text(text, file, _with_files_inside(wanted)), says_same_as(wanted)
+    )
 
 
 def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
@@ -85,7 +86,7 @@ def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
         preset = next((p for p in found.presets if p.name == name), None)
         return preset is not None and {**dict(preset.values), **values} == dict(preset.values)
 
-    _write(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
+    write_over(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
 
 
 def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
@@ -105,7 +106,7 @@ def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
         path.write_bytes(text.encode())
         copied = load(path)
         inside = _with_files_inside(_over(copied, wanted))
-        _write(path, copied, lambda t: saved_text(t, copied, inside), _same_as(wanted))
+        write_over(path, copied, lambda t: saved_text(t, copied, inside), says_same_as(wanted))
     except (PlaygroundError, OSError) as error:
         shutil.rmtree(target, ignore_errors=True)
         if isinstance(error, OSError):
@@ -155,7 +156,7 @@ def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value
     names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
     table = (*_table(file, name), "set")
     for key in names or [inner]:
-        written = _written(wanted, f"{name}.{key}", value, _said(text, table, key))
+        written = written_value(wanted, f"{name}.{key}", value, said_so_far(text, table, key))
         text = put(text, table, key, written)
     return text
 
@@ -171,58 +172,9 @@ def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
             text = drop(text, table, part.name)
         else:
             numbers = value if isinstance(value, tuple) else (value,)
-            written = ", ".join(map(_number, numbers))
+            written = ", ".join(map(written_number, numbers))
             text = put(text, table, part.name, f"[{written}]" if isinstance(value, tuple) else written)
     return text
-
-
-def _written(sketch: Sketch, path: str, value: Value, said: str) -> str:
-    """Return a value as TOML writes it; a direction in braces where ``said``, what stands there, has them."""
-    if path in LAND:
-        return _land(value)
-    parameter: Parameter = resolve(sketch.graph, path)[0].parameter
-    kind = parameter.widget.kind
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return text_of(value)
-    if kind == "menu" and isinstance(value, int):
-        return text_of(parameter.widget.choices[value])
-    if kind == "colour" and isinstance(value, tuple):
-        seen = to_hex(value)
-        if (*parse_hex(seen), 1.0)[: len(value)] == value:
-            return text_of(seen)
-    if kind == "direction" and isinstance(value, tuple) and said.startswith("{"):
-        return f"{{ azimuth = {_number(value[0])}, elevation = {_number(value[1])} }}"
-    whole = is_whole(parameter.type) or (bool(said) and said.lstrip("+-").isdigit())
-    if isinstance(value, tuple):
-        return f"[{', '.join(_number(n) for n in value)}]"
-    return _number(value) if whole or isinstance(value, int) else repr(float(value))
-
-
-def _number(value: float | int) -> str:
-    """Return a number without a point where it is whole."""
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        return str(int(value))
-    return repr(value)
-
-
-def _land(value: object) -> str:
-    if not isinstance(value, tuple):
-        return _number(value) if isinstance(value, int | float) else str(value)
-    numbers = [_number(n) for n in value]
-    return numbers[0] if len(set(numbers)) == 1 else f"[{', '.join(numbers)}]"
-
-
-def _said(text: str, table: Place, key: str) -> str:
-    """Return what the text says there so far, "" where nothing is."""
-    spans = Spans(text)
-    place = spans.find(table, key)
-    if place is None:
-        # Azimuth and elevation may also be set by two dotted keys, which no value stands behind.
-        return ""
-    pair = spans.pairs[place]
-    return text[pair.value : pair.end]
 
 
 # ── files ────────────────────────────────────────────────────────────────────
@@ -239,9 +191,16 @@ def _plain(text: str) -> str:
     return text.removeprefix("\ufeff").replace("\r\n", "\n")
 
 
-def _write(
+def write_over(
     path: Path, file: Sketch, change: Callable[[str], str], is_right: Callable[[Sketch], bool]
 ) -> None:
+    """Write a sketch's text anew: whole, where it still says what ``file`` does, and only what proves right.
+
+    ``change`` makes the new text of the old one, and ``is_right`` judges the sketch that is
+    loaded of it. Raises ``ReadOnlySketch`` where the file is not to be written to,
+    ``SketchError`` where it has changed meanwhile or the result is not right, and
+    ``DataError`` where the system refuses.
+    """
     path = path.resolve()  # a link stays a link: what it leads to is written
     if path.suffix != ".toml":
         raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=shown(path))
@@ -289,7 +248,7 @@ def _same_text(a: Sketch, b: Sketch) -> bool:
     return words(a) == words(b)
 
 
-def _same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
+def says_same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
     """Return a check that a sketch says what is wanted; files may have moved into its folder."""
 
     def said(sketch: Sketch) -> object:

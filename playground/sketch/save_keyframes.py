@@ -17,7 +17,8 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
-from playground.sketch.save import _number, _said, _same_as, _write, _written
+from playground.sketch.save import says_same_as, write_over
+from playground.sketch.save_values import said_so_far, written_number, written_value
 from playground.sketch.toml_lines import TOKEN, Place
 from playground.sketch.toml_spans import drop, newline_of, put, text_of
 
@@ -35,7 +36,7 @@ def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
     for one, other in pairwise(frames):
         if one.time == other.time:
             raise SketchError(f"there is a keyframe at {one.time:g} s already", file=shown(file.file))
-    says_the_rest = _same_as(file)
+    says_the_rest = says_same_as(file)
 
     def is_right(found: Sketch) -> bool:
         shots = [replace(shot, line=0) for shot in file.shots]
@@ -46,7 +47,7 @@ def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
             and [replace(shot, line=0) for shot in found.shots] == shots
         )
 
-    _write(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
+    write_over(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
 
 
 def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
@@ -186,7 +187,7 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
     for name, value in now.values:
         if name not in values or values[name] != value:
             table = (*place, "set")
-            text = put(text, table, name, _written(file, name, value, _said(text, table, name)))
+            text = put(text, table, name, written_value(file, name, value, said_so_far(text, table, name)))
     for name in cameras.keys() - dict(now.camera).keys():
         text = drop(text, (*place, "camera"), name)
     for name in values.keys() - dict(now.values).keys():
@@ -203,7 +204,7 @@ def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
         pairs = ", ".join(f"{name} = {_camera_value(given[name])}" for name in order)
         lines.append(f"camera = {{ {pairs} }}")
     if keyframe.values:
-        pairs = ", ".join(f"{text_of(p)} = {_written(file, p, v, '')}" for p, v in keyframe.values)
+        pairs = ", ".join(f"{text_of(p)} = {written_value(file, p, v, '')}" for p, v in keyframe.values)
         lines.append(f"set = {{ {pairs} }}")
     if keyframe.ease != EASES[0]:
         lines.append(f"ease = {text_of(keyframe.ease)}")
@@ -212,5 +213,5 @@ def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
 
 def _camera_value(value: float | tuple[float, ...]) -> str:
     numbers = value if isinstance(value, tuple) else (value,)
-    written = ", ".join(map(_number, numbers))
+    written = ", ".join(map(written_number, numbers))
     return f"[{written}]" if isinstance(value, tuple) else written

@@ -12,7 +12,7 @@ def held(engine: Engine) -> int:
 
 
 def test_bytes_are_those_of_what_is_kept(ctx):
-    sketch = load("jacksboro").with_values({"size": 65})
+    sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:
         for hour in range(3):
             moved = sketch.with_values({"light.sun": (100.0 + hour, 20.0)})
@@ -28,7 +28,7 @@ def test_bytes_are_those_of_what_is_kept(ctx):
 
 def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
     monkeypatch.setattr(cache, "MOST", 24)
-    sketch = load("diamond_square").with_values({"size": 17})
+    sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
     with Engine(ctx) as engine:
         for seed in range(12):
             engine.render(sketch.with_values({"height.seed": seed}), size=(16, 9))

@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.model import Sketch
 from playground.sketch.source import read_source
@@ -77,6 +78,30 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
         attachment.release()
     for item in (*kept, surface):
         item.release()
+
+
+@pytest.fixture(scope="module")
+def kept(shared_context: moderngl.Context) -> Iterator[Engine]:
+    """Give one engine for the file: programs are compiled once. Ask for ``ctx`` as well, which is checked."""
+    shared_context.__enter__()
+    with Engine(shared_context) as made:
+        yield made
+
+
+@pytest.fixture
+def same_by_both_drivers(ctx: moderngl.Context) -> Callable[[Callable[[Engine], np.ndarray]], None]:
+    """Give what sees that both drivers read the same bits; skips where there are no compute shaders."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+
+    def see(read: Callable[[Engine], np.ndarray]) -> None:
+        found = []
+        for driver in ("fragment", "compute"):
+            with Engine(ctx, driver=driver) as engine:
+                found.append(read(engine))
+        np.testing.assert_array_equal(*found)
+
+    return see
 
 
 def _column(value: object) -> tuple[np.ndarray, str]:

@@ -1,5 +1,37 @@
 """Lands that several tests of light stand on."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from playground.sketch.model import Sketch
+
+from ..loading import load
+from ..truth.land import Land
+from ..truth.methods import relief_of, written
+
+
+def lit_by(
+    folder: Path, land: Land, name: str, use: str, *, passes: str = "", size: str = "", **values: object
+) -> Sketch:
+    """Write and load a sketch of a land, lit by one technique of ``lighting/`` as the pass ``name``."""
+    ny, nx = land.heights.shape
+    relief = relief_of(land)
+    np.save(folder / "land.npy", ((land.heights - land.heights.min()) / relief).astype(np.float32))
+    setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
+    extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    path = folder / "sketch.toml"
+    path.write_text(
+        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+        '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+        'set = { elevation = "land.npy", first_row = "south" }\n'
+        f'{passes}[[pass]]\nname = "{name}"\nuse = "lighting/{use}"\n{size}\n[pass.set]\n{setting}'
+    )
+    return load(path)
+
+
 # Hills of four sizes, turned or mirrored when asked to.
 HILLS = """
 #include "noise/hash.glsl"

@@ -6,42 +6,20 @@
 import numpy as np
 import pytest
 
-from playground.engine.engine import Engine
-
-from ..loading import load
 from ..truth.land import Land, cone, real, towards
+from .lands import lit_by
 
 HALF = 2.0**-10
 ARC = "lighting/horizon_sun/arc.glsl"
 SHARE = 90 / 65535  # [degrees] of a 16-bit share of a quarter circle
 
 
-@pytest.fixture(scope="module")
-def kept(shared_context):
-    """Give one engine for the file: programs are compiled once."""
-    shared_context.__enter__()
-    with Engine(shared_context) as engine:
-        yield engine
-
-
 @pytest.fixture
 def sketch(ctx, tmp_path):
     """Give ``sketch(land, use, **values)``: one technique of lighting/ on a land, as the pass ``light``."""
 
-    def make(land, use, *, passes="", **values):
-        ny, nx = land.heights.shape
-        low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
-        np.save(tmp_path / "land.npy", ((land.heights - low) / relief).astype(np.float32))
-        setting = "".join(f"{k} = {written(v)}\n" for k, v in values.items())
-        extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
-        path = tmp_path / "sketch.toml"
-        path.write_text(
-            f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
-            '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-            'set = { elevation = "land.npy", first_row = "south" }\n'
-            f'{passes}[[pass]]\nname = "light"\nuse = "lighting/{use}"\n[pass.set]\n{setting}'
-        )
-        return load(path)
+    def make(land, use, **more):
+        return lit_by(tmp_path, land, "light", use, **more)
 
     return make
 
@@ -57,12 +35,6 @@ def read(kept, sketch):
         return found[0] if len(found) == 1 else found
 
     return make
-
-
-def written(value):
-    if isinstance(value, tuple):
-        return str([float(v) for v in value])
-    return f'"{value}"' if isinstance(value, str) else str(value)
 
 
 def steep(n=49):

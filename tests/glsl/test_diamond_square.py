@@ -87,6 +87,7 @@ def test_it_is_the_thesis_loops(engine, make_sketch, numbers, size, random):
     np.testing.assert_allclose(engine.read(sketch, "land"), truth, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_it_is_the_thesis_land_at_1025(any_engine, make_sketch, numbers):
     sketch = sketch_of(make_sketch, 1025, smoothing=0.9, seed=3, corners=CORNERS)
     truth = by_slices(1025, 0.9, CORNERS, numbers(1025, 3))

@@ -91,6 +91,7 @@ def test_it_is_the_sum_of_its_faults(engine, sketch_of, drawn, heights_of, size,
     np.testing.assert_array_equal(engine.read(sketch, "land.sum.raw"), truth)
 
 
+@pytest.mark.slow
 def test_it_is_the_sum_of_its_faults_at_513(engine, sketch_of, drawn, heights_of):
     sketch = sketch_of((513, 513), iterations=1000, seed=9)
     found = engine.read(sketch, "land.sum")

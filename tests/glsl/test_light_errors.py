@@ -4,10 +4,10 @@
 measured, and a little: what makes a method worse than it was is seen here.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
-
-from playground.engine.engine import Engine
 
 from ..truth.errors import measure, truth_of
 from ..truth.land import LANDS
@@ -89,17 +89,10 @@ BOUNDS = {
 
 
 @pytest.fixture(scope="module")
-def kept(shared_context):
-    """Give one engine for the file: programs are compiled once."""
-    shared_context.__enter__()
-    with Engine(shared_context) as made:
-        yield made
-
-
-@pytest.fixture(scope="module")
 def truths(kept, tmp_path_factory):
+    """Give ``truths(land)``: what is true of a land, worked out once."""
     folder = tmp_path_factory.mktemp("truth")
-    return {name: truth_of(kept, folder, name, SIZE, strips=10, azimuths=32) for name in LANDS}
+    return cache(lambda name: truth_of(kept, folder, name, SIZE, strips=10, azimuths=32))
 
 
 def worst(errors):
@@ -109,10 +102,12 @@ def worst(errors):
     return tuple(max(column) for column in columns if column)
 
 
-@pytest.mark.parametrize("land", LANDS)
+@pytest.mark.parametrize(
+    "land", [name if name == "real" else pytest.param(name, marks=pytest.mark.slow) for name in LANDS]
+)
 @pytest.mark.parametrize("method", [m for m in METHODS if m.measured], ids=lambda m: m.name)
 def test_errors_stay_within_bounds(ctx, kept, truths, tmp_path, method, land):
-    found = worst(list(measure(kept, tmp_path, method, truths[land])))
+    found = worst(list(measure(kept, tmp_path, method, truths(land))))
     bounds = BOUNDS[method.name, land]
     assert len(found) == len(bounds)
     assert (np.array(found) <= bounds).all(), f"{[round(v, 4) for v in found]} against {bounds}"

@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from playground.engine.engine import Engine
 from playground.errors import SketchError
 
 
@@ -77,14 +76,9 @@ def test_it_is_squares_divided_in_four(engine, make_sketch, number, size, roughn
 
 
 @pytest.mark.parametrize("size", [2, 5, 129, 1025])
-def test_both_drivers_give_the_same_bits(ctx, make_sketch, size):
-    if ctx.version_code < 430:
-        pytest.skip("this context has no compute shaders")
-    lands = []
-    for driver in ("fragment", "compute"):
-        with Engine(ctx, driver=driver) as engine:
-            lands.append(engine.read(sketch_of(make_sketch, size, roughness=0.6, seed=2), "land.raw"))
-    np.testing.assert_array_equal(*lands)
+def test_both_drivers_give_the_same_bits(same_by_both_drivers, make_sketch, size):
+    sketch = sketch_of(make_sketch, size, roughness=0.6, seed=2)
+    same_by_both_drivers(lambda engine: engine.read(sketch, "land.raw"))
 
 
 def test_each_turn_divides_every_square(engine, make_sketch, number):
@@ -148,14 +142,9 @@ def test_each_row_is_the_line_after_so_many_steps(engine, make_sketch, number, l
     np.testing.assert_allclose(lines, truth, atol=2e-6)
 
 
-def test_both_drivers_draw_the_same_line(ctx, make_sketch):
-    if ctx.version_code < 430:
-        pytest.skip("this context has no compute shaders")
-    lines = []
-    for driver in ("fragment", "compute"):
-        with Engine(ctx, driver=driver) as engine:
-            lines.append(engine.read(segment_of(make_sketch, 513, 11, seed=9), "land"))
-    np.testing.assert_array_equal(*lines)
+def test_both_drivers_draw_the_same_line(same_by_both_drivers, make_sketch):
+    sketch = segment_of(make_sketch, 513, 11, seed=9)
+    same_by_both_drivers(lambda engine: engine.read(sketch, "land"))
 
 
 def test_a_step_keeps_the_points_that_were_there(engine, make_sketch):

@@ -7,22 +7,13 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from playground.engine.engine import Engine
-
 from ..loading import load
 from ..truth.land import Land, cone, real
 from ..truth.sky import sky_visibility
+from .lands import lit_by
 
 HALF = 2.0**-10
 OPEN_SKY = "lighting/horizons/open_sky.glsl"
-
-
-@pytest.fixture(scope="module")
-def kept(shared_context):
-    """Give one engine for the file: programs are compiled once."""
-    shared_context.__enter__()
-    with Engine(shared_context) as engine:
-        yield engine
 
 
 @pytest.fixture
@@ -30,38 +21,12 @@ def read(ctx, kept, tmp_path):
     """Give ``read(land, use, *outputs, **values)``: the outputs of a technique in lighting/, float64."""
 
     def make(land, use, *outputs, passes="", size="", **values):
-        sketch = sketch_of(tmp_path, land, use, passes=passes, size=size, **values)
+        sketch = lit_by(tmp_path, land, "under_test", use, passes=passes, size=size, **values)
         found = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
         assert all(np.isfinite(f).all() for f in found)
         return found[0] if len(found) == 1 else found
 
     return make
-
-
-def sketch_of(folder, land, use, *, passes="", size="", **values):
-    ny, nx = land.heights.shape
-    low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
-    np.save(folder / "land.npy", ((land.heights - low) / relief).astype(np.float32))
-    setting = "".join(f"{k} = {written(v)}\n" for k, v in values.items())
-    extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
-    path = folder / "sketch.toml"
-    path.write_text(
-        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
-        '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-        'set = { elevation = "land.npy", first_row = "south" }\n'
-        f'{passes}[[pass]]\nname = "under_test"\nuse = "lighting/{use}"\n{size}\n[pass.set]\n{setting}'
-    )
-    return load(path)
-
-
-def written(value):
-    return (
-        str(value).lower()
-        if isinstance(value, bool)
-        else f'"{value}"'
-        if isinstance(value, str)
-        else str(value)
-    )
 
 
 def colour_pass(folder, text, name="colour"):
@@ -356,7 +321,7 @@ def test_shadows_of_a_local_method_are_not_black(read, tmp_path):
 
 def test_another_sun_sums_no_sky_anew(ctx, kept, tmp_path):
     passes = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n'
-    sketch = sketch_of(tmp_path, real(33), "interreflection", passes=passes)
+    sketch = lit_by(tmp_path, real(33), "under_test", "interreflection", passes=passes)
     kept.read(sketch, "under_test")
     kept.read(sketch.with_values({"light.sun": (100, 30), "under_test.ambient": 0.2}), "under_test")
     assert kept.ran == ["light", "under_test.add"]

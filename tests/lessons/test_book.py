@@ -176,6 +176,20 @@ def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, e
     assert "en/small.html" in names and "pictures/small-smooth-1.webp" in names
 
 
+def test_a_build_that_was_stopped_begins_again(tmp_path, lesson, engine):
+    class Stop(Exception):
+        pass
+
+    def stop():
+        raise Stop
+
+    folder = tmp_path / "stopped"
+    with pytest.raises(Stop):
+        write_book(prepare(folder, {"en": [lesson]}, gallery=False), engine, stop)
+    write_book(prepare(folder, {"en": [lesson]}, gallery=False), engine)
+    assert (folder / "en/small.html").is_file()
+
+
 def test_a_manifest_that_names_files_outside_removes_none(book, lesson, engine, tmp_path):
     victim = tmp_path / "victim.txt"
     victim.write_text("keep", encoding="utf-8")
@@ -220,6 +234,13 @@ def test_both_languages_have_the_same_words():
     for key, text in english.items():
         places = [part.split("}")[0] for part in text.split("{")[1:]]
         assert sorted(places) == sorted(part.split("}")[0] for part in french[key].split("{")[1:]), key
+
+
+def test_every_word_is_used():
+    """A word by a name that is made up would be missed: there are none."""
+    package = Path(build.__file__).resolve().parent.parent
+    code = "".join(path.read_text(encoding="utf-8") for path in package.rglob("*.py"))
+    assert [key for key in interface_words("en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
 
 
 def test_french_is_set_as_french_is():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import pytest
 
@@ -108,3 +109,13 @@ def test_notebooks(texts, tmp_path, capsys):
     for language in ("en", "fr"):
         found = json.loads((tmp_path / "books" / language / "small.ipynb").read_text(encoding="utf-8"))
         assert found["nbformat"] == 4 and len(found["cells"]) > 15
+
+
+def test_open_needs_a_screen_and_a_lesson(texts, capsys, monkeypatch):
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(variable, raising=False)
+    assert run("open", "smal") == 2
+    assert "no lesson 'smal'; did you mean 'small'?" in capsys.readouterr().err
+    if sys.platform == "linux":
+        assert run("open", "small") == 2
+        assert "no screen" in capsys.readouterr().err

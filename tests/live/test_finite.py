@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
@@ -184,3 +185,95 @@ def test_nothing_is_done_before_there_is_a_picture() -> None:
     watch = FiniteWatch(lambda: 0.0)
     watch.turn(nothing, False)  # type: ignore[arg-type]
     assert watch.patience is None and watch.looks == 0
+
+
+LIT = """// lit.glsl -- light with a hole
+#pragma kernel(output = "frame:rgba16f")
+uniform float root = 0.0; //! slider(-1, 1)
+uniform sampler2D height; //! input
+vec4 kernel(ivec2 texel) {
+    float found = texelFetch(height, ivec2(0), 0).r;
+    return texel == ivec2(7, 5) ? vec4(sqrt(root)) : vec4(found, 0.25, 0.0, 1.0);
+}
+"""
+SHOWN = """// shown.glsl -- what a screen takes
+#pragma kernel(output = "frame:rgba8")
+uniform sampler2D picture; //! input
+vec4 kernel(ivec2 texel) { return clamp(texelFetch(picture, texel, 0), 0.0, 1.0); }
+"""
+VIEW = """[[pass]]
+name = "lit"
+use = "./lit"
+[[pass]]
+name = "shown"
+use = "./shown"
+inputs = { picture = "lit" }
+[inputs]
+height = "lit.height"
+[parameters]
+root = "lit.root"
+"""
+IN_VIEW = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+[view]
+use = "./look"
+inputs = { height = "height" }
+set = { root = -1.0 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("wired", "by_hand"),
+    [
+        ("", False),
+        ('inputs = { height = "height" }\n', True),
+        ('inputs = { "lit.height" = "height" }\n', False),
+    ],
+)
+def test_a_hole_that_the_view_makes_is_shown_too(
+    any_engine: Engine, tmp_path: Path, wired: str, by_hand: bool
+) -> None:
+    """Whichever way the view's inputs are wired, and whether its values come from the file or the hand."""
+    sketch = IN_VIEW.replace('inputs = { height = "height" }\n', wired)
+    if by_hand:
+        sketch = sketch.replace("set = { root = -1.0 }\n", "")
+    for name, text in (("lit.glsl", LIT), ("shown.glsl", SHOWN), ("look.toml", VIEW)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    desk = Desk(any_engine, tmp_path)
+    (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
+    desk.session.reload()
+    desk.turn()
+    if by_hand:
+        desk.session.set("view.root", -1.0)
+    desk.rest()
+    (found,) = desk.watch.found
+    assert (found.path, found.texel, found.size, found.value) == ("view.lit", (7, 5), (40, 40), "NaN")
+    ref = ref_of(found)
+    assert ref == "view.lit:frame" and desk.session.can_show(ref)
+    desk.actions.show(ref)
+    desk.turn()
+    assert desk.session.map is not None and desk.session.error is None and not desk.session.notes
+    frame = desk.session.read()
+    assert frame is not None
+    magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
+    assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
+    desk.rest()
+    assert desk.watch.found == (found,), "it has its own name, whatever the map calls it"
+    desk.actions.show(None)
+    desk.turn()
+    desk.rest()
+    assert desk.watch.found == (found,)
+    desk.session.release()
+
+
+def test_what_the_view_lacks_cannot_be_shown(any_engine: Engine, tmp_path: Path) -> None:
+    desk = Desk(any_engine, tmp_path)
+    desk.turn()
+    session = desk.session
+    assert session.can_show("view:frame") and session.can_show("first:first")
+    for wrong in ("view:light", "view.lit:frame", "other:frame", "first.view:first", "view"):
+        assert not session.can_show(wrong)
+    session.release()

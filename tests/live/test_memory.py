@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.folders import cache_folder, state_folder
 from playground.live.edits import Edits
-from playground.live.memory import Memory, Remembered
+from playground.live.memory import Compared, Memory, Remembered
 from playground.live.remember import QUIET, TIME, Rememberer
 from playground.live.session import Session
 from playground.live.words import Said
@@ -50,6 +51,16 @@ FULL = Remembered(
     (("highest", 0.5), ("channel", 1)),
     (("height", 3),),
     (1100, 700),
+    (-20, 40),
+    Camera(azimuth=200.0, target=(0.0, 0.5, 1.0)),
+    (0.5, 2.25),
+    Compared(
+        Edits((("height.slope", (2.0, 3.0)),), (("height", "./third"),), Camera(elevation=80.0), ("a.b",)),
+        (("height", 2),),
+        "difference",
+        0.25,
+        16.0,
+    ),
 )
 
 
@@ -66,7 +77,8 @@ class Place:
     def start(self, **more: object) -> tuple[Session, Rememberer]:
         memory = Memory(self.sketch / "sketch.toml", self.state)
         found, complaint = memory.read()
-        session = Session(self.engine, self.sketch, edits=found.edits, in_file=dict(found.in_file), **more)  # type: ignore[arg-type]
+        more |= {"edits": found.edits, "in_file": dict(found.in_file), "camera_in_file": found.camera_in_file}
+        session = Session(self.engine, self.sketch, **more)  # type: ignore[arg-type]
         session.notes.extend(filter(None, [complaint]))
         made = session, Rememberer(session, memory, found, lambda: self.now)
         self.open.append(made)
@@ -109,6 +121,48 @@ def test_all_of_it_comes_back_as_it_was(tmp_path: Path) -> None:
     assert Memory(tmp_path / "other" / "sketch.toml", tmp_path).read() == (Remembered(), ""), "another sketch"
     memory.write(Remembered())
     assert not memory.path.exists(), "there is nothing to remember any more"
+
+
+def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> None:
+    memory = Memory(tmp_path / "sketch.toml", tmp_path)
+    memory.write(FULL)
+    table = json.loads(memory.path.read_text(encoding="utf-8"))
+    for name in ("at", "camera_in_file", "loop", "compared"):
+        del table[name]
+    memory.path.write_text(json.dumps(table), encoding="utf-8")
+    expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None)
+    assert memory.read() == (expected, "")
+
+
+def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
+    session, rememberer = place.start()
+    session.clock.go_round(0.5, 2.0)
+    rememberer.look((900, 600))
+    rememberer.close()
+    again, rememberer = place.start()
+    assert again.clock.loop == (0.5, 2.0)
+    again.clock.loop = None
+    rememberer.look((900, 600))
+    rememberer.close()
+    assert place.start()[0].clock.loop is None
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
+    session, rememberer = place.start()
+    by_hand = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
+    session.look(by_hand)
+    rememberer.look((900, 600))
+    rememberer.close()
+    other = SKETCH + ("camera = { azimuth = 12.0 }\n" if moved else "# the same camera\n")
+    (place.sketch / "sketch.toml").write_text(other, encoding="utf-8")
+    again, _ = place.start()
+    assert again.sketch is not None and again.shown is not None
+    if moved:
+        assert again.sketch.camera == again.shown.file.camera and again.sketch.camera.azimuth == 12.0
+        assert list(again.notes) == ["camera: the file's new one is taken"]
+    else:
+        assert again.sketch.camera == by_hand and not again.notes
 
 
 def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:

@@ -1,4 +1,4 @@
-"""Files dropped on a window, as GLFW tells of them."""
+"""Where a window stands on the screens that there are, and files dropped on it, as GLFW tells of them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.place import Place
+from playground.live.place import Place, on_screen
 
 
 def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -20,3 +20,24 @@ def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:
     handles[0] = "second"  # the window was opened anew
     place.dropped()
     assert [handle for handle, _ in listening] == ["first", "second"]
+
+
+LEFT, RIGHT = (0, 0, 1920, 1080), (1920, -200, 1280, 1024)
+
+
+@pytest.mark.parametrize(
+    ("window", "areas", "expected"),
+    [
+        ((100, 200, 800, 600), [LEFT], (100, 200)),
+        ((1500, 100, 800, 600), [LEFT, RIGHT], (1500, 100)),  # on both, and all of it
+        ((-50, 700, 800, 600), [LEFT], (0, 480)),
+        ((1900, 100, 800, 600), [LEFT], (1120, 100)),
+        ((2500, 300, 800, 600), [LEFT], (1120, 300)),  # its screen is gone
+        ((2500, 300, 800, 600), [LEFT, RIGHT], (2400, 224)),
+        ((-3000, -3000, 800, 600), [RIGHT], (1920, -200)),
+        ((50, 50, 3000, 2000), [LEFT], (0, 0)),  # larger than the screen: its title bar shows
+        ((50, 50, 800, 600), [], (50, 50)),
+    ],
+)
+def test_a_window_comes_back_where_a_screen_shows_it(window, areas, expected):
+    assert on_screen(window, areas) == expected

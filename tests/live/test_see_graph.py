@@ -192,3 +192,23 @@ def test_passes_are_timed_only_where_that_is_asked_for(bare: Bare) -> None:
     bare.key(imgui.Key.g)
     bare.turn(3)
     assert not bare.session.engine.profiling
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.5])
+def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
+    any_engine: Engine, folder: Path, scale: float
+) -> None:
+    bare = Bare(any_engine, folder, (1920, 1080), scale)
+    try:
+        bare.turn()
+        margin = imgui.get_style().window_padding.x
+        for label in "Undo Redo History Random A/B Reset Copy Save PNG Capture Graph".split():
+            x, _, width, _ = bare.places[label]
+            assert margin <= x and x + width <= bare.panel.width * scale - margin, label
+        graph = bare.actions.see.graph
+        bare.click("Graph")
+        assert graph.on
+        bare.click("Graph")
+        assert not graph.on
+    finally:
+        bare.close()

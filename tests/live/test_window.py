@@ -244,7 +244,7 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         app.wait(lambda now: any("was reset" in text for text in now["notices"]))
         app.wait(lambda now: now["picture"] == nearer and not now["error"])
         assert soon(lambda: np.array_equal(app.picture(), picture))
-        assert soon(lambda: np.array_equal(screen.pixels()[:70, :PANEL], panel[:70])), "and its texts"
+        assert soon(lambda: np.array_equal(screen.pixels()[:50, :PANEL], panel[:50])), "and its texts"
         save_in_place(app.sketch / "land.glsl", LAND.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now: now["picture"] not in ("", nearer) and not now["error"])
         screen.do("mousemove", PANEL + 200, 200, "key", "Escape")

@@ -64,7 +64,10 @@ def test_a_value_is_typed_undone_and_saved(screen: Screen, folder: Path) -> None
     program = opened(screen, folder, (WIDTH, HEIGHT))
     try:
         first = program.now()["picture"]
-        screen.do("mousemove", *LEVEL, "keydown", "ctrl", "click", 1, "keyup", "ctrl", "sleep", 1)
+        screen.do(
+            "mousemove", *LEVEL, "keydown", "ctrl", "sleep", 0.5, "click", 1, "sleep", 0.5, "keyup", "ctrl"
+        )
+        program.wait(lambda now: now["takes_text"])
         screen.do("type", "--delay", 200, "1/4")
         screen.do("key", "Return")
         low = program.wait(lambda now: now["picture"] != first)["picture"]

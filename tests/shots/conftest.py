@@ -10,8 +10,23 @@ import pytest
 
 # Here already, for what a run of pytest inside pytest imports first is forgotten after it.
 from playground.shots import checking, collect, fixture  # noqa: F401
+from playground.shots.fingerprint import Fingerprint
 from playground.shots.studio import Studio
 from playground.shots.suite import ShotCase, Taken
+
+# What drew a reference, as one build of Mesa says it.
+OURS = Fingerprint(
+    "llvmpipe (LLVM 15.0.6, 256 bits)",
+    "4.5 Mesa 22.3.6",
+    "Mesa/X.org",
+    "22.3.6",
+    "15.0.6",
+    "GenuineIntel",
+    "avx fma f16c",
+    "ab12",
+    "64x32",
+    "tool 1",
+)
 
 KERNEL = """// land.glsl -- a slope.
 #pragma kernel(output = "height:r32f")

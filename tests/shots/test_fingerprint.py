@@ -14,26 +14,17 @@ import pytest
 from playground._version import __version__
 from playground.engine.drawn import compiled_text, rounded
 from playground.engine.engine import Engine
+from playground.gpu.build import processor_in
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
-from playground.shots.fingerprint import Fingerprint, fingerprint_of, processor_in, read_fingerprint
+from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.load import load
 
+from .conftest import OURS
+
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 NVIDIA = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 NVIDIA 570.86", 32)
-OURS = Fingerprint(
-    "llvmpipe (LLVM 15.0.6, 256 bits)",
-    "4.5 Mesa 22.3.6",
-    "Mesa/X.org",
-    "22.3.6",
-    "15.0.6",
-    "GenuineIntel",
-    "avx fma f16c",
-    "ab12",
-    "64x32",
-    "tool 1",
-)
 
 
 @pytest.mark.parametrize(

@@ -24,20 +24,10 @@ from playground.shots.judge import (
 )
 from playground.shots.references import Reference, reference_texts
 
+from .conftest import OURS
+
 SCREENSHOTS = Path(__file__).resolve().parent.parent.parent / "screenshots"
 SIZE = (200, 100)  # pixels; 0.5 % of them are 100
-OURS = Fingerprint(
-    "llvmpipe (LLVM 15.0.6, 256 bits)",
-    "4.5 Mesa 22.3.6",
-    "Mesa/X.org",
-    "22.3.6",
-    "15.0.6",
-    "GenuineIntel",
-    "avx fma f16c",
-    "ab12",
-    "200x100",
-    "tool 1",
-)
 NEWER = replace(OURS, version="4.5 Mesa 25.0.7", vendor="Mesa", mesa="25.0.7")
 CARD = Fingerprint("NVIDIA H200/PCIe/SSE2", "4.6.0 NVIDIA 570.86", "NVIDIA Corporation", drawn="ab12")
 

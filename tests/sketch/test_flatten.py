@@ -12,7 +12,6 @@ from playground.sketch import flatten as module
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flatten import Fed, Leaf, Loop, Ref, flatten, leaves_of
-from playground.sketch.load import load
 from playground.sketch.wiring import (
     initial_names,
     input_names,
@@ -20,6 +19,8 @@ from playground.sketch.wiring import (
     outputs_with_formats,
     takes_input,
 )
+
+from ..loading import load
 
 
 def kernel(outputs: str, *inputs: str, repeat: str = "", parameters: str = "") -> str:

@@ -16,9 +16,14 @@ WIDE, TALL = (1280, 720), (360, 720)
 
 def place(camera: Camera, point, size=WIDE, extent=EXTENT, relief=RELIEF) -> np.ndarray:
     """Return where a point is: shares of half the picture, right and up of its middle; and its depth."""
+    return places(camera, [point], size, extent, relief)[0]
+
+
+def places(camera: Camera, points, size=WIDE, extent=EXTENT, relief=RELIEF) -> np.ndarray:
+    """Return where each point is, as ``place`` does."""
     matrix = look(camera, extent, relief, size).clip_from_world.astype(np.float64)
-    clip = matrix @ np.array([*point, 1.0])
-    return clip[:3] / clip[3]
+    clip = np.array([[*point, 1.0] for point in points]) @ matrix.T
+    return clip[:, :3] / clip[:, 3:]
 
 
 def by_hand(camera: Camera, point, target, distance, size=WIDE) -> tuple[float, float]:
@@ -73,7 +78,7 @@ def test_all_of_the_land_is_in_the_picture_and_fills_it(size, elevation, land):
     for azimuth in range(0, 360, 15):
         for field in (20.0, 35.0, 70.0):
             camera = Camera(float(azimuth), elevation, field_of_view=field)
-            found = np.array([place(camera, c, size, (east, north), relief) for c in corners])
+            found = places(camera, corners, size, (east, north), relief)
             assert np.abs(found).max() < 1.0, f"azimuth {azimuth}, field of view {field}"
             reach.append(np.abs(found[:, :2]).max())
     assert max(reach) > 0.8, "and not lost in the middle of it"

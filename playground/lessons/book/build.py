@@ -81,6 +81,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
 
     Raises as drawing does; what has been written so far stays, and the next build goes over it.
     """
+    _begin(build.folder)
     build.album.draw(engine, build.names, advance)
     numbers = {lesson.name: numbers_of(engine, lesson) for lesson in next(iter(build.lessons.values()))}
     info = context_info(engine.ctx)
@@ -123,15 +124,19 @@ def _write(path: Path, text: str) -> None:
         handle.write(text.encode())
 
 
+def _begin(folder: Path) -> None:
+    """Mark a folder as a book, so that a build that was stopped can begin again."""
+    if not (folder / MANIFEST).is_file():
+        _write(folder / MANIFEST, json.dumps({"files": []}) + "\n")
+
+
 def _forget(folder: Path, written: list[str]) -> None:
     """Remove what an earlier build wrote and this one did not, and note what this one wrote."""
     manifest = folder / MANIFEST
-    before: list[str] = []
-    if manifest.is_file():
-        try:
-            before = [str(name) for name in json.loads(manifest.read_text(encoding="utf-8"))["files"]]
-        except (ValueError, KeyError, TypeError):
-            before = []
+    try:
+        before = [str(name) for name in json.loads(manifest.read_text(encoding="utf-8"))["files"]]
+    except (ValueError, KeyError, TypeError):  # somebody has written into it
+        before = []
     kept = set(written)
     for name in before:
         path = folder / name

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from playground.gpu.triangle import TRIANGLE
+
 if TYPE_CHECKING:
     import moderngl
 
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 # As in ``picture.Painter``: texels are fetched, and what has another size is stretched.
 _FRAGMENT = """#version 330
 uniform sampler2D first;
@@ -35,7 +34,7 @@ class Beside:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=_VERTEX, fragment_shader=_FRAGMENT)
+        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
         self._triangle = ctx.vertex_array(self._program, [])
 
     def paint(

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.engine.plan import Plan
 from playground.errors import PlaygroundError
+from playground.live.begin import first_draft
 from playground.live.clock import is_animated
 from playground.live.edits import Draft
 from playground.live.hasty import hastily
+from playground.live.memory import Compared
 from playground.live.picture import Painter, Picture
 from playground.live.see.beside import Beside
 from playground.live.session import Session
@@ -70,6 +72,7 @@ class Compare:
         self._drawn: object = None  # what A's picture shows
         self._hasty = False  # as of ``live.hasty``
         self._told = False  # that A cannot be drawn
+        self._recalled: Draft | None = None  # A of an earlier session, while it is tried
 
     @property
     def on(self) -> bool:
@@ -94,6 +97,12 @@ class Compare:
         """Take what is shown for A."""
         self._kept, self._drawn, self._told = self._now(), None, False
 
+    def keep_other(self, draft: Draft, steps: Mapping[str, int]) -> None:
+        """Take another state of the sketch that is shown for A; it is drawn as B is seen."""
+        now = self._now()
+        if now is not None:
+            self._kept, self._drawn, self._told = replace(now, draft=draft, steps=dict(steps)), None, False
+
     def end(self) -> None:
         """Let A go."""
         self._kept = None
@@ -110,6 +119,48 @@ class Compare:
         if before is not None and now is not None:
             self._take(before)
             self._kept, self._drawn, self._told = now, None, False
+
+    # ── over a restart ───────────────────────────────────────────────────────
+
+    def remembered(self) -> Compared | None:
+        """Return what brings A back in a later session; None where there is none."""
+        if self._kept is None:
+            return None
+        steps = tuple(sorted(self._kept.steps.items()))
+        return Compared(self._kept.draft.edits, steps, self.mode.value, self.split, self.gain)
+
+    def recall(self, compared: Compared) -> bool:
+        """Compare with A of an earlier session, over the files as they are now; say whether that is done.
+
+        Until it has proved good it is tried as what is saved is: ask again.
+        """
+        session = self.session
+        if session.shown is None or session.plan is None:
+            return False
+        if self._recalled is None:
+            self._recalled, _ = first_draft(session.shown.file, compared.edits, {})
+        draft = self._recalled
+        report = session.tried(draft.sketch)
+        if report is None:
+            return False
+        self._recalled = None
+        if not report.ok:
+            session.notes.append(f"A of the last session is left out: {report.error}")
+            return True
+        try:
+            plan = session.engine.plan_for(draft.sketch, session.plan.frame_size, session.clock.time)
+        except PlaygroundError as error:
+            session.notes.append(f"A of the last session is left out: {error}")
+            return True
+        files = {path: _stamp(path) for path in _files_of(plan)}
+        self._kept, self._drawn, self._told = (
+            Kept(session.path, draft, dict(compared.steps), files),
+            None,
+            False,
+        )
+        self.split, self.gain = compared.split, compared.gain
+        self.mode = next((mode for mode in Mode if mode.value == compared.mode), Mode.DIVIDER)
+        return True
 
     def _now(self) -> Kept | None:
         session = self.session
@@ -177,7 +228,7 @@ class Compare:
         try:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
-            with _as_before(engine, plan):
+            with as_before(engine, plan):
                 texture = engine.draw(chosen, size=plan.frame_size, time=plan.time, steps=kept.steps)
                 self._picture.keep(texture)
         except Exception as error:
@@ -196,7 +247,7 @@ class Compare:
 
 
 @contextmanager
-def _as_before(engine: Engine, plan: Plan) -> Iterator[None]:
+def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     """Draw something else, and have the engine tell of the picture before it all the same."""
     ran, texels, times, triangles = engine.ran, engine.texels, engine.times, engine.triangles
     runs, profiling = engine.runs.copy(), engine.profiling

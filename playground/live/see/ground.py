@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
 from playground.terrain.camera import Eye
 from playground.terrain.pick import walk_over
 
 if TYPE_CHECKING:
     import moderngl
 
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 _FRAGMENT = """#version 330
 uniform sampler2D height;
 uniform vec3 start;  // [m] where the ray comes over the land
@@ -68,7 +66,7 @@ class Ground:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=_VERTEX, fragment_shader=_FRAGMENT)
+        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
         self._triangle = ctx.vertex_array(self._program, [])
         self._texture = make_texture(ctx, (1, 1), "rgba32f")
         self._framebuffer = make_framebuffer(ctx, [self._texture])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
 from playground.paths import GLSL
 
 if TYPE_CHECKING:
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
     from playground.sketch.maps import Map
 
 STEPS = 64
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 _MAIN = """
 uniform int ramp;
 uniform float steps;
@@ -34,7 +32,7 @@ def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
     The context is the caller's to make current and to leave as it was; nothing stays in it.
     """
     text = "#version 330\n" + (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8") + _MAIN
-    program = ctx.program(vertex_shader=_VERTEX, fragment_shader=text)
+    program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=text)
     triangle = ctx.vertex_array(program, [])
     texture = make_texture(ctx, (STEPS, 1), "rgba32f")
     framebuffer = make_framebuffer(ctx, [texture])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
 from playground.live.session import Session
 from playground.sketch.colour import linear_to_srgb
 
@@ -20,9 +21,6 @@ SIDE = 64
 APART = 0.1
 """[s] from one that is drawn to the next."""
 _NO_NUMBER = (1.0, 0.0, 1.0)
-_VERTEX = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
 _FRAGMENT = """#version 330
 uniform sampler2D shown;
 uniform float side;
@@ -139,7 +137,7 @@ class _Shrink:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=_VERTEX, fragment_shader=_FRAGMENT)
+        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
         self._triangle = ctx.vertex_array(self._program, [])
         self._texture = make_texture(ctx, (SIDE, SIDE), "rgba32f")
         self._framebuffer = make_framebuffer(ctx, [self._texture])

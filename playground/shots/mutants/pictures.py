@@ -7,6 +7,7 @@ the same at every run.
 from __future__ import annotations
 
 import io
+from typing import Any
 
 import numpy as np
 
@@ -119,32 +120,28 @@ def _cropped(picture: Picture) -> Picture:
 
 
 def _faint_patch(picture: Picture) -> Picture:
-    broken = picture.astype(np.int16)
-    place = picture.shape[0] // 2, picture.shape[1] // 2
-    broken[place[0] - 12 : place[0] + 12, place[1] - 12 : place[1] + 12, :3] += 3
-    return np.clip(broken, 0, 255).astype(np.uint8)
+    row, column = picture.shape[0] // 2, picture.shape[1] // 2
+    return _off(picture, 3, slice(row - 12, row + 12), slice(column - 12, column + 12))
 
 
 def _specks(picture: Picture) -> Picture:
-    generator = np.random.default_rng(_SEED)
-    broken = picture.astype(np.int16)
-    broken[generator.random(picture.shape[:2]) < 0.003, :3] += 3
-    return np.clip(broken, 0, 255).astype(np.uint8)
+    return _off(picture, 3, np.random.default_rng(_SEED).random(picture.shape[:2]) < 0.003)
 
 
 def _noise_of_two(picture: Picture) -> Picture:
     generator = np.random.default_rng(_SEED)
-    broken = picture.astype(np.int16)
     seen = generator.random(picture.shape[:2]) < 0.01
-    broken[seen, :3] += 2 * generator.choice((-1, 1), (int(seen.sum()), 3)).astype(np.int16)
-    return np.clip(broken, 0, 255).astype(np.uint8)
+    return _off(picture, 2 * generator.choice((-1, 1), (int(seen.sum()), 3)).astype(np.int16), seen)
 
 
 def _noise_of_one(picture: Picture) -> Picture:
-    generator = np.random.default_rng(_SEED)
-    noise = generator.integers(-1, 2, (*picture.shape[:2], 3), np.int16)
+    return _off(picture, np.random.default_rng(_SEED).integers(-1, 2, (*picture.shape[:2], 3), np.int16), ...)
+
+
+def _off(picture: Picture, levels: Any, *where: Any) -> Picture:
+    """Return the picture with its colours off by so many levels at some places."""
     broken = picture.astype(np.int16)
-    broken[..., :3] += noise
+    broken[(*where, slice(3))] += levels
     return np.clip(broken, 0, 255).astype(np.uint8)
 
 

@@ -1,0 +1,313 @@
+"""Keep the textures of passes on disk by what they are made from, so that a sketch reopens at once.
+
+A file holds what one pass made: a header of JSON, the texels as they are, a checksum. Its name is
+a hash of the pass's key (see ``keys``) and of what made it: the build of the renderer and this
+version of the playground, down to its own Python files. So nothing here is ever out of date; what
+nobody asks for any more goes when the bound in bytes is reached, least recently used first.
+
+A file is written beside its place and then given its name, so that another process sees all of it
+or nothing. One that is damaged, cut short or not ours is dropped, and the land is computed. Which
+passes are worth it, ``store_choice`` says; who reads and writes textures is ``store_keeping``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import queue
+import struct
+import threading
+import time
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+from typing import IO, Any
+
+from playground import paths
+from playground._version import __version__
+from playground.errors import ParameterError, PlaygroundError
+from playground.folders import cache_folder
+from playground.gpu.build import build_of
+from playground.gpu.context import ContextInfo
+from playground.gpu.textures import bytes_of
+from playground.images.files import replacing
+
+LIMIT = 2**30  # [bytes] unless the environment says another
+VARIABLE = "PLAYGROUND_CACHE"
+MOST = 4096  # files, however small
+SHARE = 4  # no file takes more than a quarter of the bound
+
+_MAGIC = b"playground land 1\n"
+_ENDING = ".land"
+_PART = ".part"
+_ABANDONED = 3600.0  # [s] after which a half-written file is nobody's
+_LONGEST_HEADER = 2**16  # [bytes]
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+_LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python has a say in what a pass makes
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What one pass made, and where it came from."""
+
+    size: tuple[int, int]  # texels
+    outputs: tuple[tuple[str, str], ...]  # name and format of each
+    cost: float  # [ms] that it took to make, with all that it reads
+    made_for: str = ""  # sketch and pass, for people: the key knows neither
+    data: tuple[memoryview, ...] = field(default=(), repr=False)  # of each output; none where only listed
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of its texels."""
+        return sum(bytes_of(self.size, form) for _, form in self.outputs)
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A file of the store."""
+
+    path: Path
+    bytes: int  # of the file
+    used: float  # [s since the epoch] when it was read or written last
+    kept: Kept | None  # None: it cannot be read
+
+
+def place() -> Path:
+    """Return the folder that holds the files."""
+    return cache_folder() / "land"
+
+
+def limit_in(environment: Mapping[str, str] = os.environ) -> int:
+    """Return the bound [bytes] that the environment asks for, 0 for no store; raise ``ParameterError``."""
+    said = environment.get(VARIABLE, "").strip()
+    if not said:
+        return LIMIT
+    text = said.upper().removesuffix("IB").removesuffix("B")
+    unit = text[-1:] if text[-1:] in _UNITS else ""
+    try:
+        number = 0.0 if text == "OFF" else float(text.removesuffix(unit))
+    except ValueError:
+        number = -1.0
+    if not 0 <= number < 1e15:
+        raise ParameterError(f"{VARIABLE}={said}: expected a size, as 500M or 2G, or 0 to keep nothing")
+    return int(number * _UNITS[unit])
+
+
+class Store:
+    """The files, for one build of a renderer; its own thread writes them."""
+
+    def __init__(self, folder: Path, *, limit: int = LIMIT, made_by: str = "") -> None:
+        self.folder = folder
+        self.limit = limit  # [bytes]
+        self.trouble = ""  # why files can no longer be written, in a sentence
+        self._made_by = made_by
+        self._waiting: queue.SimpleQueue[tuple[str, Kept] | None] = queue.SimpleQueue()
+        self._thread: threading.Thread | None = None
+
+    def __contains__(self, key: str) -> bool:
+        return self._path(key).exists()
+
+    def read(self, key: str) -> Kept | None:
+        """Return what is kept under a key, whole and checked; None if there is nothing. It is now used."""
+        path = self._path(key)
+        try:
+            with path.open("rb") as file:
+                kept = _read(file, key)
+        except OSError:
+            return None
+        if kept is None:
+            _drop(path)
+            return None
+        with suppress(OSError):
+            os.utime(path)
+        return kept
+
+    def fits(self, size: int) -> bool:
+        """Say whether so many bytes of texels may be kept."""
+        return not self.trouble and size <= self.limit // SHARE
+
+    def keep(self, key: str, kept: Kept) -> None:
+        """Have something written, in its own time; what cannot be is told in ``trouble``."""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._write_all, name="store", daemon=True)
+            self._thread.start()
+        self._waiting.put((key, kept))
+
+    def close(self, patience: float = 30.0) -> None:
+        """Wait until all is written, for so many seconds at most."""
+        if self._thread is not None:
+            self._waiting.put(None)
+            self._thread.join(patience)
+            self._thread = None
+
+    def _path(self, key: str) -> Path:
+        name = hashlib.blake2b(f"{self._made_by} {key}".encode(), digest_size=16).hexdigest()
+        return self.folder / f"{name}{_ENDING}"
+
+    def _write_all(self) -> None:
+        while (work := self._waiting.get()) is not None:
+            key, kept = work
+            path = self._path(key)
+            try:
+                self.folder.mkdir(parents=True, exist_ok=True)
+                with replacing(path) as file:
+                    for part in _written(key, kept):
+                        file.write(part)
+            except (PlaygroundError, OSError) as error:
+                if (
+                    not path.exists()
+                ):  # else another session wrote it, and reads it: Windows lets nobody rename then
+                    self.trouble = f"land cannot be kept on disk: {error}"
+                continue
+            trim(self.folder, self.limit)
+
+
+def store_for(renderer: ContextInfo, limit: int, folder: Path | None = None) -> Store:
+    """Return the store of a renderer's build, in the user's cache unless a folder is named."""
+    return Store(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
+
+
+@lru_cache(maxsize=1)
+def tool() -> str:
+    """Return a hash of what has a say beside the driver: the playground's own files, what reads images."""
+    found: list[object] = [__version__]
+    for package in ("moderngl", "numpy", "pillow", "tifffile"):
+        with suppress(metadata.PackageNotFoundError):
+            found.append((package, metadata.version(package)))
+    home = Path(paths.__file__).parent
+    for path in sorted(path for layer in _LAYERS for path in (home / layer).glob("*.py")):
+        status = path.stat()
+        found.append((path.name, status.st_size, status.st_mtime_ns))
+    return hashlib.blake2b(repr(found).encode(), digest_size=16).hexdigest()
+
+
+def listed(folder: Path) -> list[Listed]:
+    """Return the files of a store, those used last first."""
+    found = []
+    for entry, status in _entries(folder):
+        path = Path(entry.path)
+        try:
+            with path.open("rb") as file:
+                kept = _head(file)[1]
+        except (OSError, ValueError):
+            kept = None
+        found.append(Listed(path, status.st_size, status.st_mtime, kept))
+    return sorted(found, key=lambda each: -each.used)
+
+
+def bytes_in(folder: Path) -> tuple[int, int]:
+    """Return how many files a store holds, and their bytes."""
+    sizes = [status.st_size for _, status in _entries(folder)]
+    return len(sizes), sum(sizes)
+
+
+def clear(folder: Path) -> tuple[int, int]:
+    """Remove the files of a store; return how many went, and their bytes. Other files stay."""
+    number, size = 0, 0
+    for entry, status in _entries(folder):
+        if _drop(Path(entry.path)):
+            number, size = number + 1, size + status.st_size
+    _drop_abandoned(folder)
+    return number, size
+
+
+def trim(folder: Path, limit: int, most: int = MOST) -> None:
+    """Remove what was used least recently until the bounds hold, and what was left half-written."""
+    entries = sorted(_entries(folder), key=lambda each: each[1].st_mtime, reverse=True)
+    total = 0
+    for number, (entry, status) in enumerate(entries):
+        total += status.st_size
+        if total > limit or number >= most:
+            _drop(Path(entry.path))
+    _drop_abandoned(folder)
+
+
+def _drop_abandoned(folder: Path) -> None:
+    """Remove what was left half-written; what is new may be another session's, which is at it."""
+    for entry, status in _entries(folder, _PART):
+        if time.time() - status.st_mtime > _ABANDONED:
+            _drop(Path(entry.path))
+
+
+def _entries(folder: Path, ending: str = _ENDING) -> Iterator[tuple[os.DirEntry[str], os.stat_result]]:
+    try:
+        entries = list(os.scandir(folder))
+    except OSError:
+        return
+    for entry in entries:
+        if entry.name.endswith(ending):
+            with suppress(OSError):  # another session may have removed it
+                yield entry, entry.stat()
+
+
+def _drop(path: Path) -> bool:
+    try:
+        path.unlink()
+    except OSError:  # it is gone, or another session has it open on Windows
+        return False
+    return True
+
+
+def _written(key: str, kept: Kept) -> Iterator[bytes | memoryview]:
+    header = json.dumps(
+        {
+            "key": key,
+            "size": kept.size,
+            "outputs": kept.outputs,
+            "cost": round(kept.cost, 3),
+            "made_for": kept.made_for,
+        }
+    ).encode()
+    checksum = 0
+    parts: list[bytes | memoryview] = [_MAGIC, struct.pack("<I", len(header)), header, *kept.data]
+    for part in parts:
+        checksum = zlib.crc32(part, checksum)
+        yield part
+    yield struct.pack("<I", checksum)
+
+
+def _head(file: IO[bytes]) -> tuple[bytes, Kept, str]:
+    """Return a file's first bytes, what they say, and the key; raise ``ValueError`` if it is not ours."""
+    start = file.read(len(_MAGIC) + 4)
+    if len(start) < len(_MAGIC) + 4 or not start.startswith(_MAGIC):
+        raise ValueError("not a file of the store")
+    (length,) = struct.unpack("<I", start[len(_MAGIC) :])
+    if length > _LONGEST_HEADER:
+        raise ValueError("not a header")
+    header = file.read(length)
+    try:
+        table: dict[str, Any] = json.loads(header)
+        width, height = (int(side) for side in table["size"])
+        outputs = tuple((str(name), str(form)) for name, form in table["outputs"])
+        kept = Kept((width, height), outputs, float(table["cost"]), str(table["made_for"]))
+        if min(width, height) < 1 or kept.bytes < 1:
+            raise ValueError("no texels")
+        return start + header, kept, str(table["key"])
+    except (TypeError, KeyError, ArithmeticError, RecursionError) as error:
+        raise ValueError(f"not a header: {error}") from None
+
+
+def _read(file: IO[bytes], key: str) -> Kept | None:
+    """Return what a file holds; None if it is not whole, or not what was asked for."""
+    try:
+        head, kept, named = _head(file)
+    except ValueError:
+        return None
+    if named != key or os.fstat(file.fileno()).st_size != len(head) + kept.bytes + 4:
+        return None
+    body = memoryview(file.read())
+    if len(body) != kept.bytes + 4:
+        return None
+    if zlib.crc32(body[:-4], zlib.crc32(head)) != struct.unpack("<I", body[-4:])[0]:
+        return None
+    parts, start = [], 0
+    for _, form in kept.outputs:
+        length = bytes_of(kept.size, form)
+        parts.append(body[start : start + length])
+        start += length
+    return Kept(kept.size, kept.outputs, kept.cost, kept.made_for, tuple(parts))

@@ -1,0 +1,37 @@
+"""Know how long a process has waited for a processor that others had.
+
+A limit of time is meant for what a process does, not for what its machine does besides: on a
+machine with ten things to do, a draw of a second takes five. Linux counts, for each thread,
+the time that it was ready to run and did not (``/proc/PID/task/*/schedstat``: nanoseconds run,
+nanoseconds waited, times). Where that is not told, nobody is known to have waited.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+Waits = dict[str, int]
+"""Nanoseconds that each thread of a process has waited for a processor since it began."""
+
+
+def waits_of(pid: int) -> Waits:
+    """Return how long each thread of a process has waited so far; nothing where it is not told."""
+    found: Waits = {}
+    try:
+        tasks = list(Path(f"/proc/{pid}/task").iterdir())
+    except OSError:
+        return found
+    for task in tasks:
+        try:
+            found[task.name] = int((task / "schedstat").read_text("ascii").split()[1])
+        except (OSError, IndexError, ValueError):
+            continue  # it has ended meanwhile, or this system does not count
+    return found
+
+
+def waited_since(before: Waits, now: Waits) -> float:
+    """Return the seconds that the thread which has waited longest has done so since ``before``.
+
+    Of threads that work side by side, as a renderer's, the slowest says when all are done.
+    """
+    return max((wait - before.get(thread, 0) for thread, wait in now.items()), default=0) * 1e-9

@@ -1,0 +1,64 @@
+"""Lessons beside the picture: what the window asks of them turn by turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from playground.live.actions import Actions
+from playground.live.lesson.panel import LessonPanel
+from playground.live.lesson.progress import progress_file, read_progress
+from playground.live.lesson.reading import Reading
+from playground.live.remember import Rememberer
+from playground.live.theme import Theme
+
+Size = tuple[int, int]
+
+
+class Lessons:
+    """One window's; ``remember`` takes in what is shown, for the next start."""
+
+    def __init__(self, actions: Actions, rememberer: Rememberer, remember: Callable[[], None]) -> None:
+        file = progress_file()
+        self.reading = Reading(actions, read_progress(file), file, self._keep_own, self._play)
+        self._panel = LessonPanel()
+        self._rememberer = rememberer
+        self._remember = remember
+        actions.toggle_lessons, actions.turn_page = self.reading.toggle, self.reading.turn_page
+
+    def begin(self, name: str, language: str, pixels: Size, density: float, *, beside: bool) -> None:
+        """Open a lesson by name; else, ``beside`` the sketch, the one read last, unless all were closed.
+
+        ``pixels``: of the window; ``density``: those in one unit of scale 1.
+        """
+        reading = self.reading
+        if language and not name:
+            reading.progress.language = language
+        if name:
+            taken = round(reading.progress.width * density)
+            reading.stage.room = max(pixels[0] - taken, 1), pixels[1]
+            reading.open(name, language=language)
+        elif beside and reading.progress.shown:
+            reading.open(show=False)
+
+    def draw(self, look: Theme) -> float:
+        """Draw the panel; return the width it takes, in the window's units."""
+        return self._panel.draw(self.reading, look)
+
+    def turn(self, *, idle: bool) -> None:
+        """Take in what a turn has brought; ``idle``: there is time to compute."""
+        if self.reading.stage.own is None:  # what a lesson sets is not the reader's
+            self._remember()
+        self.reading.turn(idle=idle)
+
+    def release(self) -> None:
+        """Give back what was made in the session's context; it is made again where it is needed."""
+        self._panel.release()
+
+    def _keep_own(self) -> None:
+        """Remember what is shown, before a lesson shows something else."""
+        self._remember()
+        self._rememberer.write()
+
+    def _play(self, sketch: Path) -> None:
+        self._rememberer.open(sketch)

@@ -1,0 +1,146 @@
+"""Markdown as runs of one style each: what has to be laid out, and nothing about how."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from markdown_it.token import Token
+
+from playground.lessons.markdown import parser
+
+
+@dataclass(frozen=True)
+class Run:
+    """Something of one style in a line."""
+
+    text: str
+    bold: bool = False
+    italic: bool = False
+    code: bool = False
+    formula: bool = False  # ``text`` is LaTeX
+    link: str = ""
+    breaks: bool = False  # a line ends here
+    alone: bool = False  # it stands on lines of its own: code, a formula
+
+
+Runs = tuple[Run, ...]
+
+INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
+"""What is written for what the text's font has not."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a text that stands on lines of its own."""
+
+    kind: str  # paragraph | heading | formula | code | table | rule
+    runs: Runs = ()
+    level: int = 0  # of a heading, from 1
+    indent: int = 0  # lists and quotes that it stands in
+    mark: str = ""  # of a list's item: "•" or "2."
+    rows: tuple[tuple[Runs, ...], ...] = ()  # of a table; the first is its head
+    numbers: tuple[bool, ...] = ()  # of a table: which columns stand to the right
+    close: bool = False  # it follows closely on the part before, as items of a list do
+
+
+@lru_cache(maxsize=512)
+def parts_of(words: str) -> tuple[Part, ...]:
+    """Return the parts of a text."""
+    return tuple(_parts(parser().parse(words)))
+
+
+def written(text: str) -> str:
+    """Return a text as the font can show it."""
+    return text.translate(INSTEAD)
+
+
+def plain(words: str) -> str:
+    """Return a text without its marks, on one line."""
+    texts = []
+    for part in parts_of(words):
+        runs = [*part.runs, *(run for row in part.rows for cell in row for run in cell)]
+        texts.append("".join(run.text or " " for run in runs))
+    return written(" ".join(" ".join(texts).split()))
+
+
+def _parts(tokens: list[Token]) -> Iterator[Part]:
+    lists: list[int | None] = []  # the next number of each list that is open; None: of one with dots
+    quotes, mark, tight = 0, "", False
+    at = 0
+    while at < len(tokens):
+        token = tokens[at]
+        indent = len(lists) + quotes
+        if token.type in ("bullet_list_open", "ordered_list_open"):
+            start = int(token.attrs.get("start", 1))
+            lists.append(None if token.type == "bullet_list_open" else start)
+            tight = False
+        elif token.type in ("bullet_list_close", "ordered_list_close"):
+            lists.pop()
+            tight = False
+        elif token.type == "list_item_open":
+            number = lists[-1]
+            mark = "•" if number is None else f"{number}."
+            lists[-1] = None if number is None else number + 1
+        elif token.type in ("blockquote_open", "blockquote_close"):
+            quotes += 1 if token.type == "blockquote_open" else -1
+        elif token.type == "inline":
+            opener = tokens[at - 1]
+            heading = opener.type == "heading_open"
+            level = int(opener.tag[1]) if heading else 0
+            runs = runs_of(token)
+            yield Part("heading" if heading else "paragraph", runs, level, indent, mark, close=tight)
+            tight, mark = bool(lists), ""
+        elif token.type == "math_block":
+            yield Part("formula", (Run(token.content.strip(), formula=True, alone=True),), indent=indent)
+        elif token.type in ("fence", "code_block"):
+            yield Part("code", (Run(token.content.rstrip("\n"), code=True, alone=True),), indent=indent)
+        elif token.type == "hr":
+            yield Part("rule")
+        elif token.type == "table_open":
+            end = next(n for n in range(at, len(tokens)) if tokens[n].type == "table_close")
+            yield _table(tokens[at:end], indent)
+            at = end
+        at += 1
+
+
+def _table(tokens: list[Token], indent: int) -> Part:
+    rows: list[list[Runs]] = []
+    numbers: list[bool] = []
+    for at, token in enumerate(tokens):
+        if token.type == "tr_open":
+            rows.append([])
+        elif token.type in ("th_open", "td_open"):
+            runs = runs_of(tokens[at + 1])
+            if token.type == "th_open":
+                numbers.append("right" in str(token.attrs.get("style", "")))
+                runs = tuple(replace(run, bold=True) for run in runs)
+            rows[-1].append(runs)
+    return Part("table", indent=indent, rows=tuple(map(tuple, rows)), numbers=tuple(numbers))
+
+
+def runs_of(inline: Token) -> Runs:
+    """Return the runs of an inline token."""
+    found: list[Run] = []
+    style = Run("")
+    for token in inline.children or []:
+        if token.type in ("strong_open", "strong_close"):
+            style = replace(style, bold=token.nesting == 1)
+        elif token.type in ("em_open", "em_close"):
+            style = replace(style, italic=token.nesting == 1)
+        elif token.type == "link_open":
+            style = replace(style, link=str(token.attrs["href"]))
+        elif token.type == "link_close":
+            style = replace(style, link="")
+        elif token.type == "code_inline":
+            found.append(replace(style, text=token.content, code=True))
+        elif token.type.startswith("math_"):
+            found.append(replace(style, text=token.content, formula=True))
+        elif token.type == "hardbreak":
+            found.append(Run("", breaks=True))
+        elif token.type == "softbreak":
+            found.append(replace(style, text=" "))
+        elif token.content:
+            found.append(replace(style, text=token.content))
+    return tuple(found)

@@ -1,0 +1,253 @@
+"""The panel of lessons: which lesson, which page, the page itself, and the way on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.lessons.library import LANGUAGES
+from playground.lessons.model import (
+    Block,
+    Break,
+    Code,
+    Compare,
+    Exercise,
+    Figure,
+    Measure,
+    Prose,
+    Question,
+    Slider,
+    Steps,
+)
+from playground.live import theme
+from playground.live.lesson.asking import draw_exercise, draw_measure, draw_prose, draw_question
+from playground.live.lesson.coding import draw_break, draw_code_block
+from playground.live.lesson.formulas import Formulas
+from playground.live.lesson.marks import plain, written
+from playground.live.lesson.page import Page
+from playground.live.lesson.pictures import draw_compare, draw_figure, draw_slider, draw_steps
+from playground.live.lesson.progress import NARROWEST, WIDEST
+from playground.live.lesson.prose import Prose as Texts
+from playground.live.lesson.reading import Reading
+from playground.live.lesson.ways import follow, play_on
+from playground.live.panel_memory import Memory
+from playground.live.rows import fitting
+from playground.live.theme import Theme
+
+DRAWN: dict[type[Block], Any] = {
+    Prose: draw_prose,
+    Figure: draw_figure,
+    Steps: draw_steps,
+    Slider: draw_slider,
+    Compare: draw_compare,
+    Code: draw_code_block,
+    Break: draw_break,
+    Question: draw_question,
+    Exercise: draw_exercise,
+    Measure: draw_measure,
+}
+"""What draws each kind of block."""
+
+_LEAST = 200.0
+"""Room that the picture keeps beside the panel, in units of scale 1."""
+
+
+@dataclass
+class LessonPanel:
+    """The panel's own memory."""
+
+    memory: Memory = field(default_factory=Memory)
+    _formulas: Formulas | None = None
+    _texts: Texts | None = None
+
+    def draw(self, reading: Reading, look: Theme) -> float:
+        """Draw the panel at the window's left side; return the width it takes, 0 while it is hidden."""
+        lesson = reading.lesson
+        if lesson is None or not reading.progress.shown:
+            return 0.0
+        if self._texts is None:
+            self._texts = Texts(lambda: self._formulas_of(reading), lambda to: follow(reading, to))
+        room, scale = imgui.get_main_viewport().size, look.scale
+        widest = max(room.x - _LEAST * scale, 160.0)
+        imgui.set_next_window_pos(ImVec2(0, 0))
+        wanted = min(reading.progress.width * scale, widest)
+        imgui.set_next_window_size(ImVec2(wanted, room.y))
+        imgui.set_next_window_size_constraints(
+            ImVec2(min(NARROWEST * scale, widest), room.y), ImVec2(min(WIDEST * scale, widest), room.y)
+        )
+        flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_collapse
+        flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
+        flags |= imgui.WindowFlags_.no_nav_inputs | imgui.WindowFlags_.no_scrollbar
+        imgui.push_style_color(imgui.Col_.window_bg, theme.colour((0.110, 0.119, 0.127)))
+        imgui.begin("lesson", None, flags)
+        page = Page(reading, lesson, look, self._texts, self.memory)
+        _head(page)
+        imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, imgui.WindowFlags_.always_vertical_scrollbar)
+        if reading.to_top:
+            reading.to_top = False
+            imgui.set_scroll_y(0.0)
+        _page(page)
+        imgui.end_child()
+        _foot(page)
+        width = imgui.get_window_size().x
+        imgui.end()
+        imgui.pop_style_color()
+        if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
+            reading.progress.width = width / scale
+        return float(width)
+
+    def release(self) -> None:
+        """Give back what was made in the session's context; it is made again where it is needed."""
+        if self._formulas is not None:
+            self._formulas.release()
+        self._formulas = None
+
+    def _formulas_of(self, reading: Reading) -> Formulas:
+        ctx = reading.actions.session.engine.ctx
+        if self._formulas is None or self._formulas.ctx is not ctx:
+            self._formulas = Formulas(ctx)  # those before went with a context that was lost
+        return self._formulas
+
+
+def _head(page: Page) -> None:
+    """Draw which lesson this is, the way to others, the languages, and what closes the panel."""
+    reading, lesson, look = page.reading, page.lesson, page.look
+    style = imgui.get_style()
+    codes = [code.upper() for code in LANGUAGES]
+    buttons = sum(imgui.calc_text_size(code).x + 2 * style.frame_padding.x for code in codes)
+    buttons += imgui.calc_text_size("×").x + 2 * style.frame_padding.x + 4 * len(codes) * look.scale
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons - style.item_spacing.x)
+    if imgui.begin_combo(
+        "##lessons", page.say("lesson", lesson.number), imgui.ComboFlags_.height_largest.value
+    ):
+        for one in reading.summaries:
+            done = one.name in reading.progress.done  # read to its end: in green
+            imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if done else theme.INK))
+            if imgui.selectable(f"{one.number}  {written(one.title)}##{one.name}", one.name == lesson.name)[
+                0
+            ]:
+                reading.open(one.name)
+            imgui.pop_style_color()
+            imgui.set_item_tooltip(f"{plain(one.goal)}\n{page.say('minutes', one.minutes)}")
+        imgui.end_combo()
+    for code in LANGUAGES:
+        imgui.same_line(0, 4 * look.scale)
+        if page.button(f"{code.upper()}##{code}", LANGUAGES[code], on=code == reading.language):
+            reading.speak(code)
+    imgui.same_line(0, 4 * look.scale)
+    if page.button("×##close", page.say("close")):
+        reading.toggle()
+    with look.font(look.bold, theme.TEXT_SIZE + 5):
+        imgui.text_wrapped(written(lesson.title))
+    with look.font(look.text, theme.SMALL):
+        parts = [page.say("minutes", lesson.minutes), page.say("step", reading.index + 1, _count(page))]
+        imgui.text_disabled("   ".join(parts))
+    _pages(page)
+
+
+def _pages(page: Page) -> None:
+    """Draw one bar for each page; a click on one goes there."""
+    count, at, scale = _count(page), page.reading.index, page.look.scale
+    gap, high = 3 * scale, 5 * scale
+    wide = (imgui.get_content_region_avail().x - gap * (count - 1)) / count
+    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    for index, section in enumerate(page.lesson.sections):
+        low = ImVec2(corner.x + index * (wide + gap), corner.y)
+        high_corner = ImVec2(low.x + wide, low.y + high)
+        reach = ImVec2(high_corner.x + gap / 2, high_corner.y + 4 * scale)
+        over = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(
+            ImVec2(low.x - gap / 2, low.y - 4 * scale), reach
+        )
+        rgb = theme.ACCENT if index <= at else theme.RAISED
+        draw.add_rect_filled(
+            low, high_corner, theme.packed(rgb, 1.0 if index == at or over else 0.5), high / 2
+        )
+        if over:
+            imgui.set_tooltip(plain(section.title or page.lesson.title))
+            if imgui.is_mouse_clicked(0):
+                page.reading.go(index)
+    imgui.dummy(ImVec2(1, high + 2 * scale))
+
+
+def _page(page: Page) -> None:
+    """Draw the open page."""
+    reading, lesson = page.reading, page.lesson
+    section = reading.section
+    if section is None:
+        return
+    gap = ImVec2(1, 3 * page.look.scale)
+    if reading.index == 0:
+        page.text(lesson.goal, dim=True)
+        imgui.dummy(gap)
+    if section.title:
+        page.text(f"## {section.title}")
+        imgui.dummy(gap)
+    for block in section.blocks:
+        if isinstance(block, Prose) and block.kind == "heading" and block.level == 1:
+            continue  # the title stands above
+        DRAWN[type(block)](block, page)
+        imgui.dummy(gap)
+    if reading.index == _count(page) - 1:
+        _sources(page)
+
+
+def _sources(page: Page) -> None:
+    """Draw where the lesson comes from."""
+    lesson = page.lesson
+    thesis = [f"[{page.say('thesis', section)}](thesis:{section})" for section in lesson.thesis]
+    if thesis or lesson.papers:
+        imgui.separator()
+        page.label(page.say("sources"))
+        papers = [re.sub(r"(https?://\S+)", r"<\1>", paper) for paper in lesson.papers]
+        lines = [*thesis, *papers]
+        page.text("\n".join(f"- {line}" for line in lines), size=theme.SMALL, dim=True)
+
+
+def _foot(page: Page) -> None:
+    """Draw the way back and on, and out of the lesson."""
+    reading, count = page.reading, _count(page)
+    imgui.separator()
+    half = (imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2
+    imgui.begin_disabled(reading.index == 0)
+    if imgui.button(f"{page.say('previous')}##previous", ImVec2(half, 0)):
+        reading.turn_page(-1)
+    imgui.end_disabled()
+    imgui.set_item_tooltip("PgUp")
+    imgui.same_line()
+    imgui.push_style_color(imgui.Col_.button, theme.colour((0.29, 0.46, 0.32)))
+    last = reading.index == count - 1
+    following = next((one for one in reading.summaries if one.number > page.lesson.number), None)
+    text = page.say("next_lesson") if last else page.say("next")
+    imgui.begin_disabled(last and following is None)
+    if imgui.button(f"{text}##next", ImVec2(half, 0)):
+        if not last:
+            reading.turn_page(1)
+        elif following is not None:
+            reading.open(following.name, page=0)
+    imgui.end_disabled()
+    imgui.pop_style_color()
+    imgui.set_item_tooltip("PgDn" if not last else following.title if following else "")
+    if reading.stage.own is not None:
+        own = reading.stage.own.path
+        name = own.parent.name if own.name == "sketch.toml" else own.stem
+        if imgui.button(fitting(page.say("back"), half) + "##back", ImVec2(half, 0)):
+            reading.go_back()
+        imgui.set_item_tooltip(page.say("back_note", name))
+    else:
+        imgui.dummy(ImVec2(half, imgui.get_frame_height()))
+    imgui.same_line()
+    if imgui.button(fitting(page.say("play_on"), half) + "##play on", ImVec2(half, 0)):
+        play_on(reading)
+    imgui.set_item_tooltip(page.say("play_on_note", page.lesson.sketch))
+
+
+def _foot_height() -> float:
+    spacing = imgui.get_style().item_spacing.y
+    return 2 * imgui.get_frame_height() + 3 * spacing
+
+
+def _count(page: Page) -> int:
+    return len(page.lesson.sections)

@@ -1,0 +1,48 @@
+"""The lessons that there are, as a reader finds them: by number, in a language, read when they are opened."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from playground.errors import PlaygroundError
+from playground.lessons.library import SOURCE
+from playground.lessons.model import Lesson
+from playground.lessons.read import Summary, read_lesson, summaries
+from playground.lessons.scenes import Sketches
+
+
+@dataclass
+class Shelf:
+    """One window's; ``say`` is told what is wrong."""
+
+    say: Callable[[str], None]
+    _sketches: Sketches = field(default_factory=Sketches)
+    _listed: dict[str, list[Summary]] = field(default_factory=dict)  # by language
+    _missing: set[str] = field(default_factory=set)  # lessons that were said to have no translation
+
+    def listed(self, language: str) -> list[Summary]:
+        """Return all lessons, in their order."""
+        if language not in self._listed:
+            try:
+                self._listed[language] = summaries(language)
+            except PlaygroundError as error:
+                self.say(str(error))
+                self._listed[language] = []
+        return self._listed[language]
+
+    def read(self, name: str, language: str, untranslated: str) -> Lesson:
+        """Return a lesson; in English, and ``untranslated`` is said once, where it has no other words yet.
+
+        Raises ``SketchError`` for one that is not there or not well written.
+        """
+        try:
+            return read_lesson(name, language, self._sketches)
+        except PlaygroundError:
+            if language == SOURCE:
+                raise
+            lesson = read_lesson(name, SOURCE, self._sketches)
+            if name not in self._missing:
+                self._missing.add(name)
+                self.say(untranslated)
+            return lesson

@@ -1,0 +1,60 @@
+"""Values as a sketch's TOML writes them, and what a text says in their place so far."""
+
+from __future__ import annotations
+
+from playground.sketch.assign import LAND, resolve
+from playground.sketch.colour import parse_hex, to_hex
+from playground.sketch.model import Parameter, Sketch, Value
+from playground.sketch.toml_lines import Place
+from playground.sketch.toml_spans import Spans, text_of
+from playground.sketch.values import is_whole
+
+
+def written_value(sketch: Sketch, path: str, value: Value, said: str) -> str:
+    """Return a value as TOML writes it; a direction in braces where ``said``, what stands there, has them."""
+    if path in LAND:
+        return written_land(value)
+    parameter: Parameter = resolve(sketch.graph, path)[0].parameter
+    kind = parameter.widget.kind
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return text_of(value)
+    if kind == "menu" and isinstance(value, int):
+        return text_of(parameter.widget.choices[value])
+    if kind == "colour" and isinstance(value, tuple):
+        seen = to_hex(value)
+        if (*parse_hex(seen), 1.0)[: len(value)] == value:
+            return text_of(seen)
+    if kind == "direction" and isinstance(value, tuple) and said.startswith("{"):
+        return f"{{ azimuth = {written_number(value[0])}, elevation = {written_number(value[1])} }}"
+    whole = is_whole(parameter.type) or (bool(said) and said.lstrip("+-").isdigit())
+    if isinstance(value, tuple):
+        return f"[{', '.join(written_number(n) for n in value)}]"
+    return written_number(value) if whole or isinstance(value, int) else repr(float(value))
+
+
+def written_number(value: float | int) -> str:
+    """Return a number without a point where it is whole."""
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    return repr(value)
+
+
+def written_land(value: object) -> str:
+    """Return one of the land's own values as TOML writes it: two equal sides as one number."""
+    if not isinstance(value, tuple):
+        return written_number(value) if isinstance(value, int | float) else str(value)
+    numbers = [written_number(n) for n in value]
+    return numbers[0] if len(set(numbers)) == 1 else f"[{', '.join(numbers)}]"
+
+
+def said_so_far(text: str, table: Place, key: str) -> str:
+    """Return what the text says there so far, "" where nothing is."""
+    spans = Spans(text)
+    place = spans.find(table, key)
+    if place is None:
+        # Azimuth and elevation may also be set by two dotted keys, which no value stands behind.
+        return ""
+    pair = spans.pairs[place]
+    return text[pair.value : pair.end]

@@ -1,0 +1,119 @@
+"""``playground cache``: what is kept on disk of expensive land, shown and removed; the doctor tells of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from playground import cli
+from playground.commands.cache import in_bytes
+from playground.engine.store import Kept, Store, place
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="the folder is told by XDG_CACHE_HOME"
+)
+
+
+@pytest.fixture
+def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Make a cache in which two lands are kept, one of them damaged, and something else."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
+    store = Store(place())
+    data = memoryview(bytes(256 * 256 * 4))
+    store.keep("one", Kept((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
+    store.keep("two", Kept((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
+    store.close()
+    os.utime(store._path("two"), (1e9, 1e9))
+    (place() / "broken.land").write_bytes(b"x")
+    os.utime(place() / "broken.land", (9e8, 9e8))
+    (tmp_path / "terrain-shader-playground" / "packs").mkdir()
+    return tmp_path
+
+
+def test_show_names_every_pass_used_last_first(land: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["cache", "show"]) == 0
+    first, one, two, broken = capsys.readouterr().out.splitlines()
+    assert first == f"3 files, 512 KiB of at most 1.0 GiB, in {place()}"
+    assert one == "alps: height\t256x256\t256 KiB\t1.2 s\tjust now"
+    assert two.startswith("alps: light\t256x256\t256 KiB\t80 ms\t") and two.endswith("days ago")
+    assert broken.startswith("(damaged)\t\t1 byte\t\t")
+
+
+def test_show_as_json(land: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["cache", "show", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["folder"] == str(place()) and found["most_bytes"] == 2**30
+    assert found["bytes"] == sum(each["bytes"] for each in found["files"])
+    one, two, broken = found["files"]
+    assert (one["made_for"], one["size"], one["outputs"], one["cost_ms"]) == (
+        "alps: height",
+        [256, 256],
+        {"height": "r32f"},
+        1234.5,
+    )
+    assert two["used"] == 1e9 and broken["made_for"] is None
+
+
+def test_clear_removes_land_and_nothing_else(land: Path, capsys: pytest.CaptureFixture[str]):
+    (place() / "notes.txt").write_text("mine")
+    assert cli.main(["cache", "clear"]) == 0
+    assert capsys.readouterr().out == "3 files removed, 512 KiB\n"
+    assert [path.name for path in place().iterdir()] == ["notes.txt"]
+    assert (place().parent / "packs").is_dir()
+    assert cli.main(["cache", "show"]) == 0
+    assert capsys.readouterr().out == f"0 files, 0 bytes of at most 1.0 GiB, in {place()}\n"
+    assert cli.main(["cache", "clear"]) == 0
+    assert capsys.readouterr().out == "0 files removed, 0 bytes\n"
+
+
+def test_the_bound_is_the_environments(
+    land: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("PLAYGROUND_CACHE", "250M")
+    assert cli.main(["cache", "show"]) == 0
+    assert "of at most 250 MiB" in capsys.readouterr().out
+    monkeypatch.setenv("PLAYGROUND_CACHE", "0")
+    assert cli.main(["cache", "show"]) == 0
+    assert "(PLAYGROUND_CACHE has nothing kept)" in capsys.readouterr().out
+    monkeypatch.setenv("PLAYGROUND_CACHE", "plenty")
+    for command in (["cache", "show"], ["live"]):
+        monkeypatch.setenv("DISPLAY", ":0")
+        assert cli.main(command) == 2
+        told = capsys.readouterr().err
+        assert told == (
+            "error: PLAYGROUND_CACHE=plenty: expected a size, as 500M or 2G, or 0 to keep nothing\n"
+        )
+
+
+def test_the_doctor_says_size_and_place(land: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["doctor", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["cache"]
+    assert found == {"folder": str(place()), "files": 3, "bytes": found["bytes"], "most_bytes": 2**30}
+    assert found["bytes"] == sum(path.stat().st_size for path in place().iterdir())
+    assert cli.main(["doctor"]) == 0
+    assert f"3 files, 512 KiB of at most 1.0 GiB, in {place()}" in capsys.readouterr().out
+
+
+def test_a_mistake_is_one_sentence(land: Path, capsys: pytest.CaptureFixture[str]):
+    assert cli.main(["cache", "shwo"]) == 2
+    assert "no command 'shwo' in playground cache; did you mean 'show'?" in capsys.readouterr().err
+    assert cli.main(["cache"]) == 0
+    assert "playground cache clear" in capsys.readouterr().out
+
+
+def test_sizes_are_told_in_words():
+    told = {0: "0 bytes", 999: "999 bytes", 1000: "1.0 KiB", 2**20: "1.0 MiB", 250 * 2**20: "250 MiB"}
+    told |= {2**30: "1.0 GiB", 3 * 2**29: "1.5 GiB", 5 * 2**40: "5.0 TiB"}
+    assert {size: in_bytes(size) for size in told} == told
+
+
+def test_a_picture_for_a_file_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["render", "contours_map", "-o", "land.png", "--size", "64x36", "--set", "size=65"]) == 0
+    assert (tmp_path / "land.png").is_file() and not place().exists()

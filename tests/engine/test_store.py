@@ -1,0 +1,779 @@
+"""Expensive textures kept on disk: the same bits come back, and nothing else ever does."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from playground.engine import store as store_module
+from playground.engine.engine import Engine
+from playground.engine.store import Kept, Store, bytes_in, clear, limit_in, listed, store_for, trim
+from playground.engine.store_keeping import Keeping
+from playground.errors import ParameterError
+from playground.gpu.context import ContextInfo
+from playground.gpu.textures import read_raw
+from playground.images.files import write_png
+
+ROOT = Path(__file__).resolve().parents[2]
+ALWAYS = float("-inf")  # a floor that every pass's cost is above
+FORMATS = [f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f")]
+
+# Random bits: NaN with all its payloads, denormals, infinities, -0.
+BITS = """#pragma kernel(output = "bits:FORMAT")
+#include "noise/hash.glsl"
+uniform uint seed = 1u; //! slider(0, 99)
+TYPE kernel(ivec2 texel) {
+    uvec4 h = uvec4(texel, seed, 7u) * 0x9E3779B9u;
+    h = (h ^ (h >> 15u)) * 0x85EBCA6Bu;
+    h = (h.yzwx ^ (h >> 13u)) * 0xC2B2AE35u + h.wxyz;
+    return CAST;
+}
+"""
+LAND = """#pragma kernel(output = "height:r32f, water:rg16f", repeat = "3")
+uniform float bumps = 3.0; //! slider(0, 10)
+uniform sampler2D image;   //! file("p.png")
+void kernel(ivec2 texel, out float height, out vec2 water) {
+    float bump = sin(float(texel.x * texel.y) * bumps);
+    height = previous_height(texel) + bump + texelFetch(image, ivec2(0), 0).r;
+    water = previous_water(texel) + vec2(texel) / 64.0;
+}
+"""
+SMOOTH = """#pragma kernel(output = "height:r32f")
+uniform sampler2D before; //! input("linear", "mipmap")
+uniform float share = 0.5; //! slider(0, 1)
+float kernel(ivec2 texel) {
+    vec2 place = (vec2(texel) + 0.5) / vec2(size);
+    return mix(textureLod(before, place, 0.0).r, textureLod(before, place, 2.0).r, share);
+}
+"""
+LIGHT = """#pragma kernel(output = "light:rgba8")
+uniform sampler2D height; //! input("linear", "mipmap")
+uniform vec2 sun = vec2(135.0, 30.0); //! direction
+vec4 kernel(ivec2 texel) {
+    return vec4(fract(textureLod(height, vec2(texel) / vec2(size), 1.0).r * sun.x), sun.y / 90.0, 0.0, 1.0);
+}
+"""
+DRAW = """#pragma draw(mesh = "grid", output = "frame:rgba16f")
+uniform sampler2D height; //! input("linear", "mipmap")
+uniform sampler2D light;  //! input("linear")
+uniform int grid = 9;     //! slider(2, 99)
+vec4 vertex(vec3 corner, out vec2 place) {
+    place = corner.xy;
+    vec4 corner4 = clip_from_world * vec4(corner.xy * 900.0, textureLod(height, place, 0.0).r, 1.0);
+    return vec4(corner.xy * 1.8 - 0.9, 0.1 * textureLod(height, place, 0.0).r + 1e-9 * corner4.x, 1.0);
+}
+vec4 fragment(vec2 place) { return texture(light, place) + 0.1 * texture(height, place).rrrr; }
+"""
+LOOP = """
+[[pass]]
+name = "add"
+use = "./smooth"
+[inputs]
+height = "add.before"
+[outputs]
+height = "add:height"
+"""
+BODY = """extent = 1000.0
+relief = 100.0
+[[pass]]
+name = "land"
+use = "./land"
+[[pass]]
+name = "worn"
+use = "./loop"
+repeat = 3
+feedback = { height = "height" }
+inputs = { height = "land:height" }
+[[pass]]
+name = "light"
+use = "./light"
+inputs = { height = "worn:height" }
+[view]
+use = "./draw"
+inputs = { height = "worn:height", light = "light" }
+"""
+LANDS = ("land", "worn.add", "light")
+
+
+@pytest.fixture
+def worn(folder):
+    """Give a land that a loop wears, lit, and drawn from the camera."""
+    for name, text in (("land", LAND), ("smooth", SMOOTH), ("light", LIGHT), ("draw", DRAW)):
+        folder.write(f"{name}.glsl", text)
+    folder.write("loop.toml", LOOP)
+    write_png(folder.path / "p.png", np.full((1, 1, 4), 255, np.uint8))
+    return folder.sketch(BODY, size="size = 33")
+
+
+class Shelf:
+    """A store in a folder, and engines with it, one after another as sessions are."""
+
+    def __init__(self, ctx: moderngl.Context, folder: Path, driver: str = "auto") -> None:
+        self.ctx = ctx
+        self.folder = folder
+        self.driver = driver
+        self.engines: list[Engine] = []
+
+    def engine(self, floor: float = ALWAYS, **options: int) -> Engine:
+        """Return an engine as a new session has it."""
+        made = Engine(self.ctx, driver=self.driver, **options)
+        made.keeping = Keeping(store_for(made.info, 2**26, self.folder), floor=floor)
+        self.engines.append(made)
+        return made
+
+    def keep(self, engine: Engine) -> None:
+        """Keep what is worth it of an engine's last frame."""
+        assert engine.keeping is not None and engine.plan is not None
+        engine.keeping.finish(engine, engine.plan)
+        assert engine.keeping.store.trouble == ""
+
+    def close(self) -> None:
+        """Release all of it."""
+        for engine in self.engines:
+            engine.release()
+
+
+@pytest.fixture(params=["fragment", "compute"])
+def shelf(request, ctx, tmp_path) -> Iterator[Shelf]:
+    """Give a store for engines of each driver."""
+    if request.param == "compute" and ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    made = Shelf(ctx, tmp_path / "land", request.param)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def any_shelf(ctx, tmp_path) -> Iterator[Shelf]:
+    """Give a store for engines that choose their drivers themselves."""
+    made = Shelf(ctx, tmp_path / "land")
+    yield made
+    made.close()
+
+
+def picture(engine: Engine, sketch, steps: dict[str, int] | None = None) -> bytes:
+    return engine.render(sketch, size=(64, 36), steps=steps).array.tobytes()
+
+
+# ── the same bits ────────────────────────────────────────────────────────────
+
+
+def text_of_bits(form: str) -> str:
+    """Return a kernel that writes random bits in a format."""
+    count = len(form.rstrip("0123456789f"))
+    bits = "vec4(h) / 4294967295.0"
+    if form.endswith("32f"):
+        bits = "uintBitsToFloat(h)"
+    elif form.endswith("16f"):  # powers of two down to the least denormal: GLSL 3.30 makes no halves of bits
+        bits = "(vec4(h & 2047u) - 1024.0) * exp2(vec4(ivec4(h >> 20u & 31u) - 24))"
+    text = BITS.replace("FORMAT", form).replace("CAST", f"({bits}).{'xyzw'[:count]}")
+    return text.replace("TYPE", {1: "float", 2: "vec2", 4: "vec4"}[count])
+
+
+def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
+    """Whatever their bits; the passes do not run."""
+    passes, reads = "", ""
+    for form in FORMATS:
+        folder.write(f"{form}.glsl", text_of_bits(form))
+        passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
+        reads += f"    sum += abs(texelFetch({form}, texel, 0).r);\n"
+    inputs = "".join(f"uniform sampler2D {form}; //! input\n" for form in FORMATS)
+    text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
+    folder.write("all.glsl", f"{text}{reads}    return 1.0 / sum;\n}}\n")
+    wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
+    passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
+    sketch = folder.sketch(passes, size="size = [67, 41]")
+    first = shelf.engine()
+    seen = picture(first, sketch)
+    made = {form: read_raw(first.results[form].textures["bits"]) for form in FORMATS}
+    shelf.keep(first)
+    second = shelf.engine()
+    assert picture(second, sketch) == seen
+    assert second.ran == ["all", "view"]
+    for form in FORMATS:
+        found = read_raw(second.results[form].textures["bits"])
+        assert found.dtype == made[form].dtype and found.tobytes() == made[form].tobytes(), form
+        assert len(np.unique(made[form])) > 100, f"{form}: these are bits"
+    floats = made["rgba32f"]
+    assert np.isnan(floats).any() and (floats.view(np.uint32) & 0x7F800000 == 0).any()
+
+
+@pytest.mark.slow
+def test_bits_are_the_same_where_there_is_no_compute():
+    """As on macOS: OpenGL 4.1, in a process of its own."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", __file__]
+    done = subprocess.run(
+        [*command, "-k", "reopened_textures or reopened_sketch"],
+        cwd=ROOT,
+        env={**os.environ, "MESA_GL_VERSION_OVERRIDE": "4.1", "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "passed" in done.stdout
+
+
+def test_a_reopened_sketch_shows_the_same_and_runs_only_what_the_camera_changes(shelf, worn):
+    """Loops, several outputs, mipmaps and a mesh over them; the land itself is not even read."""
+    first = shelf.engine()
+    seen = picture(first, worn)
+    assert set(first.runs) == {*LANDS, "view"}
+    shelf.keep(first)
+    second = shelf.engine()
+    assert picture(second, worn) == seen
+    assert dict(second.runs) == {"view": 1}
+    assert second.keeping.reads == 2 and set(second.results) == {"worn.add", "light", "view"}
+    assert second.keeping.skipped == {"land"}
+    turned = replace(worn, camera=replace(worn.camera, azimuth=worn.camera.azimuth + 40.0))
+    with Engine(shelf.ctx, driver=shelf.driver) as plain:
+        assert picture(second, turned) == picture(plain, turned)
+    assert dict(second.runs) == {"view": 2}, "the second frame skips what the first skipped"
+
+
+def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
+    first = any_shelf.engine()
+    picture(first, worn)
+    any_shelf.keep(first)
+    second = any_shelf.engine()
+    seen = picture(second, worn)
+    second.keeping.skips = False
+    assert picture(second, worn) == seen
+    assert {"land", "worn.add", "light", "view"} == set(second.results) and not second.keeping.skipped
+    assert second.runs["land"] == 1 and second.runs["light"] == 0
+    with Engine(any_shelf.ctx) as plain:
+        for path in ("land:water", "worn", "light"):
+            np.testing.assert_array_equal(second.read(worn, path), plain.read(worn, path))
+
+
+@pytest.mark.parametrize("memory", [20_000, 2**24])
+def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_shows(any_shelf, worn, memory):
+    """Values back and forth, loops stopped, sessions that end; also in memory too small for two lands."""
+    chance = random.Random(memory)
+    sketch, reads, steps = worn, 0, {}
+    engine = any_shelf.engine(cache_bytes=memory)
+    with Engine(any_shelf.ctx) as plain:
+        for _ in range(50):
+            match chance.randrange(7):
+                case 0:
+                    sketch = sketch.with_values({"land.bumps": chance.choice((1.0, 2.0, 3.0))})
+                case 1:
+                    sketch = sketch.with_values({"light.sun": (chance.choice((10.0, 200.0)), 30.0)})
+                case 2:
+                    sketch = sketch.with_values({"worn.add.share": chance.choice((0.25, 0.5))})
+                case 3:
+                    engine.keeping.skips = not engine.keeping.skips
+                case 4 if engine.plan is not None:
+                    any_shelf.keep(engine)
+                    reads += engine.keeping.reads
+                    engine = any_shelf.engine(cache_bytes=memory)
+                case 5:
+                    steps = chance.choice(({}, {"worn": 1}, {"worn": 2}, {"land": 2}))
+                case 6 if engine.plan is not None:
+                    any_shelf.keep(engine)
+            expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
+            assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
+            # What is read may take the place of what was still there when stale() looked.
+            assert set(engine.ran) == expected or memory < 2**20, "stale() tells what runs"
+        path = chance.choice(("land", "worn", "light"))
+        np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
+    assert reads + engine.keeping.reads > 0, "the store was used"
+
+
+# ── what is another land ─────────────────────────────────────────────────────
+
+
+def reopened(shelf: Shelf, sketch) -> set[str]:
+    """Return the passes of the land that a new session runs, and see that it shows the truth."""
+    engine = shelf.engine()
+    with Engine(shelf.ctx, driver=shelf.driver) as plain:
+        assert picture(engine, sketch) == picture(plain, sketch)
+    return set(engine.runs) - {"view"}
+
+
+@pytest.fixture
+def kept(any_shelf, worn) -> Shelf:
+    """Give a store that has the worn land."""
+    engine = any_shelf.engine()
+    picture(engine, worn)
+    any_shelf.keep(engine)
+    assert reopened(any_shelf, worn) == set()
+    return any_shelf
+
+
+def test_another_text_is_another_land_and_another_comment_is_none(kept, folder, worn):
+    folder.write("land.glsl", "// a remark\n" + LAND.replace("    water", "    // more\n  water"))
+    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == set()
+    folder.write("land.glsl", LAND.replace("64.0", "32.0"))
+    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == set(LANDS)
+    folder.write("land.glsl", LAND)
+    folder.write("light.glsl", LIGHT.replace('"linear", "mipmap"', '"nearest", "mipmap"'))
+    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == {"light"}
+
+
+def test_another_value_is_another_land(kept, worn):
+    assert reopened(kept, worn.with_values({"land.bumps": 3.0000001})) == set(LANDS)
+    assert reopened(kept, worn.with_values({"light.sun": (135.0, 31.0)})) == {"light"}
+    assert reopened(kept, worn.with_values({"size": 32})) == set(LANDS)
+
+
+def test_another_content_of_a_file_is_another_land(kept, folder, worn):
+    path = folder.path / "p.png"
+    before = path.stat()
+    write_png(path, np.full((1, 1, 4), 254, np.uint8))
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns + 1))
+    assert reopened(kept, worn) == set(LANDS)
+
+
+def test_what_made_it_is_part_of_the_key(kept, worn, monkeypatch):
+    """Another driver, processor or version of the playground would perhaps compute other bits."""
+    ours = kept.engine().info
+    monkeypatch.setattr(store_module, "tool", lambda: "another version")
+    assert reopened(kept, worn) == set(LANDS)
+    monkeypatch.undo()
+    for other in (
+        replace(ours, version=f"{ours.version}.1"),
+        replace(ours, renderer="llvmpipe (LLVM 99)"),
+        replace(ours, version_code=410),
+    ):
+        assert names(store_for(other, 1, kept.folder)) != names(store_for(ours, 1, kept.folder))
+    monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx"))
+    software = ContextInfo(450, "llvmpipe", "Mesa", "4.5", 4)
+    one = names(store_for(software, 1, kept.folder))
+    monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx fma"))
+    assert names(store_for(software, 1, kept.folder)) != one
+    card = replace(software, renderer="NVIDIA H200")
+    one = names(store_for(card, 1, kept.folder))
+    monkeypatch.undo()
+    assert names(store_for(card, 1, kept.folder)) == one, "a card's bits do not depend on the processor"
+
+
+def names(store: Store) -> str:
+    return store._path("a key").name
+
+
+def test_the_tool_is_its_own_files(monkeypatch, tmp_path):
+    (tmp_path / "engine").mkdir()
+    file = tmp_path / "engine" / "one.py"
+    file.write_text("1")
+    monkeypatch.setattr(store_module.paths, "__file__", str(tmp_path / "paths.py"))
+    before = store_module.tool.__wrapped__()
+    assert store_module.tool.__wrapped__() == before
+    file.write_text("12")
+    assert store_module.tool.__wrapped__() != before
+
+
+def test_each_form_of_a_pass_has_its_own(ctx, folder, tmp_path):
+    """By another driver the bits should be the same, but the store does not rely on it."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    sketch = folder.one('#pragma kernel(output = "v:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
+    for driver in ("fragment", "compute"):
+        shelf = Shelf(ctx, tmp_path / "land", driver)
+        engine = shelf.engine()
+        picture(engine, sketch)
+        shelf.keep(engine)
+        assert engine.runs["a"] == 1, driver
+        shelf.close()
+
+
+# ── what is never kept ───────────────────────────────────────────────────────
+
+TIMES = """#pragma kernel(output = "v:r32f"REPEAT)
+uniform sampler2D before; //! input("black")
+float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r + BODY; }
+"""
+
+
+def kept_of(shelf: Shelf, sketch, **options) -> set[str]:
+    engine = shelf.engine()
+    engine.render(sketch, size=(64, 36), **options)
+    shelf.keep(engine)
+    return {each.kept.made_for.partition(": ")[2] for each in listed(shelf.folder)}
+
+
+def test_what_reads_the_time_or_the_camera_is_not_kept_nor_what_reads_it(any_shelf, folder):
+    passes = ""
+    for name, reads, body in (
+        ("still", "", "0.5"),
+        ("moves", "still", "time"),
+        ("after", "moves", "0.25"),
+        ("sees", "still", "eye.x"),
+    ):
+        folder.write(f"{name}.glsl", TIMES.replace("REPEAT", "").replace("BODY", body))
+        wired = f'inputs = {{ before = "{reads}" }}\n' if reads else ""
+        passes += f'[[pass]]\nname = "{name}"\nuse = "./{name}"\n{wired}'
+    folder.write("grows.glsl", TIMES.replace("REPEAT", ', repeat = "2 + floor(time)"').replace("BODY", "0.1"))
+    passes += '[[pass]]\nname = "grows"\nuse = "./grows"\ninputs = { before = "still" }\n'
+    folder.write(
+        "both.glsl",
+        '#pragma kernel(output = "v:r32f")\nuniform sampler2D a; //! input\nuniform sampler2D b; //! input\n'
+        "uniform sampler2D c; //! input\n"
+        "float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(b, texel, 0).r"
+        " + texelFetch(c, texel, 0).r; }\n",
+    )
+    passes += '[[pass]]\nname = "both"\nuse = "./both"\ninputs = { a = "after", b = "sees", c = "grows" }\n'
+    assert kept_of(any_shelf, folder.sketch(passes)) == {"still"}
+
+
+def test_what_has_a_texel_for_each_pixel_is_not_kept(any_shelf, folder):
+    sketch = folder.one(TIMES.replace("REPEAT", "").replace("BODY", "0.5"), size="size = [64, 36]")
+    assert kept_of(any_shelf, sketch) == set()
+    assert kept_of(any_shelf, sketch.with_values({"size": (64, 37)})) == {"a"}
+
+
+def test_what_stops_before_its_last_turn_is_not_kept(any_shelf, folder, worn):
+    assert kept_of(any_shelf, worn, steps={"land": 2}) == set()
+    assert kept_of(any_shelf, worn, steps={"worn": 2}) == {"land"}
+    assert kept_of(any_shelf, worn) == {"land", "worn.add", "light"}
+
+
+def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_shelf, folder):
+    draw = '#pragma draw(mesh = "triangles", count = "1", output = "v:rgba16f", depth = "none")\n'
+    draw += "INITIALvec4 vertex(int corner) { return vec4(corner == 1, corner == 2, 0, 1); }\n"
+    draw += "vec4 fragment() { return vec4(0.5); }\n"
+    folder.write("first.glsl", draw.replace("INITIAL", ""))
+    folder.write("over.glsl", draw.replace("INITIAL", "uniform sampler2D initial; //! input\n"))
+    passes = '[[pass]]\nname = "first"\nuse = "./first"\n[[pass]]\nname = "over"\nuse = "./over"\n'
+    sketch = folder.sketch(passes + 'inputs = { initial = "first" }\n')
+    assert kept_of(any_shelf, sketch) == set()
+    alone = folder.sketch('[[pass]]\nname = "first"\nuse = "./first"\n')
+    assert kept_of(any_shelf, alone) == {"first"}
+
+
+def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp_path):
+    """A picture for a test must not come from a store."""
+    monkeypatch.setattr(Store, "read", lambda *_: pytest.fail("the store was read"))
+    monkeypatch.setattr(Store, "keep", lambda *_: pytest.fail("the store was written"))
+    assert any_engine.keeping is None
+    picture(any_engine, worn)
+    using = {
+        p.relative_to(ROOT / "playground").as_posix()
+        for p in (ROOT / "playground").rglob("*.py")
+        if "store" in (text := p.read_text("utf-8")) and "engine.store" in text
+    }
+    assert {name.partition("/")[0] for name in using} == {"commands", "engine", "live"}
+    assert {name for name in using if name.startswith("commands")} == {
+        "commands/cache.py",
+        "commands/doctor.py",
+        "commands/live.py",
+    }
+
+
+# ── damage ───────────────────────────────────────────────────────────────────
+
+
+def break_at(where: float) -> Callable[[bytes], bytes]:
+    def broken(data: bytes) -> bytes:
+        place = min(int(where * len(data)), len(data) - 1)
+        return data[:place] + bytes([data[place] ^ 0x10]) + data[place + 1 :]
+
+    return broken
+
+
+DAMAGE = {
+    "empty": lambda data: b"",
+    "cut": lambda data: data[: len(data) // 2],
+    "cut in the header": lambda data: data[:40],
+    "cut by one": lambda data: data[:-1],
+    "longer": lambda data: data + b"\0",
+    "foreign": lambda data: b"\x89PNG\r\n\x1a\n" + data,
+    "text": lambda data: b"playground land 1\n\x05\0\0\0[1,2]" + data,
+    "nested": lambda data: b"playground land 1\n" + (60000).to_bytes(4, "little") + b"[" * 60000,
+    **{f"a bit at {where}": break_at(where) for where in (0.0, 0.004, 0.01, 0.02, 0.3, 0.5, 0.9, 1.0)},
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_file_is_dropped(tmp_path, damage):
+    store = Store(tmp_path)
+    store.keep("one", some(1))
+    store.close()
+    path = store._path("one")
+    whole = path.read_bytes()
+    path.write_bytes(DAMAGE[damage](whole))
+    assert listed(tmp_path)[0].path == path
+    assert store.read("one") is None and not path.exists()
+    path.write_bytes(whole)
+    assert store.read("one") is not None
+
+
+def test_where_files_are_damaged_the_land_is_computed(kept, worn):
+    for each in listed(kept.folder):
+        each.path.write_bytes(each.path.read_bytes()[:-1])
+    assert reopened(kept, worn) == set(LANDS)
+    assert listed(kept.folder) == []
+
+
+def test_a_file_under_anothers_name_is_dropped(kept, worn):
+    one, other = (each.path for each in listed(kept.folder))
+    one.write_bytes(other.read_bytes())
+    assert reopened(kept, worn) in ({"light"}, {"land", "worn.add"})
+    assert not one.exists()
+
+
+def test_a_texture_of_another_size_is_not_taken(kept, folder):
+    """Not even where the key agrees, as with a technique whose companion has other outputs."""
+    engine = kept.engine()
+    store = engine.keeping.store
+    sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
+    picture(engine, sketch)
+    key = engine.keys_of(engine.plan).steps["a"]
+    store.keep(key, Kept((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
+    store.close()
+    assert key in store
+    assert reopened(kept, sketch) == {"a"}
+
+
+# ── what is worth it ─────────────────────────────────────────────────────────
+
+
+def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypatch):
+    costs = {"land": 500.0, "worn": 1.0, "light": 100.0}
+    monkeypatch.setattr("playground.engine.store_keeping.reading", lambda size: 4.0)
+
+    def kept_with(floor: float, **more: float) -> set[str]:
+        clear(any_shelf.folder)
+        engine = any_shelf.engine(floor)
+        picture(engine, worn)
+        keys = engine.keys_of(engine.plan)
+        engine.keeping._costs.clear()
+        for name, cost in (costs | more).items():
+            engine.keeping._costs[keys.loops.get(name) or keys.steps[name]] = cost
+        any_shelf.keep(engine)
+        return {each.kept.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
+
+    # The view reads worn and light. Wearing is cheap: the land is kept, and worn anew.
+    assert kept_with(20.0) == {"land", "light"}
+    assert kept_with(20.0, worn=30.0) == {"worn.add", "light"}
+    assert kept_with(20.0, worn=30.0, light=19.0) == {"worn.add"}, "what it reads is read anyway"
+    assert kept_with(600.0) == set()
+    assert kept_with(20.0, land=1.0, light=1.0) == set()
+    assert kept_with(0.0, land=1.0, light=1.0) == set(), "to read takes longer"
+
+
+def test_costs_are_measured_where_land_is_made_and_a_loop_counts_as_one(any_shelf, worn):
+    engine = any_shelf.engine()
+    picture(engine, worn)
+    keys = engine.keys_of(engine.plan)
+    expected = {keys.steps["land"], keys.loops["worn"], keys.steps["light"]}
+    assert set(engine.keeping._costs) == expected
+    assert all(cost > 0.0 for cost in engine.keeping._costs.values())
+    any_shelf.keep(engine)
+    (light,) = (each.kept for each in listed(any_shelf.folder) if "light" in each.kept.made_for)
+    assert light.cost == pytest.approx(sum(engine.keeping._costs.values()), abs=0.01)
+
+
+def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn, monkeypatch):
+    monkeypatch.setattr(
+        "playground.engine.store_keeping.PIECE", 33 * 4 * 10
+    )  # rows of 33 floats, ten at once
+    now = 100.0
+    engine = any_shelf.engine()
+    keeping = engine.keeping = Keeping(engine.keeping.store, floor=ALWAYS, rest=1.0, now=lambda: now)
+    assert keeping.look(engine, None) is None, "nothing has been made yet"
+    picture(engine, worn)
+    assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
+    now += 0.75
+    picture(engine, worn.with_values({"land.bumps": 4.0}))  # a slider that moves
+    assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
+    now += 1.5
+    turns = 0
+    while keeping.look(engine, engine.plan) is not None:
+        turns += 1
+        picture(engine, worn.with_values({"land.bumps": 4.0}))
+    assert turns > 4 + 4, "both textures, each in four pieces"
+    keeping.close()
+    assert len(listed(any_shelf.folder)) == 2
+    assert keeping.look(engine, engine.plan) is None
+    assert reopened(any_shelf, worn.with_values({"land.bumps": 4.0})) == set()
+
+
+def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, monkeypatch):
+    monkeypatch.setattr("playground.engine.store_keeping.PIECE", 33 * 4 * 10)
+    engine = any_shelf.engine(cache_bytes=20_000)
+    engine.keeping.rest = 0.0
+    picture(engine, worn)
+    engine.keeping.look(engine, engine.plan)
+    engine.keeping.look(engine, engine.plan)
+    other = worn.with_values({"land.bumps": 9.0})
+    picture(engine, other)
+    any_shelf.keep(engine)
+    assert reopened(any_shelf, other) == set()
+    assert reopened(any_shelf, worn) == set(LANDS)
+
+
+# ── the files ────────────────────────────────────────────────────────────────
+
+
+def some(number: int, size: int = 64) -> Kept:
+    data = np.random.default_rng(number).bytes(size * size * 4)
+    return Kept((size, size), (("height", "r32f"),), 12.5, f"land: {number}", (memoryview(data),))
+
+
+def test_a_store_gives_back_what_it_was_given(tmp_path):
+    store = Store(tmp_path / "deep" / "land")
+    store.keep("one", some(1))
+    store.close()
+    found = store.read("one")
+    assert found == replace(some(1), data=found.data) and bytes(found.data[0]) == bytes(some(1).data[0])
+    assert "one" in store and "two" not in store and store.read("two") is None
+    assert [(each.kept, each.bytes) for each in listed(store.folder)] == [
+        (replace(some(1), data=()), bytes_in(store.folder)[1])
+    ]
+    assert bytes_in(tmp_path / "nowhere") == (0, 0) and clear(tmp_path / "nowhere") == (0, 0)
+
+
+def test_what_was_used_least_recently_goes_first(tmp_path):
+    store = Store(tmp_path, limit=2**30)
+    for number in range(5):
+        store.keep(str(number), some(number))
+    store.close()
+    for number in range(5):
+        os.utime(store._path(str(number)), (1000.0 + number, 1000.0 + number))
+    assert store.read("0") is not None  # and so it was used
+    each = bytes_in(tmp_path)[1] // 5
+    trim(tmp_path, 3 * each + 10)
+    assert [number for number in range(5) if str(number) in store] == [0, 3, 4]
+    trim(tmp_path, 2**30, most=1)
+    assert "0" in store and bytes_in(tmp_path)[0] == 1
+
+
+def test_the_bound_holds_while_it_is_written(tmp_path):
+    store = Store(tmp_path, limit=5 * 64 * 64 * 4)
+    for number in range(20):
+        store.keep(str(number), some(number))
+    store.close()
+    number, size = bytes_in(tmp_path)
+    assert 3 <= number <= 4 and size <= store.limit
+    assert "19" in store
+    assert store.fits(64 * 64 * 4) and not store.fits(2 * 64 * 64 * 4), "none takes more than a quarter"
+
+
+def test_what_was_left_half_written_goes(tmp_path):
+    old, new, other = (tmp_path / name for name in (".a.part", ".b.part", "notes.txt"))
+    for path in (old, new, other):
+        path.write_bytes(b"x")
+    os.utime(old, (1000.0, 1000.0))
+    trim(tmp_path, 0)
+    assert not old.exists() and new.exists() and other.exists()
+    os.utime(new, (1000.0, 1000.0))
+    assert clear(tmp_path) == (0, 0)
+    assert not new.exists() and other.exists(), "what is not ours stays"
+
+
+def test_sessions_write_read_and_clear_at_once(tmp_path):
+    """Each sees a whole file or none: what is read is always right."""
+    wrong: list[object] = []
+    ends = threading.Event()
+
+    def reads() -> None:
+        store = Store(tmp_path)
+        while not ends.is_set():
+            for number in range(4):
+                found = store.read(str(number))
+                if found is not None and bytes(found.data[0]) != bytes(some(number).data[0]):
+                    wrong.append(number)
+
+    readers = [threading.Thread(target=reads) for _ in range(2)]
+    for thread in readers:
+        thread.start()
+    writers = [Store(tmp_path, limit=3 * 64 * 64 * 4) for _ in range(2)]
+    for turn in range(40):
+        for store in writers:
+            store.keep(str(turn % 4), some(turn % 4))
+        if turn % 10 == 0:
+            clear(tmp_path)
+    for store in writers:
+        store.close()
+    ends.set()
+    for thread in readers:
+        thread.join()
+    assert not wrong and all(store.trouble == "" for store in writers)
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_where_nothing_can_be_written_one_is_told_and_nothing_more_is_tried(tmp_path):
+    (tmp_path / "land").write_text("a file where the folder should be")
+    store = Store(tmp_path / "land")
+    store.keep("one", some(1))
+    store.close()
+    assert store.trouble.startswith("land cannot be kept on disk: ") and not store.fits(1)
+    assert store.read("one") is None and listed(store.folder) == []
+
+
+def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypatch):
+    """On Windows nobody may rename over a file that is being read."""
+    store = Store(tmp_path)
+    store.keep("one", some(1))
+    store.close()
+
+    def refuses(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, "replace", refuses)
+    store.keep("one", some(1))
+    store.close()
+    assert store.trouble == "" and store.read("one") is not None
+    store.keep("two", some(2))
+    store.close()
+    assert "cannot access" in store.trouble
+
+
+def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
+    store = Store(tmp_path)
+    store.keep("one", some(1))
+    store.close()
+    store._path("one").write_bytes(b"damaged")
+
+    def refuses(*_: object, **__: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, "unlink", refuses)
+    assert store.read("one") is None
+    assert clear(tmp_path) == (0, 0)
+    trim(tmp_path, 0)
+
+
+@pytest.mark.parametrize(
+    ("said", "size"),
+    [
+        ("", 2**30),
+        ("0", 0),
+        ("off", 0),
+        ("500M", 500 * 2**20),
+        ("1.5g", 3 * 2**29),
+        ("2 GiB", 2**31),
+        ("64kb", 2**16),
+    ],
+)
+def test_the_environment_says_how_much(said, size):
+    assert limit_in({"PLAYGROUND_CACHE": said}) == size
+
+
+@pytest.mark.parametrize("said", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
+def test_what_is_no_size_is_refused_in_a_sentence(said):
+    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={said}: expected a size, as 500M"):
+        limit_in({"PLAYGROUND_CACHE": said})
+
+
+def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):
+    goes_on = threading.Event()
+    monkeypatch.setattr(store_module, "trim", lambda *_: goes_on.wait(60))
+    store = Store(tmp_path)
+    store.keep("one", some(1))
+    start = time.monotonic()
+    store.close(patience=0.01)
+    assert time.monotonic() - start < 30
+    goes_on.set()

@@ -1,0 +1,286 @@
+"""A lesson for tests, in two languages, and the panel of lessons under a mouse and keys, without a screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.lessons import library
+from playground.lessons.read import part
+from playground.lessons.translate import write_hashes
+from playground.live.code_window import draw_code
+from playground.live.lesson.beside import Lessons
+from playground.live.lesson.reading import Reading
+from playground.live.remember import Rememberer, memory_of
+from playground.live.see.timeline import height_of_timeline
+
+from .desk import Bare
+
+RAW = "generation/diamond_square/raw.glsl"
+ENGLISH = r"""+++
+number  = 1
+title   = "Halving"
+goal    = "Know what a mean of *four* gives."
+minutes = 5
+thesis  = ["1.3.2"]
+papers  = []
+sketch  = "white_noise"
++++
+
+Four corners, then means: $h = \frac{a+b+c+d}{4}$.
+
+```figure land
+sketch  = "white_noise"
+set     = { "height.seed" = 3 }
+caption = "Numbers without a neighbour."
+alt     = "Rubble"
+sliders = ["height.seed"]
+```
+
+## Turn by turn
+
+Each turn halves. There are {{peaks}} tops.
+
+```step turns
+sketch   = "diamond_square_steps"
+passes   = ["height.raw", "phase"]
+turns    = [0, 1, 2, 4]
+caption  = "Known texels."
+alt      = "A grid that fills"
+captions = ["corners", "one centre", "edges", "all"]
+```
+
+```measure peaks
+sketch = "white_noise"
+set    = { size = 33 }
+what   = "local_maxima"
+text   = "Of this land {{peaks}} texels are tops."
+```
+
+## One value
+
+```slider rough
+sketch    = "diamond_square_steps"
+parameter = "height.smoothing"
+values    = [0.0, 0.5, 1.0]
+caption   = "Roughness."
+alt       = "Lands that get rougher"
+```
+
+```compare seeds
+sketch  = "white_noise"
+caption = "Two lands."
+alt     = "Two lands of rubble"
+labels  = ["first", "second"]
+[[variant]]
+set = { "height.seed" = 1 }
+[[variant]]
+set = { "height.seed" = 2 }
+```
+
+## A fault
+
+```code mean
+file   = "generation/diamond_square/raw.glsl"
+anchor = "height"
+```
+
+```break quarter
+sketch = "diamond_square_steps"
+file   = "generation/diamond_square/raw.glsl"
+find   = "(all(inside) ? 4.0 : 3.0)"
+put    = "(all(inside) ? 4.0 : 9.0)"
+ask    = "Its border sinks. Why?"
+hint   = "How many are summed?"
+mend   = "A mean divides by their count."
+alt    = "Heights that shrink"
+```
+
+## Exercises
+
+```question which
+ask     = "What is the mean of 1 and 3?"
+choices = ["2", "4"]
+right   = 0
+answer  = "Half of their sum."
+```
+
+```exercise guess
+ask      = "Guess."
+hint     = "Look."
+solution = "So it is: see [the first](lesson:halving)."
+sketch   = "white_noise"
+set      = { "height.seed" = 9 }
+alt      = "Other rubble"
+```
+
+```exercise try
+ask      = "Try."
+solution = "Done."
+sketch   = "white_noise"
+view     = "height"
+alt      = "Greys"
+pixels   = [480, 480]
+```
+
+```exercise change
+ask      = "Change."
+solution = "Changed."
+```
+"""
+OTHER = """+++
+number  = 2
+title   = "After it"
+goal    = "Nothing more."
+minutes = 1
+thesis  = []
+papers  = []
+sketch  = "white_noise"
++++
+
+The end.
+"""
+FRENCH = r"""+++
+title = "Moitiés"
+goal  = "Savoir ce que donne une moyenne de *quatre*."
++++
+
+Quatre coins, puis des moyennes : $h = \frac{a+b+c+d}{4}$.
+
+```figure land
+caption = "Des nombres sans voisin."
+alt     = "Des gravats"
+```
+
+## Étape par étape
+
+Chaque étape divise. Il y a {{peaks}} sommets.
+
+```step turns
+caption  = "Texels connus."
+alt      = "Une grille qui se remplit"
+captions = ["coins", "un centre", "arêtes", "tous"]
+```
+
+```measure peaks
+text = "Ici {{peaks}} texels sont des sommets."
+```
+
+## Une valeur
+
+```slider rough
+caption = "Rugosité."
+alt     = "Des terrains plus rugueux"
+```
+
+```compare seeds
+caption = "Deux terrains."
+alt     = "Deux terrains de gravats"
+labels  = ["premier", "second"]
+```
+
+## Une faute
+
+```code mean
+```
+
+```break quarter
+ask  = "Cela monte. Pourquoi ?"
+hint = "Combien en additionne-t-on ?"
+mend = "Une moyenne divise par leur nombre."
+alt  = "Des hauteurs qui croissent"
+```
+
+## Exercices
+
+```question which
+ask     = "Quelle est la moyenne de 1 et 3 ?"
+choices = ["2", "4"]
+answer  = "La moitié de leur somme."
+```
+
+```exercise guess
+ask      = "Devinez."
+hint     = "Regardez."
+solution = "C'est ainsi."
+alt      = "D'autres gravats"
+```
+
+```exercise try
+ask      = "Essayez."
+solution = "Fait."
+alt      = "Des gris"
+```
+
+```exercise change
+ask      = "Changez."
+solution = "Changé."
+```
+"""
+
+
+def write_lessons(folder: Path) -> Path:
+    """Write the lessons into a folder, as the library has them; return it."""
+    for language in ("en", "fr"):
+        (folder / language).mkdir(parents=True, exist_ok=True)
+    (folder / "en" / "halving.md").write_text(ENGLISH, encoding="utf-8")
+    (folder / "en" / "after.md").write_text(OTHER, encoding="utf-8")
+    (folder / "fr" / "halving.md").write_text(FRENCH, encoding="utf-8")
+    write_hashes(part(folder / "en" / "halving.md"), part(folder / "fr" / "halving.md"))
+    return folder
+
+
+def shelved(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    """Have the library hold the lessons of this file, and a state folder of their own."""
+    monkeypatch.setattr(library, "TEXTS", write_lessons(folder / "texts"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(folder / "state"))
+    monkeypatch.setattr("sys.platform", "linux")
+    for variable in ("LC_ALL", "LC_MESSAGES", "LANG"):
+        monkeypatch.delenv(variable, raising=False)
+
+
+class Desk(Bare):
+    """A panel of lessons beside a sketch, turn by turn."""
+
+    lessons: Lessons | None = None
+
+    def __init__(self, engine: Engine, path: Path, size: tuple[int, int] = (1280, 720)) -> None:
+        super().__init__(engine, path, size)
+        for name in ("small_button", "radio_button"):
+            self._watch(imgui, name)
+        self.rememberer = Rememberer(self.session, memory_of(self.session.path))
+        self.lessons = Lessons(self.actions, self.rememberer, lambda: self.rememberer.look(size))
+        self.actions.panel_shown = True
+
+    @property
+    def reading(self) -> Reading:
+        assert self.lessons is not None
+        return self.lessons.reading
+
+    def open(self, page: int = 0, **rest: object) -> None:
+        """Open the lesson at a page, and wait until it shows."""
+        assert self.reading.open("halving", page=page, **rest)  # type: ignore[arg-type]
+        self.turn(4)
+
+    def draw(self) -> None:
+        if self.lessons is None:
+            super().draw()
+            return
+        self.actions.see.begin()
+        left = self.lessons.draw(self.theme)
+        left += self.panel.draw(self.actions, self.theme, left) if self.actions.panel_shown else 0.0
+        room = imgui.get_io().display_size
+        draw_code(self.actions, self.theme, (left, 0.0, max(room.x - left, 1.0), room.y))
+        assert height_of_timeline(self.actions, self.theme) >= 0
+        if self.picture is not None:
+            self.actions.see.compare.follow(self.picture)
+        self.lessons.turn(idle=True)
+
+    def close(self) -> None:
+        if self.lessons is not None:
+            self.lessons.release()
+        self.rememberer.close()
+        super().close()

@@ -1,0 +1,73 @@
+"""The lessons that ship, as the window has to show them: their formulas, their letters, their pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import imgui_bundle
+import pytest
+from imgui_bundle import imgui
+
+from playground.lessons.library import LANGUAGES, TEXTS, lesson_files
+from playground.lessons.markdown import formulas
+from playground.lessons.model import Break, Compare, Exercise, Figure, Slider, Steps
+from playground.lessons.read import read_lesson
+from playground.live.edits import Draft
+from playground.live.lesson.formulas import set_formula
+from playground.live.lesson.marks import INSTEAD
+from playground.live.lesson.scene import edits_of, map_of, steps_of
+from playground.sketch.load import load
+
+FILES = sorted(TEXTS.glob("*/*.md"))
+
+
+def test_there_are_lessons_in_every_language():
+    assert {path.parent.name for path in FILES} == set(LANGUAGES) and len(lesson_files()) >= 10
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: f"{p.parent.name}/{p.stem}")
+def test_every_formula_can_be_set(path):
+    for latex in formulas(path.read_text(encoding="utf-8")):
+        found = set_formula(latex, 20, 0xFFEEEEEE, display=False)
+        assert found is not None, latex
+        shown = found.pixels[found.pixels[..., 3] > 0].astype(int)
+        assert not ((shown[:, 0] > 200) & (shown[:, 1] < 50)).any(), f"{latex}: red is what is not known"
+
+
+def test_every_letter_is_in_the_fonts():
+    context = imgui.create_context()
+    io = imgui.get_io()
+    io.set_ini_filename("")
+    io.backend_flags |= imgui.BackendFlags_.renderer_has_textures
+    fonts = Path(imgui_bundle.__file__).parent / "assets" / "fonts"
+    text = io.fonts.add_font_from_file_ttf(str(fonts / "Roboto" / "Roboto-Regular.ttf"), 15)
+    missing = {}
+    for path in FILES:
+        letters = set(path.read_text(encoding="utf-8").translate(INSTEAD)) - {"\n"}
+        gone = sorted(letter for letter in letters if not text.is_glyph_in_font(ord(letter)))
+        if gone:
+            missing[f"{path.parent.name}/{path.stem}"] = gone
+    imgui.destroy_context(context)
+    assert not missing
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", lesson_files())
+def test_every_picture_can_be_set_by_hand(name):
+    count = 0
+    for block in read_lesson(name).blocks:
+        if isinstance(block, Figure | Break | Exercise):
+            scenes = (block.scene,) if block.scene else ()
+        else:
+            scenes = block.scenes if isinstance(block, Steps | Slider | Compare) else ()
+        for scene in scenes:
+            count += 1
+            file = load(Path(scene.sketch.file))
+            made = Draft(file, file, edits_of(scene, file)).sketch
+            assert all(turn >= 0 for turn in steps_of(scene).values())
+            if scene.view:
+                shown = map_of(scene)
+                assert shown is not None and ":" in shown.ref
+            else:
+                assert made.with_values({}) == scene.sketch.with_values({}), block.name
+    assert count >= 5

@@ -1,0 +1,101 @@
+"""Lessons in a real window: opened beside a sketch, turned by keys, closed for good when they were closed."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground.live.lesson.progress import Progress, write_progress
+
+from .lesson_desk import write_lessons
+from .screen import ON_LINUX, Program, Screen
+
+RUN = """
+import sys
+from pathlib import Path
+from playground.lessons import library
+library.TEXTS = Path(sys.argv[1])
+from playground.live.app import run
+sys.exit(run(sys.argv[2], size=(1000, 700), beside=True, time_limit=300))
+"""
+OWN = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+pytestmark = ON_LINUX
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
+    made = Screen(tmp_path_factory.mktemp("screen"), 1000, 700)
+    yield made
+    made.close()
+
+
+def opened(screen: Screen, folder: Path) -> Program:
+    command = [sys.executable, "-c", RUN, str(folder / "texts"), str(folder)]
+    made = Program(screen, folder, command, folder)
+    made.wait(lambda now: now["draws"] > 0)
+    screen.do("mousemove", 800, 300)
+    return made
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("LC_ALL", "C")
+    write_lessons(tmp_path / "texts")
+    (tmp_path / "sketch.toml").write_text(OWN, encoding="utf-8")
+    return tmp_path
+
+
+def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
+    screen: Screen, folder: Path
+) -> None:
+    kept = folder / "state" / "terrain-shader-playground" / "lessons.json"
+    window = opened(screen, folder)
+    try:
+        own = window.now()["picture"]
+        screen.do("key", "Next")
+        window.wait(lambda now: now["steps"] == {"height.raw": 0, "phase": 0} and now["picture"] != own)
+        page = screen.pixels()[:, :420]
+        assert (page.min(axis=2) > 200).sum() > 500, "a page of text"
+        screen.do("key", "F2")
+        window.wait(lambda _: not json.loads(kept.read_text())["shown"])
+        assert json.loads(kept.read_text())["sections"] == {"halving": 1}
+        screen.do("key", "Escape")
+        assert window.ended() == 0, window.complaint()
+    finally:
+        window.close()
+
+
+@pytest.mark.slow
+def test_lessons_that_were_closed_stay_closed_and_leave_no_trace_in_sketches(
+    screen: Screen, folder: Path
+) -> None:
+    kept = folder / "state" / "terrain-shader-playground" / "lessons.json"
+    kept.parent.mkdir(parents=True)
+    write_progress(Progress("halving", shown=False, sections={"halving": 1}), kept)
+    window = opened(screen, folder)
+    try:
+        screen.do("key", "Next")
+        screen.do("key", "m", "sleep", 0.2, "key", "m")
+        now = window.wait(lambda now: now["map"] == "" and now["draws"] > 2)
+        assert now["steps"] == {}, "no page is turned: the panel is closed"
+        screen.do("key", "F2", "sleep", 0.2, "key", "Prior")
+        window.wait(lambda _: json.loads(kept.read_text())["sections"] == {"halving": 0})
+        window.wait(lambda now: now["runs"].get("light"))  # the lesson's land
+        screen.do("key", "Escape")
+        assert window.ended() == 0, window.complaint()
+        memories = [json.loads(f.read_text())["sketch"] for f in kept.parent.rglob("sessions/*.json")]
+        assert memories in ([], [str(folder / "sketch.toml")]), "none of the lesson's sketches"
+    finally:
+        window.close()
