@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from playground.errors import DataError
-from playground.lessons.book import build
+from playground.lessons.book import build, pictures
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.html import formula, line, plain, prose
 from playground.lessons.book.pictures import is_diagram, larger
@@ -131,6 +131,24 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
         assert stored.shape == drawn.shape
         # Diagrams are stored as they are, lands nearly so.
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
+
+
+def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_said(
+    tmp_path, lesson, engine, monkeypatch
+):
+    """Pictures are stored aside, while the next are drawn."""
+    made = prepare(tmp_path / "book", {"en": [lesson]}, gallery=False)
+    steps: list[int] = []
+    made.album.draw(engine, made.names[:3], lambda: steps.append(len(steps)))
+    assert len(steps) == 3 and all((made.album.folder / name).is_file() for name in made.names[:3])
+
+    def full(path, picture):
+        raise OSError("no space left")
+
+    monkeypatch.setattr(pictures, "store", full)
+    with pytest.raises(OSError, match="no space left"):
+        made.album.draw(engine, made.names[:1], lambda: steps.append(len(steps)))
+    assert len(steps) == 3
 
 
 def test_a_picture_shown_twice_is_stored_once(book, lesson):
