@@ -16,9 +16,13 @@ SAID = "document.querySelector('#turns output').textContent"
 AT = "document.querySelector('#two input').value"
 
 
+LONG = "https://doi.org/" + "10.1145/358523.358553" * 4
+
+
 @pytest.fixture
-def book(tmp_path, lesson, french, engine):
+def book(tmp_path, make_lesson, french, engine):
     folder = tmp_path / "book"
+    lesson = make_lesson(("https://doi.org/10.1145/358523.358553", LONG))
     write_book(prepare(folder, {"en": [lesson], "fr": [french]}, gallery=False), engine)
     return folder
 
