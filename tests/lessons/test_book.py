@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from playground.errors import DataError
-from playground.lessons.book import build
+from playground.lessons.book import build, pictures
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.html import formula, line, plain, prose
 from playground.lessons.book.pictures import is_diagram, larger
@@ -133,6 +133,24 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
+def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_said(
+    tmp_path, lesson, engine, monkeypatch
+):
+    """Pictures are stored aside, while the next are drawn."""
+    made = prepare(tmp_path / "book", {"en": [lesson]}, gallery=False)
+    steps: list[int] = []
+    made.album.draw(engine, made.names[:3], lambda: steps.append(len(steps)))
+    assert len(steps) == 3 and all((made.album.folder / name).is_file() for name in made.names[:3])
+
+    def full(path, picture):
+        raise OSError("no space left")
+
+    monkeypatch.setattr(pictures, "store", full)
+    with pytest.raises(OSError, match="no space left"):
+        made.album.draw(engine, made.names[:1], lambda: steps.append(len(steps)))
+    assert len(steps) == 3
+
+
 def test_a_picture_shown_twice_is_stored_once(book, lesson):
     """The whole picture of the fault is that of the second exercise."""
     names = {path.stem for path in (book / "pictures").glob("*.webp")}
@@ -146,6 +164,23 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     assert not any("open" in attributes for attributes in page.all("details"))
     assert text.count("<li") >= 6 + 3 + 2  # turns, values, variants
     assert "4.0 : 3.0" in page.text and "8.0" in page.text
+
+
+def test_a_figure_with_sliders_says_where_they_are(book):
+    for language, option in (("en", ""), ("fr", " --lang fr")):
+        page = Page(book / language / "small.html")
+        words = interface_words(language)
+        said = f"{words['in_window']}{words['colon']}playground lesson open small{option}"
+        assert page.text.count(said) == 1  # of its figures one has sliders
+
+
+def test_a_page_has_few_landmarks(book):
+    """Questions, exercises and code are many on a page: one finds them by their headings."""
+    page = Page(book / "en/small.html")
+    assert not [a for tag, a in page.elements if a.get("role") == "region"]
+    named = [a["aria-labelledby"] for tag, a in page.elements if tag == "section" and "aria-labelledby" in a]
+    headings = {a["id"] for tag, a in page.elements if tag == "h2" and "id" in a}
+    assert set(named) <= headings and len(named) >= 3
 
 
 def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, engine, make_lesson):
@@ -195,6 +230,11 @@ def test_formulas_become_mathml():
     html = prose("Let $a^2$ be\n\n$$\\frac{a}{b}$$\n", str)
     assert html.count("<math") == 2 and "<msup>" in html and "<mfrac>" in html and "$" not in html
     assert 'display="block"' in formula("x", alone=True)
+
+
+def test_every_block_of_code_can_be_scrolled():
+    for words in ("```glsl\nint a;\n```\n", "```\na\n```\n", "Before\n\n    indented\n"):
+        assert '<pre class="code" tabindex="0"' in prose(words, str), words
 
 
 def test_html_in_a_lesson_is_text():

@@ -8,6 +8,7 @@ import io
 import json
 import shutil
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,7 +36,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 @pytest.fixture
 def opened(lesson, engine, monkeypatch):
-    monkeypatch.setattr(notebook_lesson, "shared_engine", lambda: engine)
+    monkeypatch.setattr(notebook_lesson, "on_engine", lambda work: work(engine))
     return NotebookLesson(lesson)
 
 
@@ -60,6 +61,25 @@ def test_a_figure_s_sliders_act_on_its_picture(opened, lesson, engine):
     )
     assert widget.picture != before
     np.testing.assert_array_equal(pixels(widget.picture), expected.array)
+
+
+def test_a_picture_is_drawn_whichever_thread_asks(lesson):
+    """Jupyter answers what is dragged in a thread of its own, while a cell runs in another."""
+    opened = NotebookLesson(lesson)
+    widget = opened.show("land")
+    first = widget.picture
+
+    def drag(value):
+        widget.values = {"height.smoothing": value}
+
+    with ThreadPoolExecutor(1) as other:
+        other.submit(drag, 0.05).result()
+        there = widget.picture
+        other.submit(drag, widget.controls[0]["value"]).result()
+    np.testing.assert_array_equal(pixels(widget.picture), pixels(first))
+    assert there != first and pixels(there)[..., 3].min() == 255
+    drag(0.05)
+    np.testing.assert_array_equal(pixels(widget.picture), pixels(there))
 
 
 def test_a_value_out_of_range_is_said_and_the_picture_stays(opened):

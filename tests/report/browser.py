@@ -86,6 +86,10 @@ class Browser:
         actions += [{"type": "pointerUp", "button": 0}]
         self._ask("POST", "/actions", {"actions": [{"type": "pointer", "id": "hand", "actions": actions}]})
 
+    def emulate(self, what: str, **settings: object) -> None:
+        """Behave as another device or medium: a command of DevTools' domain Emulation."""
+        self._ask("POST", "/goog/cdp/execute", {"cmd": f"Emulation.{what}", "params": settings})
+
     def log(self) -> list[str]:
         """Return the errors on the console since it was asked last, and what a policy refused."""
         found = self._ask("POST", "/se/log", {"type": "browser"})

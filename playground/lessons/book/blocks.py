@@ -13,6 +13,7 @@ from typing import Any
 from playground.lessons.book.html import Address, code_block, line, plain, prose
 from playground.lessons.excerpt import excerpt
 from playground.lessons.faults import around
+from playground.lessons.library import SOURCE
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import (
     Block,
@@ -90,9 +91,21 @@ def _figure(block: Figure, setting: Setting, first: bool) -> Markup:
     return tag(
         "figure",
         setting.image(picture, lazy=not first),
-        tag("figcaption", setting.line(block.caption)),
+        tag("figcaption", setting.line(block.caption), _in_window(setting) if block.sliders else None),
         id=block.name,
     )
+
+
+def _in_window(setting: Setting) -> Markup:
+    """Return where a figure can be dragged whose sliders a page cannot have."""
+    command = tag("code", open_command(setting.lesson))
+    return tag("small", setting.word("in_window"), setting.word("colon"), command, class_="in-window")
+
+
+def open_command(lesson: Lesson) -> str:
+    """Return the command that opens a lesson in the window."""
+    language = "" if lesson.language == SOURCE else f" --lang {lesson.language}"
+    return f"playground lesson open {lesson.name}{language}"
 
 
 def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: str) -> Markup:
@@ -203,7 +216,6 @@ def _break(block: Break, setting: Setting) -> Markup:
         ),
         id=block.name,
         class_="break",
-        aria_labelledby=f"{block.name}-title",
     )
 
 
@@ -241,7 +253,6 @@ def _question(block: Question, setting: Setting) -> Markup:
         _folded(setting.word("answer"), setting.prose(block.answer)),
         id=block.name,
         class_="question",
-        aria_labelledby=f"{block.name}-title",
     )
 
 
@@ -258,7 +269,6 @@ def _exercise(block: Exercise, setting: Setting) -> Markup:
         _folded(setting.word("solution"), setting.prose(block.solution), picture),
         id=block.name,
         class_="exercise",
-        aria_labelledby=f"{block.name}-title",
     )
 
 

@@ -32,8 +32,9 @@
       range.value = index;
       range.setAttribute("aria-valuetext", labels[index]);
       told.textContent = labels[index];
-      back.disabled = index === 0;
-      on.disabled = index === frames.length - 1;
+      // Not disabled: a button that is loses the keys of one who has just pressed it.
+      back.setAttribute("aria-disabled", index === 0);
+      on.setAttribute("aria-disabled", index === frames.length - 1);
     };
     const halt = () => { clearInterval(timer); timer = 0; run.textContent = words.run; };
     range.addEventListener("input", () => { halt(); show(Number(range.value)); });
@@ -111,6 +112,17 @@
       around.append(block, button);
     }
   }
+
+  // Answers lie open on paper, also in a browser whose style sheets cannot open them.
+  let opened = [];
+  addEventListener("beforeprint", () => {
+    opened = [...document.querySelectorAll("details:not([open])")];
+    for (const each of opened) each.open = true;
+  });
+  addEventListener("afterprint", () => {
+    for (const each of opened) each.open = false;
+    opened = [];
+  });
 
   // Light or dark: as the system has it, until one chooses. A page opened from a disk may have no memory.
   const root = document.documentElement;

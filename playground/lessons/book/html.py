@@ -56,7 +56,11 @@ def code(text: str) -> Markup:
 
 def code_block(text: str, label: str) -> Markup:
     """Return GLSL as a block that can be scrolled by keys where it is too wide."""
-    return tag("pre", tag("code", code(text)), class_="code", tabindex=0, role="region", aria_label=label)
+    return tag("pre", tag("code", code(text)), class_="code", tabindex=0, role="group", aria_label=label)
+
+
+def _plain_block(text: str) -> Markup:
+    return tag("pre", tag("code", text), class_="code", tabindex=0)
 
 
 class _Renderer(RendererHTML):
@@ -78,14 +82,13 @@ class _Renderer(RendererHTML):
     def table_close(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
         return "</table></div>\n"
 
+    def code_block(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
+        return str(_plain_block(tokens[idx].content.rstrip("\n")))
+
     def fence(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
         token = tokens[idx]
         text = token.content.rstrip("\n")
-        return (
-            code_block(text, token.info or "code")
-            if token.info == "glsl"
-            else str(tag("pre", tag("code", text), class_="code", tabindex=0))
-        )
+        return code_block(text, token.info or "code") if token.info == "glsl" else str(_plain_block(text))
 
 
 def _renderer(words: str, address: Address, *, inline: bool) -> str:

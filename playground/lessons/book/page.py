@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from playground._version import __version__
-from playground.lessons.book.blocks import Setting, block_html
+from playground.lessons.book.blocks import Setting, block_html, open_command
 from playground.lessons.book.html import Address, line, plain
 from playground.lessons.library import LANGUAGES, THESIS
 from playground.lessons.model import Lesson
@@ -139,7 +139,9 @@ def door_page(languages: Sequence[str], titles: Mapping[str, str]) -> str:
         Markup('<meta charset="utf-8">'),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("title", titles[languages[0]]),
+        tag("meta", name="color-scheme", content="light dark"),
         tag("link", rel="stylesheet", href="book.css"),
+        tag("script", src="book.js", defer=True),
     )
     body = tag("main", tag("h1", titles[languages[0]]), tag("ul", *links))
     return f"<!doctype html>\n{tag('html', tag('head', head), tag('body', body), lang=languages[0])}\n"
@@ -194,14 +196,10 @@ def _play(book: Book, lesson: Lesson, setting: Setting) -> Markup:
         tag("p", book.word("play_goal")),
         command_line(f"playground live {lesson.sketch}"),
         tag("p", f"{book.word('try_it')}{book.word('colon')}"),
-        command_line(f"playground lesson open {lesson.name}{_option(lesson)}"),
+        command_line(open_command(lesson)),
         id="play",
         aria_labelledby="play-title",
     )
-
-
-def _option(lesson: Lesson) -> str:
-    return "" if lesson.language == "en" else f" --lang {lesson.language}"
 
 
 def command_line(command: str) -> Markup:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
 from playground.api import headless
 from playground.engine.engine import Engine
@@ -34,11 +35,24 @@ from playground.markup import tag
 from playground.paths import GLSL
 from playground.sketch.reread import with_texts
 
+T = TypeVar("T")
+
+
+_THREAD = ThreadPoolExecutor(1, thread_name_prefix="lesson")
+
 
 @cache
-def shared_engine() -> Engine:
-    """Return the engine that all lessons of this process draw with; it lives as long as the process."""
+def _engine() -> Engine:
     return headless()
+
+
+def on_engine(work: Callable[[Engine], T]) -> T:
+    """Return what some work gives with the engine that all lessons of this process draw with.
+
+    The engine has a thread of its own: a context draws in one thread only, and a notebook
+    answers what is dragged in another than its cells run in.
+    """
+    return _THREAD.submit(lambda: work(_engine())).result()
 
 
 def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:
@@ -83,7 +97,7 @@ class NotebookLesson:
         block = self._block(name)
         if not isinstance(block, Measure):
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' measures nothing")
-        return measured(shared_engine(), block).value
+        return on_engine(lambda engine: measured(engine, block)).value
 
     def mend(self, name: str, lines: str) -> Mended:
         """Return the picture that a fault's shader makes with other lines in place of the faulty ones.
@@ -107,7 +121,7 @@ class NotebookLesson:
         return named[name]
 
     def _frame(self, scene: Scene) -> Frame:
-        return draw(shared_engine(), scene)
+        return on_engine(lambda engine: draw(engine, scene))
 
     def _dragged(self, block: Figure | Steps | Slider | Compare) -> Any:
         controls = controls_of(block, self.lesson.language, self.words)
