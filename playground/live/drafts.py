@@ -30,6 +30,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
+from playground.sketch.stand_ins import stand_ins
 
 
 class Drafts(ABC):
@@ -40,6 +41,7 @@ class Drafts(ABC):
         path: str | Path,
         *,
         driver: str,
+        companions: bool = False,
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
@@ -64,6 +66,7 @@ class Drafts(ABC):
         self._camera_in_file = camera_in_file
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
+        self._companions = companions  # whether what only compute can do stands in for kernels
         self._techniques = KeptTechniques()
         self._trial = trial
         self._now = now
@@ -132,6 +135,8 @@ class Drafts(ABC):
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
             return
+        if self._companions and self.shown is not None and not self._another:
+            notes = [*notes, *stand_ins(self.shown.file, loaded)]
         self._propose(draft, notes)
 
     def open(

@@ -16,6 +16,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plan import Plan, repeats_of
 from playground.errors import ContextError, PlaygroundError
+from playground.gpu.wrap import FRAGMENT
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
@@ -60,6 +61,7 @@ class Session(Drafts):
         super().__init__(
             path,
             driver=engine.driver,
+            companions=engine.info.compute and engine.driver != FRAGMENT,
             values=values,
             edits=edits,
             in_file=in_file,
