@@ -6,14 +6,17 @@ import re
 
 import pytest
 
+from playground.lessons.faults import region
 from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
 from playground.lessons.measuring import filled, numbers_of
-from playground.lessons.model import Prose
-from playground.lessons.pictures import pictures_of
+from playground.lessons.model import Break, Prose
+from playground.lessons.pictures import faulty, pictures_of
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.rules import broken_rules, wrong_pictures
 from playground.lessons.scenes import Sketches
 from playground.lessons.status import status_of
+from playground.paths import GLSL
+from playground.sketch.source import read_text
 
 NAMES = [one.name for one in summaries()]
 SKETCHES = Sketches()
@@ -62,6 +65,20 @@ def test_a_translation_says_as_much(shipped):
 def test_the_names_of_its_pictures_are_its_own(shipped):
     names = [picture.name for picture in pictures_of(shipped["en"])]
     assert len(names) == len(set(names)) and names
+
+
+def test_the_mended_lines_of_every_fault_restore_its_shader(shipped):
+    """What a lesson shows as mended, put back in the faulty lines' place, is the shipped text again."""
+    for block in shipped["en"].blocks:
+        if isinstance(block, Break):
+            found = region(block)
+            assert code_of(found.with_lines(found.whole)) == code_of(read_text(GLSL / block.file)), block.name
+            assert code_of(found.with_lines(found.broken)) == code_of(faulty(block)), block.name
+
+
+def code_of(text):
+    """Return the lines of a shader that are code."""
+    return [line.strip() for line in text.split("\n") if line.strip() and not line.strip().startswith("//")]
 
 
 @pytest.mark.slow
