@@ -55,6 +55,7 @@ def smaller(text: str) -> str:
 
 
 @pytest.mark.parametrize("text", blocks("python"))
+@pytest.mark.slow
 def test_python_runs(text: str, tmp_path: Path):
     runs(smaller(text), tmp_path)
 

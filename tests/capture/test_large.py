@@ -130,6 +130,7 @@ def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: s
     assert apart[seams].mean() < 0.02, "no more there than elsewhere"
 
 
+@pytest.mark.slow
 def test_levels_of_detail_are_those_of_the_whole_picture(any_engine: Engine):
     """The mesh chosen by pixels is that of the whole: a tile of its own size would take a coarser one."""
     sketch = load("geomipmap").with_values(SMALL)
@@ -175,6 +176,7 @@ def test_a_picture_wider_than_any_texture(any_engine: Engine, tmp_path: Path):
     assert pixels.shape == (6, 20000, 4) and done["tile"] == count_tiles((20000, 6)) == -(-20000 // TILE[0])
 
 
+@pytest.mark.slow
 def test_the_far_end_of_a_picture_wider_than_any_viewport(any_engine: Engine):
     """16,640 pixels: what is there is what a tenth of the size shows there, pixel by hundred pixels."""
     sketch = load("jacksboro").with_values(SMALL)
@@ -197,6 +199,7 @@ def test_nothing_is_left_of_a_picture_that_fails(any_engine: Engine, tmp_path: P
     assert not list(folder.iterdir())
 
 
+@pytest.mark.slow
 def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Counter[str]):
     sketch = load("l_dot_n")
     list(strips(any_engine, sketch, (64, 36), tile=(32, 18)))

@@ -75,6 +75,7 @@ def open_app(tmp_path: Path) -> Iterator[Callable[..., App]]:
         app.close()
 
 
+@pytest.mark.slow
 def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], tmp_path: Path) -> None:
     app = open_app("sketch.toml", "--record", "a.jsonl", "--radius", "1.5", "--set", "relief=800")
     first = app.wait(lambda now: now["ready"] and now["steps"] > 0)
@@ -126,6 +127,7 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     assert record.header.values == {"relief": "800"}
 
 
+@pytest.mark.slow
 def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., App], tmp_path: Path) -> None:
     header = {"format": "playground flight", "version": 1, "sketch": "sketch.toml", "size": [640, 360]}
     header |= {"step": 1 / 60, "radius": 1.5, "values": {}, "start": None}

@@ -130,6 +130,7 @@ def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None
     assert app.process.poll() is None
 
 
+@pytest.mark.slow
 def test_the_mouse_and_the_keys(app: App) -> None:
     screen, x, y = app.screen, PANEL + 200, 200
     first = app.now()["picture"]
@@ -189,6 +190,7 @@ vec4 kernel(ivec2 texel) { return vec4(vec3(float(texel.x) + 0.5 < line * float(
 """
 
 
+@pytest.mark.slow
 def test_a_line_in_the_picture_is_dragged_and_nothing_else_is(app: App) -> None:
     screen, wide = app.screen, WIDTH - PANEL
     (app.sketch / "parted.glsl").write_text(PARTED, encoding="utf-8")
@@ -230,6 +232,7 @@ sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
 
 
+@pytest.mark.slow
 def test_a_context_that_is_lost_costs_nothing_but_a_moment(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -253,6 +256,7 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         app.close()
 
 
+@pytest.mark.slow
 def test_after_a_crash_it_opens_as_it_was(screen: Screen, tmp_path: Path) -> None:
     app = App(screen, tmp_path)
     try:
@@ -275,6 +279,7 @@ def test_after_a_crash_it_opens_as_it_was(screen: Screen, tmp_path: Path) -> Non
         again.close()
 
 
+@pytest.mark.slow
 def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     def draws_nothing(seconds: float) -> bool:
         before = app.now()["draws"]

@@ -51,6 +51,7 @@ def opened(screen: Screen, folder: Path) -> Program:
     return made
 
 
+@pytest.mark.slow
 def test_a_key_starts_the_editor_at_the_line(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -57,6 +57,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
     screen: Screen, folder: Path
 ) -> None:

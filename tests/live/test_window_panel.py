@@ -60,6 +60,7 @@ def opened(screen: Screen, folder: Path, size: object) -> Program:
     return program
 
 
+@pytest.mark.slow
 def test_a_value_is_typed_undone_and_saved(screen: Screen, folder: Path) -> None:
     program = opened(screen, folder, (WIDTH, HEIGHT))
     try:
@@ -93,6 +94,7 @@ def test_a_value_is_typed_undone_and_saved(screen: Screen, folder: Path) -> None
         program.close()
 
 
+@pytest.mark.slow
 def test_it_fills_the_screen_and_comes_back(screen: Screen, folder: Path) -> None:
     program = opened(screen, folder, (WIDTH, HEIGHT))
 

@@ -75,6 +75,7 @@ def until(program: Program, done: object) -> None:
     program.wait(lambda _: done())
 
 
+@pytest.mark.slow
 def test_all_of_it_by_keys_and_by_mouse(screen: Screen, program: Program) -> None:
     screen.do("mousemove", 600, 300, "key", "space", "key", "0")
     program.wait(lambda now: not now["playing"])

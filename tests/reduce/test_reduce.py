@@ -217,6 +217,7 @@ void main() {
 """
 
 
+@pytest.mark.slow
 def test_where_a_companion_disagrees_only_its_fault_stays(sketch, worker, tmp_path):
     path = sketch(f"{HEIGHT}float kernel(ivec2 texel) {{ return sin(float(texel.x) * 0.7) * 0.25; }}\n")
     (path.parent / "one.comp").write_text(COMPANION)
