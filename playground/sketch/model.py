@@ -293,6 +293,7 @@ class Sketch:
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
     keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by hand stands over them
+    main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
 
     @property
     def files(self) -> tuple[str, ...]:

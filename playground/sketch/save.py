@@ -47,6 +47,8 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
         assert was is not None
         if spec.use != was.use:
             text = _with_technique(_view(text, file, spec.name), _table(file, spec.name), was, spec)
+    if wanted.main != file.main:  # what another technique lacks is gone from it
+        text = put(text, (), "main", f"[{', '.join(map(text_of, wanted.main))}]")
     for path, value in wanted.overrides:
         text = _with_value(text, file, wanted, path, value)
     if wanted.camera != file.camera:

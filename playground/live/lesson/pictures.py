@@ -139,7 +139,7 @@ def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> N
     if actions.session.shown is not draft:
         page.reading.playing = ""
     if page.memory.menu:
-        draw_menu({item.path: item for item in items.values()}, values, page.memory, actions)
+        draw_menu({item.label: item for item in items.values()}, values, page.memory, actions)
 
 
 def _item(path: str, items: dict[str, Item], page: Page) -> Item | None:
