@@ -14,11 +14,11 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import dome, theme
-from playground.live.numbers import format_of, snapped, tidied, unit_of
+from playground.live.numbers import format_of, snapped, unit_of
 from playground.paths import shown
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import expected, is_whole, length_of, write
+from playground.sketch.values import expected, is_whole, length_of, tidied, write
 from playground.sketch.widgets import WIDGETS
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
