@@ -258,9 +258,7 @@ class Drafts(ABC):
         """Write what is set by hand in the fewest digits that a shader reads as the same numbers."""
 
         def tidied(edits: Edits) -> Edits:
-            return replace(
-                edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values)
-            )
+            return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
 
         if self.shown is not None and tidied(self.shown.edits) != self.shown.edits:
             self._edit(tidied)

@@ -12,14 +12,15 @@ from playground.live.history import in_words
 from playground.live.listing import Filter, Item, set_words
 from playground.live.panel_memory import Memory
 from playground.live.randomised import targets
-from playground.live.rows import fitting, row
+from playground.live.rows import fitting, fitting_choice, row
 from playground.live.saving import copy_toml, save_a_copy, save_as_preset, save_values
+from playground.live.sliders import slide
 from playground.live.theme import Theme
 from playground.paths import shown
 from playground.sketch.model import Preset, Sketch
 from playground.sketch.values import spell, write
 
-_OWN_VIEW = "the sketch's own view"
+_OWN_VIEW = "its own view"
 _CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
@@ -168,7 +169,10 @@ def _chance(memory: Memory, actions: Actions, look: Theme) -> None:
         return
     session, draft = actions.session, actions.session.shown
     _, memory.seed = imgui.input_int("Seed", memory.seed)
-    _, memory.strength = imgui.slider_float("Strength", memory.strength, 0.01, 0.5, "%.2f")
+    strength = slide("##strength", memory.strength, (0.01, 0.5), "%.2f")
+    memory.strength = memory.strength if strength is None else strength
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.text_unformatted("Strength")
     imgui.set_item_tooltip("Of a mutation: how far a value goes, in shares of its range")
     imgui.begin_disabled(bool(memory.filter))
     _, memory.everything = imgui.checkbox("Everything", memory.everything)
@@ -279,7 +283,7 @@ def _presets(sketch: Sketch, memory: Memory, actions: Actions) -> None:
         note += f"\nChanged since {last.name}: {', '.join(off)}"
     with row("Preset", note, edited=bool(off), fixed=True):
         text = held.name if held else f"{last.name}, changed" if last else "choose"
-        if imgui.begin_combo("##preset", text):
+        if imgui.begin_combo("##preset", fitting_choice(text)):
             for preset in sketch.presets:
                 if imgui.selectable(preset.name, preset is held)[0]:
                     memory.preset = preset.name
@@ -298,7 +302,9 @@ def _differing(sketch: Sketch, preset: Preset) -> list[str]:
 def _shown(actions: Actions) -> None:
     session = actions.session
     with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
-        if imgui.begin_combo("##shown", ref_name(session.map.ref) if session.map else _OWN_VIEW):
+        if imgui.begin_combo(
+            "##shown", fitting_choice(ref_name(session.map.ref) if session.map else _OWN_VIEW)
+        ):
             if imgui.selectable(_OWN_VIEW, session.map is None)[0]:
                 actions.show(None)
             for ref in session.refs:

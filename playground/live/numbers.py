@@ -36,6 +36,7 @@ def format_of(parameter: Parameter) -> str:
 def unit_of(parameter: Parameter) -> str:
     """Return the unit as it follows a number: degrees close up, others after a space."""
     unit = parameter.unit or WIDGETS[parameter.widget.kind].unit
+    unit = "°" if unit == "degrees" else unit
     return unit if unit in ("", "°", "%") else f" {unit}"
 
 

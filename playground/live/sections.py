@@ -13,7 +13,8 @@ from playground.live.actions import Actions
 from playground.live.listing import Group, Item, Section, Values, in_words
 from playground.live.panel_memory import Memory
 from playground.live.parameters import draw_menu, draw_parameter
-from playground.live.rows import cross, row, slot
+from playground.live.rows import cross, fitting_choice, row, slot
+from playground.live.sliders import slide_whole
 from playground.live.sources import editor_name, open_source
 from playground.live.theme import Theme
 from playground.sketch.choose import choices
@@ -229,15 +230,15 @@ def _steps(spec: PassSpec, actions: Actions) -> None:
         label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
         note = f"How many of its {counted(whole, 'turn')} {path} has taken; Ctrl+click to type a number"
         with row(label, note, edited=path in session.steps):
-            shape = "all %d" if turn == whole else "%d"
-            changed, chosen = imgui.slider_int(
-                f"##steps of {path}", turn, 0, whole, shape, imgui.SliderFlags_.always_clamp
-            )
-            if changed:
+
+            def words(now: int, last: int = whole) -> str:
+                return f"all {now}" if now == last else str(now)
+
+            chosen = slide_whole(f"##steps of {path}", turn, (0, whole), words)
+            if chosen is not None:
                 session.stop_at(path, chosen)
 
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    room = imgui.calc_item_width() - imgui.get_frame_height() - 2 * imgui.get_style().frame_padding.x
-    return use if imgui.calc_text_size(use).x <= room else use.rpartition("/")[2]
+    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])

@@ -58,6 +58,7 @@ class Parameter:
     tooltip: str = ""
     sampling: Sampling = Sampling()  # of a file
     painted: bool = False  # a file that may be painted on in the window
+    parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     file: str = ""
     line: int = 0
 

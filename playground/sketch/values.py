@@ -130,7 +130,7 @@ def tidied(value: float) -> float:
 def shortest(value: Value) -> Value:
     """Return a value whose numbers with fractions are ``tidied``: what a file is to say of it."""
     if isinstance(value, tuple):
-        return tuple(tidied(n) if isinstance(n, float) else n for n in value)  # type: ignore[return-value]
+        return tuple(tidied(n) if isinstance(n, float) else n for n in value)
     return tidied(value) if isinstance(value, float) else value
 
 

@@ -121,7 +121,11 @@ def test_random_values_are_for_the_shape_unless_everything_is_asked_for(bare: Ba
 @pytest.mark.parametrize(
     ("name", "least", "words"),
     [
-        ("diamond_square", {"height.smoothing", "height.seed", "height.corners"}, "the main ones of the shape"),
+        (
+            "diamond_square",
+            {"height.smoothing", "height.seed", "height.corners"},
+            "the main ones of the shape",
+        ),
         ("multiply", {"first.seed", "second.seed"}, "the main ones of the shape"),
         ("profile", {"height.seed"}, "the main ones of the shape"),
         ("daylight", {"daylight.hour"}, "the main ones"),

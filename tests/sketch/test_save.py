@@ -257,7 +257,12 @@ def test_presets_are_saved_and_saved_over(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("given", "written"),
-    [(float(np.float32(0.1)), "0.1"), (1 / 3, "0.33333334"), (0.7, "0.7"), (float(np.float32(1e-7)), "1e-07")],
+    [
+        (float(np.float32(0.1)), "0.1"),
+        (1 / 3, "0.33333334"),
+        (0.7, "0.7"),
+        (float(np.float32(1e-7)), "1e-07"),
+    ],
 )
 def test_a_number_has_the_fewest_digits_that_read_back_as_the_same_float(
     folder: Path, given: float, written: str

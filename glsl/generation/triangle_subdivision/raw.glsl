@@ -24,7 +24,7 @@
 uniform float r = 1.0;    //! slider(0, 3) step(0.05) How fast the random numbers fall with the length of an edge: the more, the smoother
 uniform uint seed = 7u;   //! slider(0, 9999) Which land
 uniform int corners_are = 0;  //! menu("random", "given") Corners at random in [-1, 1], or as given below
-uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) Given heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) parts("SW", "SE", "NW", "NE") Given heights of the corners: south-west, south-east, north-west, north-east
 
 ivec2 visit(ivec2 cell) {
     // Of the cells of a turn, those with two even numbers were vertices before.
