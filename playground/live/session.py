@@ -20,13 +20,14 @@ from playground.gpu.wrap import FRAGMENT
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
+from playground.live.framing import framed
 from playground.live.hasty import hastily
 from playground.live.maps import fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
-from playground.sketch.model import Camera, Sketch, Value, kernels_of
+from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch, Value, kernels_of
 
 if TYPE_CHECKING:
     import moderngl
@@ -77,6 +78,7 @@ class Session(Drafts):
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
         self.draws = 0  # pictures drawn so far
+        self.framed_for = DEFAULT_PICTURE  # [pixels] the picture whose sides are seen in a narrower room too
         self.hasty = False  # the picture was drawn hastily, and will be drawn again in full
         self._is_lost = is_lost  # says whether the engine's context is lost
         self._lost_over: object = None  # what was shown when a context was lost last
@@ -257,7 +259,7 @@ class Session(Drafts):
         texture = self._picture.texture
         if self.shown is None or texture is None:
             return True
-        chosen = hastily(sketch) if self.hasty else sketch
+        chosen = self._framed(hastily(sketch) if self.hasty else sketch, texture.size)
         try:
             steps = self._steps_for(sketch)
             return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
@@ -309,13 +311,20 @@ class Session(Drafts):
         """Draw; where the processor draws, hastily first: see ``live.hasty``."""
         chosen = hastily(sketch) if self.engine.info.software and not in_full else sketch
         self.engine.runner.frame = self.draws
-        texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
+        seen = self._framed(chosen, size)
+        texture = self.engine.draw(seen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
         self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1
         self.times |= self.engine.times
         self.plan = self.engine.plan
+
+    def _framed(self, sketch: Sketch, size: tuple[int, int]) -> Sketch:
+        """Return a sketch as it is seen in a picture of that size, in pixels: see ``live.framing``."""
+        if not is_seen_from_camera(sketch):
+            return sketch
+        return framed(sketch, self.clock.time, self.framed_for, size)
 
     def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
         try:
