@@ -237,6 +237,11 @@ def _steps(spec: PassSpec, actions: Actions) -> None:
             chosen = slide_whole(f"##steps of {path}", turn, (0, whole), words)
             if chosen is not None:
                 session.stop_at(path, chosen)
+    if any(path in session.steps for path in mine) and any(k.between for _, k in kernels_of(spec.technique)):
+        with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
+            changed, on = imgui.checkbox("##interpolated", session.interpolated)
+            if changed:
+                session.interpolate(on)
 
 
 def _use_name(use: str) -> str:

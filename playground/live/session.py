@@ -73,6 +73,7 @@ class Session(Drafts):
         self.engine = engine
         self.map: Map | None = None  # what is shown instead of the sketch's own view
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
+        self.interpolated = True  # what a stopped repeat has not reached is filled
         self._next_view: tuple[dict[str, int], Map | None] | None = None  # of a sketch that was opened
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
@@ -183,6 +184,11 @@ class Session(Drafts):
         if 0 <= turn < self.repeats.get(path, 0):
             self.steps[path] = turn
 
+    def interpolate(self, on: bool) -> None:
+        """Fill what stopped repeats have not reached, where their headers say how, or show it as it is."""
+        self._revision += 1
+        self.interpolated = on
+
     def fit_map(self) -> None:
         """Fit the map's channel and range to the texture's values."""
         if self.map is None or self.sketch is None:
@@ -197,7 +203,8 @@ class Session(Drafts):
             return None
         try:
             steps = self._steps_for(self.sketch)
-            return self.engine.read(self.sketch, ref, time=self.clock.time, steps=steps)
+            now, fills = self.clock.time, self.interpolated
+            return self.engine.read(self.sketch, ref, time=now, steps=steps, interpolated=fills)
         except PlaygroundError as error:
             self.notes.append(str(error))
             return None
@@ -261,8 +268,9 @@ class Session(Drafts):
             return True
         chosen = self._framed(hastily(sketch) if self.hasty else sketch, texture.size)
         try:
-            steps = self._steps_for(sketch)
-            return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
+            steps, fills = self._steps_for(sketch), self.interpolated
+            size, now = texture.size, self.clock.time
+            return bool(self.engine.stale(chosen, size=size, time=now, steps=steps, interpolated=fills))
         except PlaygroundError:
             return True
 
@@ -312,7 +320,8 @@ class Session(Drafts):
         chosen = hastily(sketch) if self.engine.info.software and not in_full else sketch
         self.engine.runner.frame = self.draws
         seen = self._framed(chosen, size)
-        texture = self.engine.draw(seen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
+        steps, now = self._steps_for(sketch), self.clock.time
+        texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
         self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)

@@ -119,6 +119,7 @@ class Kernel:
     accepts: str = ""
     visits: str = ""
     stride: str = ""  # after a turn, only texels at multiples of it are known
+    between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"

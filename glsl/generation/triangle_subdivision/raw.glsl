@@ -19,7 +19,7 @@
 // A vertex knows two others only, so creases stay along the edges, the worst of them on the
 // main diagonal: the fault that the thesis tells of, kept here.
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration")
+#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration", between = "triangles")
 
 uniform float r = 1.0;    //! slider(0, 3) step(0.05) How fast the random numbers fall with the length of an edge: the more, the smoother
 uniform uint seed = 7u;   //! slider(0, 9999) Which land
