@@ -38,11 +38,12 @@ from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_waiting
 from playground.live.panel import Panel
+from playground.live.part_labels import draw_part_labels
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
-from playground.live.see.ab import drag_line, paint_both
+from playground.live.see.ab import below_bar, drag_line, paint_both
 from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
@@ -297,6 +298,8 @@ class Live:
         draw_errors(actions, window.theme, above)
         if picture is None and session.error is None:
             draw_waiting("trying the sketch …", window.theme, area)
+        if picture is not None and session.sketch is not None and session.map is None:
+            draw_part_labels(session.sketch, window.theme, below_bar(actions, window.theme, area))
         draw_see(actions, picture, window.theme, area, window.density)
         draw_notices(actions, window.theme, area)
         draw_drops(actions, window.theme)
