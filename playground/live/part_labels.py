@@ -66,7 +66,7 @@ def _dividers(spec: PassSpec) -> list[str]:
 
 
 def _menus(spec: PassSpec) -> list[str]:
-    """Return the dividing kernel's menus: at another choice than the first its pictures lie over one another."""
+    """Return the dividing kernel's menus: beyond their first choice pictures are laid over one another."""
     assert isinstance(spec.technique, Kernel)
     return [p.name for p in spec.technique.parameters if p.widget.kind == "menu"]
 
@@ -109,7 +109,7 @@ def _methods(sketch: Sketch, sources: list[str], texture: str) -> list[str]:
 
 
 def _titles(sketch: Sketch, source: str, texture: str) -> list[str]:
-    """Return the title of the pass that makes a texture, then of the one whose texture that one goes on from."""
+    """Return the title of the pass that makes a texture, and of each that it goes on from."""
     found: list[str] = []
     spec = sketch.graph.find(source.partition(".")[0])
     while spec is not None and len(found) < len(sketch.graph.passes):
