@@ -5,7 +5,7 @@
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its texel alone
 //            lets any part of a level be made by itself
-//   tested   tests/glsl/test_diamond_square_companion.py, against the technique's own passes
+//   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
 //   agrees   to the last bit, where the compiler fuses no multiplication with an addition;
 //            else to 1e-5 of the land's range
 //
@@ -26,7 +26,7 @@
 #include "generation/diamond_square/lattice.glsl"
 #include "generation/diamond_square/order.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height")
+#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height", agrees = "1e-5")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique

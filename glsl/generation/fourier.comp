@@ -31,7 +31,7 @@
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
 #include "noise/hash.glsl"
-#pragma compute(stages = "0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 5, 7, 8", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 11 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4")
+#pragma compute(stages = "0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 5, 7, 8", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 11 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4", agrees = "1e-5")
 
 uniform float roughness = 2.0; //! slider(0, 4) step(0.01) The r of 1 / f^r
 uniform uint seed = 7u;        //! slider(0, 9999) Which land

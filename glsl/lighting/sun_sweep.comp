@@ -11,7 +11,7 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "maths/land.glsl"
-#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4")
+#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4", agrees = "exact")
 
 uniform sampler2D height;              //! input
 uniform sampler2D daylight;            //! input("black")

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
-from playground.engine.companions import Companions
+from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.plan import Plan, Step, placed
@@ -41,7 +41,7 @@ class Runner:
         self.programs = Programs(ctx)
         self.binder = Binder(ctx, software=info.software)
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
-        self.companions = Companions(ctx, self.kernels)
+        self.compute_variants = ComputeVariants(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
         self.tell: Callable[[Step], None] | None = None  # called before each step runs
         self._plan: Plan | None = None
@@ -78,7 +78,7 @@ class Runner:
     def release(self) -> None:
         """Give back every program, mesh and texture kept."""
         self.draws.release()
-        self.companions.release()
+        self.compute_variants.release()
         self.binder.release()
         self.programs.release()
 
@@ -144,7 +144,7 @@ class Runner:
         if kind == "draw":
             return self.draws.run(job)
         if kind == "compute":
-            return self.companions.run(job)
+            return self.compute_variants.run(job)
         if kind.startswith("plain"):
             return self.kernels.plain(job, self._usual(step))
         return self.kernels.run(job, driver)

@@ -16,7 +16,6 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plan import Plan, repeats_of
 from playground.errors import ContextError, PlaygroundError
-from playground.gpu.wrap import FRAGMENT
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
@@ -54,6 +53,7 @@ class Session(Drafts):
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
         camera_in_file: Camera | None = None,
+        plain: bool = False,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
@@ -61,7 +61,8 @@ class Session(Drafts):
         super().__init__(
             path,
             driver=engine.driver,
-            companions=engine.info.compute and engine.driver != FRAGMENT,
+            variants=engine.plain_forms.kinds,
+            plain=plain,
             values=values,
             edits=edits,
             in_file=in_file,

@@ -107,7 +107,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
     overrides += [(prefix + path, value) for path, value in _kept(technique, own)]
     result = replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=tuple(overrides))
-    flatten(result, compute=False)
+    flatten(result)
     return result
 
 

@@ -13,7 +13,7 @@
 // heights. So a land costs faults times rows, and its texels, but not faults times texels.
 #include "generation/fault_formation/line.glsl"
 #include "maths/whole.glsl"
-#pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height")
+#pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height", agrees = "exact")
 
 uniform sampler2D lines;     //! input
 uniform int faults = 200;    //! slider(0, 1000) How many

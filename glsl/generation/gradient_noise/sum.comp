@@ -11,7 +11,7 @@
 // texels; the coarser ones seldom do, so their sum is worked out apart, and moved along. Only
 // the plain sum of Perlin noise goes this way; the rest is worked out texel by texel.
 #include "noise/columns.glsl"
-#pragma compute(groups = "(size.x + 63) // 64, (size.y + 31) // 32", local = "64, 1", overwrites = "height")
+#pragma compute(groups = "(size.x + 63) // 64, (size.y + 31) // 32", local = "64, 1", overwrites = "height", agrees = "1e-4")
 
 uniform int basis = 0;           //! menu("Perlin", "simplex") On a lattice of squares or of triangles
 uniform int shape = 0;           //! menu("plain", "ridged", "billow", "warped") The sum itself; sharp ridges; soft hills between creases; a sum bent by two others

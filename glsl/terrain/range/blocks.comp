@@ -13,7 +13,7 @@
 // neighbours, then pairs of readers are joined until one is left.
 #include "maths/whole.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "size.x, size.y", local = "8, 8")
+#pragma compute(groups = "size.x, size.y", local = "8, 8", agrees = "exact")
 
 uniform sampler2D height; //! input
 uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest") With nothing, 0 and 1 are told without a look at the land
