@@ -6,8 +6,7 @@
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its texel alone
 //            lets any part of a level be made by itself
 //   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
-//   agrees   to the last bit, where the compiler fuses no multiplication with an addition;
-//            else to 1e-5 of the land's range
+//   agrees   to the last bit, where the compiler fuses no multiplication with an addition
 //
 // The first turn makes the coarse lattice, of 32 spacings a side or fewer, in one group's
 // shared memory. Each further turn makes a lattice of four times as many spacings: a thread

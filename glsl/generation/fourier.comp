@@ -6,7 +6,6 @@
 //   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
 //            others 1992, "Numerical Recipes in C", section 12.3
 //   tested   tests/glsl/test_fourier.py, against scipy.fft and against generation/fourier
-//   agrees   with the passes of generation/fourier within 1e-5
 //
 // Rows y, y + n/4, y + n/2 and y + 3n/4 of the land are two complex rows, and both lie in one
 // row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in

@@ -5,7 +5,7 @@
 //   units    rise over run; -10000 where no land stands towards the sun
 //   source   see lighting/sun_sweep/band.glsl
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
-//   agrees   to the last bit: it does what the kernel beside it does, less often
+//   agrees   exactly: it does what the kernel beside it does, less often
 //
 // A thread has a band. Bands that begin beside the land enter it later.
 #include "lighting/daylight_reading.glsl"

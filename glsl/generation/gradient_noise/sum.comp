@@ -4,8 +4,8 @@
 //   needs    noise/columns.glsl
 //   units    heights without unit, as in the kernel beside it
 //   source   see noise/columns.glsl
-//   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_drivers.py, against the kernel beside it
-//   agrees   within 1e-5 at a gain of 0.5, within 1e-4 at 1: both round places, in another order
+//   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py, against the kernel beside it
+//   agrees   best at a low gain: both round places, in another order
 //
 // A thread walks 32 rows of one column. The two finest octaves cross a lattice row every few
 // texels; the coarser ones seldom do, so their sum is worked out apart, and moved along. Only

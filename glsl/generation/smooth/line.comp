@@ -5,7 +5,7 @@
 //   units    as the heights
 //   source   a moving sum; derived here
 //   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
-//   agrees   within 2e-6 for heights in 0..1: the sum gathers roundings as it slides
+//   agrees   for heights in 0..1: the sum gathers roundings as it slides
 //
 // Each thread walks a run of texels. It sums one whole window, then adds what comes in and
 // takes away what goes out. A run is as long as its first window, so that the window costs

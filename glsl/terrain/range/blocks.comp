@@ -5,8 +5,8 @@
 //   units    as the heights
 //   source   a tree reduction in shared memory, as in M. Harris 2007, "Optimizing Parallel
 //            Reduction in CUDA"
-//   tested   tests/glsl/test_drivers.py, against terrain/range/blocks.glsl
-//   agrees   to the last bit: the lowest of numbers is the same in any order
+//   tested   tests/glsl/test_fast_variants.py, against terrain/range/blocks.glsl
+//   agrees   exactly: the lowest of numbers is the same in any order
 //
 // The kernel beside it has one thread walk a whole block. Here a work group shares the block:
 // each reader takes every eighth texel of every eighth row, so that neighbours read
