@@ -43,7 +43,8 @@ LONGEST = 8.0
 
 _CELLS = 4096  # sides are multiples of SIDE / _CELLS, so that GLSL can divide them by a land's texels
 _MASK = 2**32 - 1
-_SALT = zlib.crc32(b"delaunay")  # as every kernel that draws has one, see noise/hash.glsl
+SALT = zlib.crc32(b"delaunay")
+"""Added to the seed, as every kernel that draws adds one of its own (noise/hash.glsl)."""
 _OUTSIDE = -1
 
 
@@ -214,7 +215,7 @@ class _Growing:
         return (2 * x + whole) // (2 * whole), (2 * y + whole) // (2 * whole)
 
     def _drawn(self, point: int, which: int) -> tuple[int, int, int]:
-        return hash3(point, which, self.rules.seed + _SALT & _MASK)
+        return hash3(point, which, self.rules.seed + SALT & _MASK)
 
     def _height(self, triangle: int, area: int, point: int, x: int, y: int) -> float:
         number = (self._drawn(point, 0)[0] >> 8) / 2**24

@@ -37,7 +37,12 @@ def discs(on_gpu):
     def make(extent, **values):
         v = DEFAULTS | values
         index = np.arange(v["iterations"], dtype=np.uint32)
-        bits = on_gpu("noise/hash.glsl", "hash3(uvec3(i, 0u, s))", i=index, s=np.uint32(v["seed"] + salt("generation/circles")))
+        bits = on_gpu(
+            "noise/hash.glsl",
+            "hash3(uvec3(i, 0u, s))",
+            i=index,
+            s=np.uint32(v["seed"] + salt("generation/circles")),
+        )
         numbers = (bits >> 8) / 2.0**24
         low, high = sorted((v["smallest"], v["largest"]))
         share = np.interp(numbers[:, 2], [0, 1], [low, high])

@@ -138,7 +138,9 @@ def test_both_drivers_and_both_methods_give_the_same_bits(ctx, land):
 def test_heights_are_the_hash_s_numbers(any_engine, land, python_random):
     """noise/hash.glsl's random(ivec2(point, 0), seed + salt), for points numbered after the four corners."""
     made = triangulate(Rules(points=50, seed=123))
-    np.testing.assert_array_equal(made.heights[4:], python_random(np.arange(4, 54), 0, 123 + crc32(b"delaunay")))
+    np.testing.assert_array_equal(
+        made.heights[4:], python_random(np.arange(4, 54), 0, 123 + crc32(b"delaunay"))
+    )
     table = any_engine.read(land(points=50, seed=123), "land.triangulation:places").reshape(-1, 4)
     np.testing.assert_array_equal(table[:54, 2], made.heights.astype(np.float32))
     np.testing.assert_array_equal(table[:54, :2], made.places)

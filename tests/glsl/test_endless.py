@@ -103,7 +103,11 @@ def detail_twin(node, side=384, frequency=6, octaves=6, gain=0.45, seed=7):
         period = frequency * 2**k
         x, y = (n % side / side * period + k * shift for n, shift in zip(node, (0.618, 0.382), strict=True))
         x, y = ((int(np.floor(p)), p - np.floor(p)) for p in (x, y))
-        noise = blended(x, y, lambda a, b, p=period, k=k: pcg(a % p, b % p, seed + salt("generation/endless/detail") + 101 * k))
+        noise = blended(
+            x,
+            y,
+            lambda a, b, p=period, k=k: pcg(a % p, b % p, seed + salt("generation/endless/detail") + 101 * k),
+        )
         total += gain**k * (1 - abs(noise)) ** 2
         strengths += gain**k
     return total / strengths

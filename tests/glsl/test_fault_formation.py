@@ -29,9 +29,7 @@ def drawn(on_gpu):
 
     def make(faults, seed):
         index, key = np.arange(faults, dtype=np.uint32), np.uint32(seed + salt("generation/fault_formation"))
-        one, two = (
-            on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=key) for k in (0, 1)
-        )
+        one, two = (on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=key) for k in (0, 1))
         return one[:, :2] >> 20, two[:, :2] >> 20, (one[:, 2] >> 8) / 2.0**24
 
     return make

@@ -44,7 +44,9 @@ def one_layer(size, frequencies, drawn, smooth):
     """Return a layer; ``drawn(x, y)`` are the numbers of the random layer."""
     nx, ny = size
     land = np.zeros((ny, nx))
-    keys = [[read_at(i, n, frequency) for i in range(n)] for n, frequency in zip(size, frequencies, strict=True)]
+    keys = [
+        [read_at(i, n, frequency) for i in range(n)] for n, frequency in zip(size, frequencies, strict=True)
+    ]
     xs, ys = (sorted({k for pair in axis for k in pair}) for axis in keys)
     numbers = dict(zip([(x, y) for y in ys for x in xs], drawn(*np.meshgrid(xs, ys)).ravel(), strict=True))
     for j in range(ny):

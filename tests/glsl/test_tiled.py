@@ -62,7 +62,9 @@ def tile_of(python_random):
             y_intervals = max(round(x_intervals * (height - 1) / (width - 1)), 1)
             xs, across = weights_on_nodes(width, x_intervals, tiles)
             ys, up = weights_on_nodes(height, y_intervals, tiles)
-            layer = up @ python_random(*np.meshgrid(xs, ys), SEED + salt("generation/layered_noise")) @ across.T
+            layer = (
+                up @ python_random(*np.meshgrid(xs, ys), SEED + salt("generation/layered_noise")) @ across.T
+            )
             if mended and tiles > 1:
                 layer = drawn_anew(drawn_anew(layer, x_intervals).T, y_intervals).T
             total = total + persistence ** (k + 1) * layer
