@@ -31,7 +31,7 @@
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique
 uniform int random = 0;         //! menu("centred", "positive") As in the technique
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) As in the technique
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") As in the technique
 uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the technique
 
 const int LANES = 32;

@@ -120,8 +120,7 @@ def run(
         live = Live(window, session, watcher, rememberer, Storing(session, keeps))
         if found.at is not None:
             live.place.stand_at(found.at)
-        density = window.scale * window.density
-        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
+        live.lessons.begin(lesson, language, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -288,7 +287,6 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
-        self.lessons.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size

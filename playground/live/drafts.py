@@ -24,12 +24,14 @@ from playground.live.files import watched
 from playground.live.stages import Stage, Tester, explained
 from playground.live.sunlight import suns_of, turned
 from playground.live.words import Said, said_by_files
+from playground.sketch.assign import LAND
 from playground.sketch.find import find
 from playground.sketch.kept import KeptTechniques
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
+from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
 
 
@@ -260,6 +262,15 @@ class Drafts(ABC):
             fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
             others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
             self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+
+    def tidy(self) -> None:
+        """Write what is set by hand in the fewest digits that a shader reads as the same numbers."""
+
+        def tidied(edits: Edits) -> Edits:
+            return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
+
+        if self.shown is not None and tidied(self.shown.edits) != self.shown.edits:
+            self._edit(tidied)
 
     def unset(self, *paths: str) -> None:
         """Give parameters back the file's values."""
