@@ -45,6 +45,7 @@ from playground.commands.arguments import (
 )
 from playground.errors import PlaygroundError, nearest
 from playground.sketch.model import DEFAULT_PICTURE
+from playground.streams import let_go, open_streams
 from playground.terminal import complain, note
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -75,6 +76,7 @@ app = typer.Typer(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     given = sys.argv[1:] if arguments is None else list(arguments)
+    open_streams()
     output = sys.stdout
     try:
         status = app(given, prog_name="playground", standalone_mode=False)
@@ -89,18 +91,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     except BrokenPipeError:
-        # What is still in the buffer cannot be written either; without this, Python says so as it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except SystemExit as left:
-        # Completion leaves so; and typer, having silenced the output, where a pipe has no reader.
-        return BROKEN_PIPE if sys.stdout is not output else int(left.code or 0)
+        # Completion leaves so; and rich and typer, where a pipe has no reader.
+        gone = isinstance(left.__context__, OSError) or sys.stdout is not output
+        return BROKEN_PIPE if gone else int(left.code or 0)
     except MemoryError:
         complain("out of memory; choose a smaller --size, or a smaller land, as --set size=513")
         return MISTAKE
     except OSError as error:
         complain(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
         return MISTAKE
+    finally:
+        # What is still in their buffers cannot be written either; without this, Python says so as it ends.
+        for stream in (output, sys.stderr):
+            let_go(stream)
     return int(status or 0)
 
 

@@ -21,6 +21,7 @@ LAYERS = (
     ("cli",),
     ("commands",),
     ("terminal",),
+    ("streams",),
     ("live",),
     ("reduce",),
     ("shots",),

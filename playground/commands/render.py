@@ -34,6 +34,7 @@ from playground.commands.film import Asked, make_many, read_count, read_fps, rea
 from playground.errors import DataError, ParameterError
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
@@ -312,6 +313,8 @@ def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
+        if isinstance(sys.stdout, Nowhere):
+            raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
     if not picture.output:
         parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]
