@@ -247,6 +247,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         if not picture.texture and is_large(engine, sketch, size):
             if picture.profile:
                 raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+            if picture.output != "-" and target.suffix.lower() != ".png":
+                raise DataError(
+                    "a picture this large is drawn in parts, and written as .png", file=picture.output
+                )
             _draw_large(engine, moment, size, target, picture.output == "-")
         else:
             with busy(f"rendering {sketch.name}"):
@@ -276,7 +280,7 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
 
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
-        frame.save(target)
+        frame.save(target, say=note)
 
 
 def _say_not_finite(engine: Engine) -> None:
