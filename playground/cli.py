@@ -3,7 +3,7 @@
 Standard output holds the answer (a path, a table, JSON); notes, progress and errors go to
 standard error. A mistake of the user's is one sentence, never a traceback. Exit status:
 0 well; 1 ``check`` or ``doctor`` found something; 2 a mistake in what was asked; 130
-interrupted; 141 the reader of a pipe has gone.
+interrupted; 141 the reader of a pipe has gone; 143 and 129 ended by SIGTERM or SIGHUP.
 
 What is heavy (NumPy, OpenGL, tables) is imported by the command that needs it.
 """
@@ -44,6 +44,7 @@ from playground.commands.arguments import (
     read_device,
 )
 from playground.errors import PlaygroundError, nearest
+from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
 from playground.terminal import complain, note
@@ -75,8 +76,13 @@ app = typer.Typer(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
-    given = sys.argv[1:] if arguments is None else list(arguments)
     open_streams()
+    with ended_by_signals() as came:
+        status = _status(sys.argv[1:] if arguments is None else list(arguments))
+    return 128 + came[-1] if came else status
+
+
+def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
         status = app(given, prog_name="playground", standalone_mode=False)

@@ -8,8 +8,7 @@ each. Alpha is dropped, and counted: ``Video.dropped``.
 
 from __future__ import annotations
 
-import secrets
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.images.endings import VIDEO_ENDINGS
 from playground.images.files import reason
+from playground.partial import partial_file
 from playground.paths import shown
 
 if TYPE_CHECKING:
@@ -73,12 +73,13 @@ class Video:
         self.warning = ""  # a sentence where the finished file could not be checked
         self._ending = check_video(self.path, size, fps, quality)
         self._av = _pyav()
-        self._temporary = self.path.with_name(f".{self.path.name[:40]}.{secrets.token_hex(6)}.part")
-        try:
+        with ExitStack() as stack:
+            try:
+                self._partial = stack.enter_context(partial_file(self.path))
+            except OSError as error:
+                raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
             self._open(quality)
-        except BaseException:
-            self._temporary.unlink(missing_ok=True)
-            raise
+            self._open_partial = stack.pop_all()
 
     def __enter__(self) -> Video:
         return self
@@ -93,7 +94,7 @@ class Video:
                 raise Stopped(self._shorter(), self.added) from None
         finally:
             self._container.close()
-            self._temporary.unlink(missing_ok=True)
+            self._open_partial.close()
 
     def add(self, picture: NDArray[np.uint8]) -> None:
         """Encode the next picture, (height, width, 3 or 4) bytes, top row first, sRGB."""
@@ -114,7 +115,7 @@ class Video:
         moved = {"movflags": "+faststart"} if form == "mp4" else {}
         try:
             self._container: av.container.OutputContainer = self._av.open(
-                str(self._temporary), "w", format=form, options=moved
+                str(self._partial.path), "w", format=form, options=moved
             )
             self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
         except OSError as error:
@@ -162,7 +163,7 @@ class Video:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._close()
         try:
-            found, rate = count_pictures(self._temporary)
+            found, rate = count_pictures(self._partial.path)
         except KeyboardInterrupt:
             self._name(self._first(self.added))
             raise Stopped(self._first(self.added), self.added) from None
@@ -192,7 +193,7 @@ class Video:
 
     def _name(self, path: Path) -> None:
         try:
-            self._temporary.replace(path)
+            self._partial.rename(path)
         except OSError as error:
             raise DataError(f"cannot be written: {reason(error)}", file=path) from None
 
@@ -208,7 +209,7 @@ class Video:
             return None
         self._close()
         with suppress(Exception, KeyboardInterrupt):  # then the count is what was added
-            self.added, _ = count_pictures(self._temporary)
+            self.added, _ = count_pictures(self._partial.path)
         path = self._first(self.added)
         self._name(path)
         return path
