@@ -31,9 +31,9 @@ class Theme:
         regular, code = fonts / "Roboto" / "Roboto-Regular.ttf", fonts / "Inconsolata-Medium.ttf"
         symbols = fonts / "latex" / "latinmodern-math.otf"
         # What a font lacks is taken from the next: Roboto has no arrows, Inconsolata no Greek.
-        self.text = _font(regular, code, symbols)
-        self.bold = _font(fonts / "Roboto" / "Roboto-Bold.ttf", code, symbols)
-        self.italic = _font(fonts / "Roboto" / "Roboto-RegularItalic.ttf", code, symbols)
+        self.text = _font(regular, symbols, code)
+        self.bold = _font(fonts / "Roboto" / "Roboto-Bold.ttf", symbols, code)
+        self.italic = _font(fonts / "Roboto" / "Roboto-RegularItalic.ttf", symbols, code)
         self.code = _font(code, regular, symbols)
         self.scale = 0.0  # of text and margins
         self.rescale(1.0)
