@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from playground.live.begin import first_draft
 from playground.live.clock import Clock
 from playground.live.edits import Draft, Edits, reload_draft, taken
 from playground.live.files import watched
-from playground.live.stages import Stage, Tester, explained
+from playground.live.stages import Stage, Tester, explained, gone
 from playground.live.sunlight import suns_of, turned
 from playground.live.words import Said, said_by_files
 from playground.sketch.find import find
@@ -31,6 +31,8 @@ from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
 from playground.sketch.stand_ins import stand_ins
+
+_NAMED = 2  # files that are named of those saved at once
 
 
 class Drafts(ABC):
@@ -49,7 +51,7 @@ class Drafts(ABC):
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self.path = find(path) if path else find("")
+        self.path = find(path or "").absolute()  # the current folder may be deleted meanwhile
         self.clock = Clock()
         self.shown: Draft | None = None
         self.coming: Draft | None = None
@@ -71,6 +73,7 @@ class Drafts(ABC):
         self._trial = trial
         self._now = now
         self._started = 0.0  # when what is coming began to be read
+        self._subject = self.path.name  # what it is read, or tried, for
         self._trial_seconds = 0.0
         self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
         self._coming_notes: list[str] = []
@@ -96,6 +99,11 @@ class Drafts(ABC):
         return self.stage is Stage.TRIAL
 
     @property
+    def trying(self) -> tuple[str, float] | None:
+        """What is tried just now, a file or a technique, and for how long [s]; None while nothing is."""
+        return (self._subject, self._now() - self._started) if self.testing else None
+
+    @property
     def leaves(self) -> bool:
         """Whether another sketch was opened, and the one before is still shown."""
         return self._another
@@ -113,8 +121,12 @@ class Drafts(ABC):
 
     # ── files ────────────────────────────────────────────────────────────────
 
-    def reload(self) -> None:
-        """Read the files again; what is new in them is shown once it has proved good."""
+    def reload(self, changed: Iterable[Path] = ()) -> None:
+        """Read the files again; what is new in them is shown once it has proved good.
+
+        ``changed``: the files that were saved, where that is known.
+        """
+        self._subject = _listed(changed) or self.path.name
         self.read_at = time.time()
         self._started = self._now()
         try:
@@ -128,7 +140,7 @@ class Drafts(ABC):
             )
         except Exception as error:
             self._drop_coming()
-            self._file_error = explained(error)
+            self._file_error = gone(self.path) or explained(error, self.path)
             return
         if self.shown is not None and loaded == self.shown.file and not self._another:
             self._drop_coming()
@@ -155,7 +167,7 @@ class Drafts(ABC):
         by hand in the other; ``in_file`` and ``camera_in_file``: what its files said then; ``texts``:
         what stands in for some of them.
         """
-        self.path, self.texts = find(path), texts or {}
+        self.path, self.texts = find(path).absolute(), texts or {}
         if not keep:
             self._initial, self._in_file, self._another = edits or Edits(), dict(in_file or {}), True
             self._camera_in_file = camera_in_file
@@ -172,11 +184,11 @@ class Drafts(ABC):
         """Fill a pass with another technique, once that has proved good."""
         if self.shown is None:
             return
-        self._started = self._now()
+        self._started, self._subject = self._now(), use
         try:
             self._propose(self.shown.choose(pass_name, use), [])
         except PlaygroundError as error:
-            self._file_error = error
+            self._file_error = explained(error, self.path)
 
     def _propose(self, draft: Draft, notes: list[str]) -> None:
         self.coming, self._coming_notes = draft, notes
@@ -272,11 +284,11 @@ class Drafts(ABC):
         if edits.techniques == self.shown.edits.techniques:
             self._edit(lambda old: replace(edits, techniques=old.techniques))
             return
-        self._started = self._now()
+        self._started, self._subject = self._now(), self.path.name
         try:
             self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
         except PlaygroundError as error:
-            self._file_error = error
+            self._file_error = explained(error, self.path)
 
     def look(self, camera: Camera) -> None:
         """See the land from another camera."""
@@ -324,4 +336,12 @@ class Drafts(ABC):
             self._trial_seconds = report.seconds
             return
         self.stage = Stage.FAILED
-        self._file_error = report.error or PlaygroundError("the trial failed without saying why")
+        error = report.error or PlaygroundError("the trial failed without saying why")
+        self._file_error = explained(error, self.path)
+
+
+def _listed(files: Iterable[Path]) -> str:
+    """Return the names of files in a few words: "land.glsl", "land.glsl, wave.glsl and 2 more"."""
+    names = sorted({path.name for path in files})
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more

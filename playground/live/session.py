@@ -235,7 +235,7 @@ class Session(Drafts):
         if self._lost_over == drawn and self._picture_size is not None:
             self._drawn = self._wanted(self._picture_size)
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
-            self._draw_error = ContextError(message)
+            self._draw_error = explained(ContextError(message), self.path)
         self._lost_over = drawn
         self.notes.append("the graphics driver was reset; everything was built anew")
 
@@ -281,7 +281,7 @@ class Session(Drafts):
                 raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             self.stage = Stage.FAILED
-            self._file_error = explained(error)
+            self._file_error = explained(error, self.path)
             return
         self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
@@ -303,7 +303,7 @@ class Session(Drafts):
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)
             self._draw_error = None
         except Exception as error:
-            self._draw_error = explained(error)
+            self._draw_error = explained(error, self.path)
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
         """Draw; where the processor draws, hastily first: see ``live.hasty``."""
