@@ -27,18 +27,23 @@ def keeps_keys(actions: Actions) -> bool:
         actions.awaits_field = 0
         return True
     actions.awaits_field -= 1
-    actions.typed_ahead += "".join(chr(letter) for letter in imgui.get_io().input_queue_characters)
+    actions.typed_ahead += letters()
     return True
 
 
-def with_typed_ahead(actions: Actions, text: str, before: str) -> str:
+def with_typed_ahead(actions: Actions, text: str, before: str, typed: str) -> str:
     """Return the text of the field that was drawn last, after what was typed before it took the keys.
 
-    ``before``: its text before this turn, which what is typed replaces.
+    ``before``: its text before this turn, which what is typed replaces; ``typed``: this turn's letters,
+    of which the field took those itself that came once it had the keys.
     """
-    if not actions.typed_ahead or not imgui.is_item_active():
+    if not imgui.is_item_active():
         return text
     ahead, actions.typed_ahead = actions.typed_ahead, ""
+    if actions.awaits_field and imgui.is_item_activated():
+        ahead += typed  # imgui drops those of the turn in which a field is given the keys
+    if not ahead:
+        return text
     imgui.get_current_context().input_text_state.reload_user_buf_and_move_to_end()
     return ahead + (text if text != before else "")
 
@@ -49,6 +54,11 @@ def left_a_field() -> bool:
     return context.active_id_previous_frame not in (0, None) and (
         context.active_id_previous_frame == context.input_text_state.id_
     )
+
+
+def letters() -> str:
+    """Return what is typed in this turn and was not taken by a field yet."""
+    return "".join(chr(letter) for letter in imgui.get_io().input_queue_characters)
 
 
 def _is_active() -> bool:

@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import ParameterError
 from playground.live import theme
 from playground.live.actions import Actions
-from playground.live.field import await_field, with_typed_ahead
+from playground.live.field import await_field, letters, with_typed_ahead
 from playground.live.listing import Item, Values
 from playground.live.panel_memory import Memory
 from playground.live.rows import cross, row, slot
@@ -117,8 +117,9 @@ def _entry(item: Item, memory: Memory, actions: Actions) -> None:
         imgui.set_keyboard_focus_here()
     flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
     imgui.set_next_item_width(imgui.calc_item_width())
+    typed = letters()
     entered, text = imgui.input_text(f"{item.label}-typed", memory.entry_text, flags)
-    memory.entry_text = with_typed_ahead(actions, text, memory.entry_text)
+    memory.entry_text = with_typed_ahead(actions, text, memory.entry_text, typed)
     opened, memory.entry_opens = memory.entry_opens, False
     if opened:
         return
