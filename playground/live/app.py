@@ -213,7 +213,8 @@ class Live:
             self.guard.run("watching the files", self.follower.follow, None)
 
     def _take_saved(self) -> None:
-        self.follower.take(self.actions.painting.files)
+        if self.follower.take(self.actions.painting.files):
+            self._settling = _SETTLES  # an error grows to its size
 
     def _stays(self) -> bool:
         """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""

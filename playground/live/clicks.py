@@ -16,7 +16,7 @@ from collections.abc import Callable
 APART = 0.3
 """[s] that the clicks of a double click are apart at most."""
 _AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is told of by then
-_NEVER, _ALWAYS = 0.0, 1e9  # [s] what imgui is to take for the longest time between the two
+_NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time between the two
 
 
 class Clicks:

@@ -63,7 +63,6 @@ def gone(sketch: Path) -> SketchError | None:
     """Return what to say of a sketch whose file has vanished; None while it is there."""
     if sketch.is_file():
         return None
-    folder = sketch.parent
-    what = "the file is gone" if folder.is_dir() else f"the file is gone, and so is its folder {folder}"
-    ways = "put it back, or drop another sketch on the window"
-    return SketchError(f"{what}: moved, renamed or deleted; {ways}", file=sketch)
+    where = "from" if sketch.parent.is_dir() else "with its folder"
+    ways = "moved, renamed or deleted; put it back, or drop another sketch on the window"
+    return SketchError(f"the file is gone {where} {sketch.parent}: {ways}", file=sketch)

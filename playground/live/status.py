@@ -58,6 +58,7 @@ class Status:
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(found) for found in not_finite],
             "runs": dict(session.engine.runs),
+            "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": session.trying[0] if session.trying and session.trying[1] >= PATIENCE else "",
             "layers": open_layers(actions),
         }

@@ -129,7 +129,8 @@ class Window:
         self.theme.rescale(self.scale)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
-        imgui.get_io().mouse_double_click_time = self._clicks.longest()
+        io, longest = imgui.get_io(), self._clicks.longest()
+        io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
         imgui.new_frame()
         if imgui.is_mouse_clicked(0):
             self._clicks.taken()

@@ -117,7 +117,7 @@ def test_a_folder_that_was_moved_away_says_so(folder: Path, any_engine: Engine) 
     folder.rename(folder.with_name("elsewhere"))
     session.reload()
     said = str(session.error)
-    assert "the file is gone, and so is its folder" in said and str(folder) in said
+    assert "the file is gone with its folder" in said and str(folder) in said
     session.release()
 
 
@@ -151,7 +151,7 @@ with Engine(open_context()) as engine:
         timeout=120,
     )
     assert done.returncode == 0, done.stderr
-    assert "the file is gone, and so is its folder" in done.stdout
+    assert "the file is gone with its folder" in done.stdout
 
 
 def test_problems_of_no_file_have_a_heading() -> None:

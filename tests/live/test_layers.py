@@ -142,7 +142,8 @@ def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) ->
     bare.point("##height.level", 0.2)
     for down in (True, False, True):
         bare.press(down)
-    for letter, key in (("0", imgui.Key._0), (".", imgui.Key.period), ("2", imgui.Key._2), ("5", imgui.Key._5)):
+    keys = imgui.Key._0, imgui.Key.period, imgui.Key._2, imgui.Key._5
+    for letter, key in zip("0.25", keys, strict=True):
         for down in (True, False):
             io.add_key_event(key, down)
             if down:
