@@ -75,6 +75,8 @@ class Drafts(ABC):
         self._started = 0.0  # when what is coming began to be read
         self._subject = self.path.name  # what it is read, or tried, for
         self._trial_seconds = 0.0
+        self._file_by_hand = False  # what is coming has a file that was chosen by hand
+        self._own_files: set[Path] = set()  # written by this process itself, and so known to be good
         self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
         self._coming_notes: list[str] = []
         self._file_error: PlaygroundError | None = None  # of what is coming
@@ -146,6 +148,8 @@ class Drafts(ABC):
             self._drop_coming()
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
+            if self._trial is not None and self._reads_anew(self.shown.sketch):
+                self._propose(self.shown, [])
             return
         if self._companions and self.shown is not None and not self._another:
             notes = [*notes, *stand_ins(self.shown.file, loaded)]
@@ -191,7 +195,7 @@ class Drafts(ABC):
             self._file_error = explained(error, self.path)
 
     def _propose(self, draft: Draft, notes: list[str]) -> None:
-        self.coming, self._coming_notes = draft, notes
+        self.coming, self._coming_notes, self._file_by_hand = draft, notes, False
         self._file_error, self._trial_seconds = None, 0.0
         if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
@@ -222,6 +226,10 @@ class Drafts(ABC):
     @abstractmethod
     def _draws_anew(self, sketch: Sketch) -> bool:
         """Say whether the driver would be given anything that it has not drawn already."""
+
+    @abstractmethod
+    def _reads_anew(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with."""
 
     @abstractmethod
     def _forget_view(self) -> None:
@@ -317,12 +325,42 @@ class Drafts(ABC):
             left = tuple(v for v in self.shown.edits.values if v[0] in locked)
             self.restore(replace(self.shown.edits, values=left, techniques=()))
 
+    def vouch_for(self, path: Path) -> None:
+        """Take a file that this process writes itself for good: it needs no trial."""
+        self._own_files.add(path)
+
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
         self._revision += 1
         if self.shown is not None:
-            self.shown = self.shown.with_edits(change(self.shown.edits))
+            edited = self.shown.with_edits(change(self.shown.edits))
+            if self._names_another(edited) and self._trial is not None:
+                self._drop_file_set_by_hand()
+                if self._reads_anew(edited.sketch):
+                    self._try_file_set_by_hand(change)
+                    return
+            self.shown = edited
         if self.coming is not None:
             self.coming = self.coming.with_edits(change(self.coming.edits))
+
+    def _names_another(self, edited: Draft) -> bool:
+        """Say whether an edit sets another text, as the name of a file is one."""
+        before = self.shown.edits.values if self.shown is not None else ()
+        return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before})
+
+    def _try_file_set_by_hand(self, change: Callable[[Edits], Edits]) -> None:
+        """Have a file that was chosen by hand tried first: what it does to a reader, nobody knows yet."""
+        draft = self.coming or self.shown
+        assert draft is not None
+        self._started, self._subject = self._now(), self.path.name
+        self._propose(draft.with_edits(change(draft.edits)), self._coming_notes)
+        self._file_by_hand = True
+
+    def _drop_file_set_by_hand(self) -> None:
+        """Forget a file that was chosen by hand and failed: another is chosen in its place."""
+        if self._file_by_hand and self.stage is Stage.FAILED:
+            self._drop_coming()
+            self._file_error = None
+        self._file_by_hand = False
 
     def _hear_trial(self) -> None:
         if self.stage is not Stage.TRIAL or self._trial is None:

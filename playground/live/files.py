@@ -18,7 +18,12 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
 
     A file that is missing is among them, where it is expected.
     """
-    found = {Path(name) for name in sketch.files}
+    return frozenset({Path(name) for name in sketch.files}) | data_files(sketch)
+
+
+def data_files(sketch: Sketch) -> frozenset[Path]:
+    """Return the images and elevation files that a sketch's parameters name, there or missing."""
+    found: set[Path] = set()
     values = values_of(sketch)
     for prefix, kernel in kernels_of(sketch.graph):
         for parameter in kernel.parameters:

@@ -20,6 +20,7 @@ from playground.gpu.wrap import FRAGMENT
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
+from playground.live.files import data_files
 from playground.live.hasty import hastily
 from playground.live.maps import fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
@@ -27,6 +28,7 @@ from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
 from playground.sketch.model import Camera, Sketch, Value, kernels_of
+from playground.sketch.places import Signature, signature
 
 if TYPE_CHECKING:
     import moderngl
@@ -86,6 +88,8 @@ class Session(Drafts):
         self._picture_size: tuple[int, int] | None = None  # asked for last
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
+        self._read: dict[Path, Signature | None] = {}  # images and elevation files that were drawn with
+        self._read_for: Sketch | None = None  # the sketch that these are the files of
         self.reload()
 
     @property
@@ -191,7 +195,7 @@ class Session(Drafts):
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
         """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
-        if self.sketch is None:
+        if self.sketch is None or self._awaits_data(self.sketch):
             return None
         try:
             steps = self._steps_for(self.sketch)
@@ -211,7 +215,8 @@ class Session(Drafts):
         if self.stage is Stage.DRAW:
             self._draw_coming(size)
         if self.shown is not None and self._wanted(size) != self._drawn:
-            self._draw_shown(size)
+            if not self._awaits_data(self.shown.sketch):
+                self._draw_shown(size)
         elif self.hasty and self.shown is not None and self._now() - self._drawn_at >= REST:
             self._draw_shown(size, in_full=True)
         return self._picture.texture
@@ -255,7 +260,7 @@ class Session(Drafts):
         Other values do: they say how often a loop turns.
         """
         texture = self._picture.texture
-        if self.shown is None or texture is None:
+        if self.shown is None or texture is None or self._reads_anew(sketch):
             return True
         chosen = hastily(sketch) if self.hasty else sketch
         try:
@@ -263,6 +268,13 @@ class Session(Drafts):
             return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
         except PlaygroundError:
             return True
+
+    def _reads_anew(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with: the trial is to read them first."""
+        return any(
+            path not in self._own_files and self._read.get(path, ()) != signature(path)
+            for path in data_files(sketch)
+        )
 
     def _forget_view(self) -> None:
         self.map = self._next_view = None
@@ -283,6 +295,7 @@ class Session(Drafts):
             self.stage = Stage.FAILED
             self._file_error = explained(error, self.path)
             return
+        self._note_read(self.coming.sketch)
         self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
@@ -310,12 +323,23 @@ class Session(Drafts):
         chosen = hastily(sketch) if self.engine.info.software and not in_full else sketch
         self.engine.runner.frame = self.draws
         texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
+        if self._read_for is not sketch:
+            self._note_read(sketch)
         self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1
         self.times |= self.engine.times
         self.plan = self.engine.plan
+
+    def _awaits_data(self, sketch: Sketch) -> bool:
+        """Say whether a file that a sketch reads is another by now, which the trial has not read yet."""
+        return self._trial is not None and self._reads_anew(sketch)
+
+    def _note_read(self, sketch: Sketch) -> None:
+        """Remember the data that a sketch was drawn with."""
+        self._read_for = sketch
+        self._read |= {path: signature(path) for path in data_files(sketch)}
 
     def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
         try:
