@@ -31,6 +31,8 @@ uniform vec3 snow = vec3(0.800, 0.840, 0.900);    //! colour group("Colours") Sn
 uniform float contrast = 0.35;      //! slider(0, 1) step(0.01) group("Colours") How much lighter and darker all of them become in patches
 uniform int shown = 0;              //! menu("colours", "weights") group("Colours") The ground, or what each colour counts: rock red, wood green, snow blue
 
+const uint SALT = 0xd657708du;  // CRC-32 of "texturing/endless_ground"
+
 // A random number at each point of a lattice, -1..1, smooth between them.
 float patch_at(ivec2 cell, vec2 share, uint which) {
     share = share * share * (3.0 - 2.0 * share);
@@ -78,7 +80,7 @@ vec4 kernel(ivec2 texel) {
     float slope = degrees(atan(length(relief * slope_at(height, place, spacing_of(grid, extent), CENTRAL_DIFFERENCES))));
     int finer = max((size.x - 1) / max(grid.x - 1, 1), 1);
     ivec2 node = node_of(texel, part, apron * finer, size);
-    vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u);
+    vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u + SALT);
     float broad = both.x;
     float fine = both.y;
     float level = metres + ragged * broad;

@@ -95,7 +95,7 @@ class _Text:
 def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
-        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a companion's is not
+        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
     header += [
         kernel.samples,

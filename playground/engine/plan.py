@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 
@@ -161,7 +161,7 @@ def make_plan(
     *,
     frame_size: tuple[int, int],
     time: float = 0.0,
-    compute: bool = False,
+    variants: Collection[str] = (),
     steps: Mapping[str, int] | None = None,
     wanted: str = "",
     interpolated: bool | None = None,
@@ -169,17 +169,18 @@ def make_plan(
 ) -> Plan:
     """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
 
-    ``compute`` lets companions stand for whole techniques, but not for those around the
-    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of
-    a technique will do where one pass inside it repeats). What a stopped pass has not reached is
-    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
-    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
-    kernel's header.
+    ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
+    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+    path (that of a technique will do where one pass inside it repeats). What a stopped pass has
+    not reached is ``interpolated`` in pictures and not in what is ``wanted``, unless told (see
+    ``between``). Raises ``SketchError`` or ``DataError`` at the pass that is wrong,
+    ``ShaderError`` at a kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
-    flat = flatten(sketch, compute=compute, opened=(*stopped, *filter(None, [wanted])))
+    opened = (wanted,) if wanted else ()
+    flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
     fills = not wanted if interpolated is None else interpolated
     return _Planner(sketch, flat, size, seconds, stopped, fills=fills).plan()
 
@@ -189,7 +190,7 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
-    nodes = flatten(sketch, compute=False).nodes
+    nodes = flatten(sketch).nodes
     found = repeated_path(str(path), nodes)
     if found is None:
         hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
@@ -245,7 +246,7 @@ def _turns(path: str, count: object) -> int:
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
     """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
 
@@ -377,7 +378,7 @@ class _Planner:
         return values
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        """Return a leaf's size; a companion's is that of the pass whose output it gives."""
+        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
         path = leaf.path
         technique: Technique = self.flat.graphs.get(path, leaf.kernel)
         while isinstance(technique, Graph):

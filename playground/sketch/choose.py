@@ -109,7 +109,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     graph = replace(sketch.graph, passes=passes)
     main = tuple(path for path in sketch.main if _is_there(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
-    flatten(result, compute=False)
+    flatten(result)
     return result
 
 

@@ -57,7 +57,7 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         **land,
     )
     check_graph(sketch.graph)
-    flatten(sketch, compute=False)
+    flatten(sketch)
     sketch = replace(sketch, main=_main(file, sketch))
     sketch = replace(sketch, presets=_presets(file, sketch))
     sketch = replace(sketch, shots=_shots(file, sketch))
@@ -181,7 +181,7 @@ def read_steps(
     """Return what a table's ``steps`` says of repeated passes: turns by path; raise ``SketchError``."""
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
-        nodes = flatten(sketch, compute=False).nodes
+        nodes = flatten(sketch).nodes
         for path, _ in steps:
             if repeated_path(path, nodes) is None:
                 message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"

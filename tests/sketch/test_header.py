@@ -212,7 +212,7 @@ def test_a_title_is_the_file_s_first_sentence(parse, tmp_path, text, title):
     assert found.title == title
 
 
-def test_sources_draws_and_companions(parse):
+def test_sources_draws_and_compute_variants(parse):
     found = parse('#pragma source("elevation_file", output = "height:r32f")\n')
     assert (found.kind, found.registry, found.outputs[0].name) == ("source", "elevation_file", "height")
     found = parse(

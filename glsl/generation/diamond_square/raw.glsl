@@ -1,7 +1,7 @@
 // generation/diamond_square/raw.glsl -- land by halving a square: its centres, then its edges, over and over.
 //
 //   gives    height, for any land of 2^n + 1 texels a side
-//   needs    noise/hash.glsl, generation/diamond_square/lattice.glsl
+//   needs    noise/finest.glsl, noise/hash.glsl, generation/diamond_square/lattice.glsl
 //   units    heights without unit; not normalised, so that smoothing means something
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1, after Fournier, Fussell and
 //            Carpenter 1982 (Communications of the ACM 25, 6)
@@ -18,6 +18,7 @@
 // The thesis calls the centres' turn "square" in one section and "diamond" in the other:
 // here they are centres and edges.
 #include "generation/diamond_square/lattice.glsl"
+#include "noise/finest.glsl"
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", between = "squares")
 
@@ -61,7 +62,9 @@ float kernel(ivec2 texel) {
     }
     // anchor: height
     float share = float(2 * r) / float(side);
-    float number = sign_of_random == 0 ? random_signed(texel, seed) : random(texel, seed);
+    ivec2 point = finest_point(texel, side);
+    uint which = seed + DIAMOND_SQUARE_SALT;
+    float number = sign_of_random == 0 ? random_signed(point, which) : random(point, which);
     return is_new ? total / (all(inside) ? 4.0 : 3.0) + number * share * smoothing : here;
     // end: height
 }

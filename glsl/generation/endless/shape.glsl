@@ -18,6 +18,8 @@ uniform int layers = 3;            //! slider(1, 8) Layers of hills, each half a
 uniform float persistence = 0.4;   //! slider(0, 1) step(0.01) Height of each layer over the one before
 uniform uint seed = 7u;            //! slider(0, 9999) Which land
 
+const uint SALT = 0xa677a9a0u;  // CRC-32 of "generation/endless/shape"
+
 float hills_at(ivec2 node, int wide, uint which) {
     vec2 share;
     ivec2 cell = cell_of(node, wide, share);
@@ -39,7 +41,7 @@ float kernel(ivec2 texel) {
         // Off the lattice of the layer before by an uneven part of a cell: points of the two never meet.
         int wide = max(hills >> k, 2);
         ivec2 moved = node + k * ivec2((wide * 5) >> 3, (wide * 3) >> 3);
-        total += strength * hills_at(moved, wide, lattice_seed(seed, k));
+        total += strength * hills_at(moved, wide, lattice_seed(seed + SALT, k));
         strengths += strength;
         strength *= persistence;
     }

@@ -42,6 +42,8 @@ uniform float chance = 0.7;           //! slider(0, 1) step(0.01) group("Chance"
 uniform float grain = 120.0;          //! log_slider(1, 2000) unit("m") group("Chance") How wide the largest patches are
 uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which chance
 
+const uint SALT = 0xb9faabefu;  // CRC-32 of "texturing/splat_many"
+
 float rise(float value, float from, float fade) {
     return clamp((value - from) / fade + 0.5, 0.0, 1.0);
 }
@@ -53,7 +55,7 @@ float claim(int number, vec4 band, vec2 site, vec2 patch_place) {
                * rise(site.y, band.z, slope_fade) * rise(-site.y, -band.w, slope_fade);
     // Noise is 0 on its lattice: on one lattice all materials would tie there.
     vec2 moved = patch_place + float(number) * vec2(0.618, 0.382);
-    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5, 64u * seed + 4u * uint(number));
+    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5, 64u * seed + SALT + 4u * uint(number));
     return fits * mix(1.0, clamp(luck, 0.0, 1.0), chance);
 }
 

@@ -42,7 +42,7 @@ def map_of(scene: Scene) -> Map | None:
         return None
     path, _, output = scene.view.partition(":")
     if not output:  # a pass's texture is that of its own name, else its first
-        outputs, last = flatten(scene.sketch, compute=False).outputs[path], path.rpartition(".")[2]
+        outputs, last = flatten(scene.sketch).outputs[path], path.rpartition(".")[2]
         output = last if last in outputs else next(iter(outputs))
     spec = scene.sketch.graph.find("view")
     return Map(f"{path}:{output}", spec.values if spec is not None and spec.use == USE else ())
