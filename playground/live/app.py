@@ -34,6 +34,7 @@ from playground.live.finite import FiniteWatch, draw_not_finite
 from playground.live.follow import Follower
 from playground.live.guard import Guard
 from playground.live.hand import Hand
+from playground.live.interface_size import remembered_size
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.lesson.beside import Lessons
@@ -180,6 +181,8 @@ class Live:
         self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
         self.actions.fills_screen = lambda: self.place.full
         self.actions.opener = Opener(wake)
+        self.actions.interface = remembered_size()
+        self.actions.sign_held = lambda: window.sign_held
         self.guard = Guard(self.actions.say)
         self.terminal = TerminalErrors()
         self.warnings = Warnings(self._review)
@@ -288,6 +291,7 @@ class Live:
         look = window.theme
         window.call(title_of(self.session.path))
         guard.run("taking in what was dropped", lambda: take_dropped(actions, self.place.dropped()), None)
+        window.zoom = actions.interface.size
         window.begin()
         actions.see.begin()
         left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)

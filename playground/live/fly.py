@@ -29,6 +29,7 @@ from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
 from playground.live.hands import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
+from playground.live.interface_size import remembered_size
 from playground.live.picture import Painter
 from playground.live.status import VARIABLE
 from playground.live.window import Window
@@ -79,6 +80,7 @@ def run(
         prefer_software()
     with ExitStack() as stack:
         window = stack.enter_context(Window(f"{sketch.name} – flight", size))
+        window.zoom = remembered_size().size
         engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
         header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
         # A processor draws four samples in four times the time of one.
