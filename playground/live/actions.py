@@ -139,7 +139,9 @@ class Actions:
             self.interface.step(by)
         else:
             self.interface.choose(1.0)
-        self.say(f"text and panels at {self.interface.size:.0%}")
+        what = "text and panels at"
+        self.notices = [notice for notice in self.notices if not notice.text.startswith(what)]
+        self.say(f"{what} {self.interface.size:.0%}")
 
     def rewind(self) -> None:
         """Go back to time 0."""
