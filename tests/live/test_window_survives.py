@@ -19,15 +19,14 @@ import os, sys, time
 from playground.live.app import run
 from playground.live.session import Session
 from imgui_bundle import imgui
-from playground.live import widgets
-slide = widgets._SLIDE[1]
+slide = imgui.slider_float
 def noting(label, *rest):
     answer = slide(label, *rest)
     low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
     with open("slider.txt", "w") as file:
         file.write(f"{label} {low.x + 0.3 * size.x:.0f} {low.y + size.y / 2:.0f}")
     return answer
-widgets._SLIDE[1] = lambda label, *rest: (noting if label == "##height.level" else slide)(label, *rest)
+imgui.slider_float = lambda label, *rest: (noting if label == "##height.level" else slide)(label, *rest)
 if slow := float(os.environ.get("SLOW", "0")):
     draw = Session._draw
     def slowly(*arguments, **named):
