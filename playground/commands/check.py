@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,7 +17,7 @@ from playground.commands.arguments import (
     help_text,
 )
 from playground.errors import counted
-from playground.terminal import painted, progress
+from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -63,7 +62,7 @@ def check(
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
-                print(json.dumps(report.as_json(), ensure_ascii=False), flush=True)
+                print_json(report.as_json(), indent=None)
             else:
                 _print_report(report)
             advance()

@@ -35,6 +35,7 @@ from playground.commands.film import Asked, make_many, read_count, read_fps, rea
 from playground.errors import DataError, ParameterError
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
@@ -250,6 +251,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         if not picture.texture and is_large(engine, sketch, size):
             if picture.profile:
                 raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+            if picture.output != "-" and target.suffix.lower() != ".png":
+                raise DataError(
+                    "a picture this large is drawn in parts, and written as .png", file=picture.output
+                )
             _draw_large(engine, moment, size, target, picture.output == "-")
         else:
             with busy(f"rendering {sketch.name}"):
@@ -279,7 +284,7 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
 
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
-        frame.save(target)
+        frame.save(target, say=note)
 
 
 def _say_not_finite(engine: Engine) -> None:
@@ -316,6 +321,8 @@ def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
+        if isinstance(sys.stdout, Nowhere):
+            raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
     if not picture.output:
         parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]

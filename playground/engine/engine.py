@@ -138,6 +138,7 @@ class Engine:
         steps: Mapping[str, int] | None = None,
         wanted: str = "",
         largest: int = LARGEST_SIDE,
+        interpolated: bool | None = None,
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
         self._refuse_released()
@@ -148,6 +149,7 @@ class Engine:
             variants=self.plain_forms.kinds,
             steps=steps,
             wanted=wanted,
+            interpolated=interpolated,
             largest=largest,
         )
 
@@ -158,14 +160,17 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> Frame:
         """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
-        many turns, by path. Raises ``PlaygroundError`` for any mistake in the sketch.
+        many turns, by path. What a stopped pass has not reached yet is interpolated where its
+        header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
+        Raises ``PlaygroundError`` for any mistake in the sketch.
         """
         found = opened(sketch)
-        texture = self.draw(found, size=size, time=time, steps=steps)
+        texture = self.draw(found, size=size, time=time, steps=steps, interpolated=interpolated)
         return Frame(read_picture(texture), found.name, time)
 
     def draw(
@@ -175,9 +180,10 @@ class Engine:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> moderngl.Texture:
-        """Draw the sketch's picture and return its texture, which lives until the next frame."""
-        plan = self.plan_for(sketch, size, time, steps)
+        """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
+        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
         view = plan.flat.outputs["view"]
         return self._texture(plan, next(iter(view.values())))
 
@@ -219,12 +225,13 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = False,
     ) -> moderngl.Texture:
         """Return the texture of ``pass[.inner…][:output]``; it lives until the next frame.
 
-        Runs only what it needs.
+        Runs only what it needs. What a stopped pass has not reached is 0, unless ``interpolated``.
         """
-        plan = self.plan_for(sketch, size, time, steps, ref)
+        plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
         return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
 
     def read(
@@ -235,13 +242,16 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = False,
     ) -> NDArray[np.float32]:
         """Return the values of ``pass[.inner…][:output]``.
 
         float32, (ny, nx) or (ny, nx, components), row 0 in the south; heights are 0..1
-        (times ``relief`` for metres), colours and light linear.
+        (times ``relief`` for metres), colours and light linear. What a stopped pass has not
+        reached is 0, unless ``interpolated``.
         """
-        return read_texture(self.texture(sketch, ref, size=size, time=time, steps=steps))
+        texture = self.texture(sketch, ref, size=size, time=time, steps=steps, interpolated=interpolated)
+        return read_texture(texture)
 
     def steps(
         self,
@@ -325,9 +335,10 @@ class Engine:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
-        plan = self.plan_for(sketch, size, time, steps)
+        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
         keys, shown = self.keys_of(plan), next(iter(plan.flat.outputs["view"].values()))
         nodes = needed(plan.nodes, shown)
         if self.keeping is not None:

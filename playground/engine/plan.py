@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 
+from playground.engine.between import Between, between_of
 from playground.engine.files import find_file
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch import expressions
@@ -58,6 +59,7 @@ class Step:
     whole: int  # turns in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
+    between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
 
     @property
     def whole_size(self) -> tuple[int, int]:
@@ -92,6 +94,7 @@ class Plan:
     frame_size: tuple[int, int]
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
+    interpolated: bool = False  # what stopped passes have not reached is filled
 
     def walk(self) -> Iterator[Step]:
         """Yield every step, those inside loops included."""
@@ -161,21 +164,25 @@ def make_plan(
     variants: Collection[str] = (),
     steps: Mapping[str, int] | None = None,
     wanted: str = "",
+    interpolated: bool | None = None,
     largest: int = LARGEST_SIDE,
 ) -> Plan:
     """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
 
     ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
     those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-    path (that of a technique will do where one pass inside it repeats). Raises ``SketchError`` or
-    ``DataError`` at the pass that is wrong, ``ShaderError`` at a kernel's header.
+    path (that of a technique will do where one pass inside it repeats). What a stopped pass has
+    not reached is ``interpolated`` in pictures and not in what is ``wanted``, unless told (see
+    ``between``). Raises ``SketchError`` or ``DataError`` at the pass that is wrong,
+    ``ShaderError`` at a kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
     opened = (wanted,) if wanted else ()
     flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
-    return _Planner(sketch, flat, size, seconds, stopped).plan()
+    fills = not wanted if interpolated is None else interpolated
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -253,13 +260,21 @@ def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
 
 class _Planner:
     def __init__(
-        self, sketch: Sketch, flat: Flat, frame_size: tuple[int, int], time: float, steps: dict[str, int]
+        self,
+        sketch: Sketch,
+        flat: Flat,
+        frame_size: tuple[int, int],
+        time: float,
+        steps: dict[str, int],
+        *,
+        fills: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
         self.frame_size = frame_size
         self.time = time
         self.steps = steps
+        self.fills = fills
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
@@ -270,7 +285,8 @@ class _Planner:
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, self.frame_size, self.time, self.steps)
+        seen = self.frame_size, self.time, self.steps, self.fills
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen)
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
@@ -290,7 +306,8 @@ class _Planner:
         whole = self._count(kernel.repeat, node.path, kernel, names)
         # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
-        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec)
+        between = between_of(node, repeat, whole, names) if self.fills else None
+        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec, between=between)
 
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names

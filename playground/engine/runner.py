@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.engine.between import Between
 from playground.engine.binder import Binder
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
+from playground.engine.fill import filled
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.plan import Plan, Step, placed
 from playground.engine.programs import Programs
@@ -104,6 +106,10 @@ class Runner:
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
         return self.kernels.empty(step)
+
+    def filled(self, result: Result, between: Between) -> Result:
+        """Return new textures, with what a stopped run has not reached joined up: see ``between``."""
+        return filled(self.kernels, self.pool, result, between)
 
     def copy(self, target: moderngl.Texture, source: moderngl.Texture) -> None:
         """Fill a texture with another, nearest texel for nearest."""

@@ -26,12 +26,13 @@ _VERSION = re.compile(r"^\s*#\s*version\b")
 _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
 _LONGEST_TITLE = 72
+_BETWEEN = ("squares", "triangles")
 _IMAGE = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 _KEYS = {
-    "kernel": ("output", "repeat", "accepts", "visits", "stride", "at_once"),
+    "kernel": ("output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
     "source": ("name", "output"),
     "draw": ("mesh", "count", "output", "blend", "depth", "samples", "repeat"),
     "compute": ("groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned", "agrees"),
@@ -103,7 +104,9 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
-    texts = {key: options[key] for key in ("accepts", "visits", "stride", "at_once") if key in options}
+    texts = {
+        key: options[key] for key in ("accepts", "visits", "stride", "between", "at_once") if key in options
+    }
     kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
     _check_turns(kernel, numbers, line)
     if kernel.accepts:
@@ -123,6 +126,11 @@ def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
         _check("stride", kernel.stride, turn, line)
         if not kernel.visits:
             raise line.error("stride says how far apart the texels of visits lie; give the kernel visits")
+    if kernel.between:
+        if kernel.between not in _BETWEEN:
+            raise line.error(f"between = '{kernel.between}'{nearest(kernel.between, _BETWEEN)}")
+        if not kernel.stride:
+            raise line.error("between says how the texels of a stride are joined; give the kernel a stride")
     if kernel.at_once == "1":
         return
     _check("at_once", kernel.at_once, (*_SIZE, *numbers), line)

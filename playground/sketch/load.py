@@ -11,7 +11,7 @@ from pathlib import Path
 
 from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
-from playground.sketch.assign import effective_values
+from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
@@ -141,6 +141,9 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         keyframes=(),
         overrides=_stage_files(graph, stage),
     )
+    own = next(p.name for p in passes if p.technique is technique)
+    shown_first = (s.path for s in shown_parameters(sketch) if s.exported)
+    sketch = replace(sketch, main=tuple(path for path in shown_first if path.startswith(f"{own}.")))
     flatten(sketch)
     return sketch
 

@@ -62,6 +62,7 @@ class Parameter:
     tooltip: str = ""
     sampling: Sampling = Sampling()  # of a file
     painted: bool = False  # a file that may be painted on in the window
+    parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     file: str = ""
     line: int = 0
 
@@ -122,6 +123,7 @@ class Kernel:
     accepts: str = ""
     visits: str = ""
     stride: str = ""  # after a turn, only texels at multiples of it are known
+    between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
@@ -324,6 +326,7 @@ class Sketch:
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
     keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by hand stands over them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
+    main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
 
     @property
     def files(self) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from .drawing import salt
+
 LINE = "generation/fault_formation/line.glsl"
 SIZES = [(33, 33), (64, 65), (130, 100), (40, 23), (2, 2), (1, 9), (300, 2)]  # one tile to 4 x 3
 
@@ -26,10 +28,8 @@ def drawn(on_gpu):
     """Give ``drawn(faults, seed)``: the points of each line, 0..4095, and a number 0..1 for its height."""
 
     def make(faults, seed):
-        index = np.arange(faults, dtype=np.uint32)
-        one, two = (
-            on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=np.uint32(seed)) for k in (0, 1)
-        )
+        index, key = np.arange(faults, dtype=np.uint32), np.uint32(seed + salt("generation/fault_formation"))
+        one, two = (on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=key) for k in (0, 1))
         return one[:, :2] >> 20, two[:, :2] >> 20, (one[:, 2] >> 8) / 2.0**24
 
     return make
