@@ -37,6 +37,7 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import DataError as DataError
     from playground.errors import ParameterError as ParameterError
     from playground.errors import PlaygroundError as PlaygroundError
+    from playground.errors import PlaygroundWarning as PlaygroundWarning
     from playground.errors import ShaderError as ShaderError
     from playground.errors import SketchError as SketchError
     from playground.errors import TrialCrash as TrialCrash
@@ -69,6 +70,7 @@ _HOMES = {
     "Shot": "playground.sketch.model",
     "Sketch": "playground.sketch.model",
     "PlaygroundError": "playground.errors",
+    "PlaygroundWarning": "playground.errors",
     "SketchError": "playground.errors",
     "ParameterError": "playground.errors",
     "ShaderError": "playground.errors",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
 from playground.engine.engine import Engine, opened
 from playground.engine.frame import Frame
+from playground.errors import Diagnostic, PlaygroundWarning
 from playground.gpu.context import open_context
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
@@ -16,9 +18,17 @@ def headless(*, software: bool = False, device: int | None = None, driver: str =
     """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
 
     ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". Raises ``ContextError`` in a sentence.
+    ``driver`` is "auto", "fragment" or "compute". What is drawn though something is wrong with
+    it is told by Python's warnings, as ``PlaygroundWarning``, once. Raises ``ContextError`` in a
+    sentence.
     """
-    return Engine(open_context(software=software, device=device), driver=driver, owns_context=True)
+    engine = Engine(open_context(software=software, device=device), driver=driver, owns_context=True)
+    engine.warnings.tell = _warn
+    return engine
+
+
+def _warn(warning: Diagnostic) -> None:
+    warnings.warn(str(warning), PlaygroundWarning, stacklevel=2)
 
 
 def render(

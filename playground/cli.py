@@ -45,7 +45,7 @@ from playground.commands.arguments import (
 )
 from playground.errors import PlaygroundError, nearest
 from playground.sketch.model import DEFAULT_PICTURE
-from playground.terminal import complain, note
+from playground.terminal import complain, note, warnings_told
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 
@@ -77,7 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else list(arguments)
     output = sys.stdout
     try:
-        status = app(given, prog_name="playground", standalone_mode=False)
+        with warnings_told():
+            status = app(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:

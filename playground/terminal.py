@@ -11,9 +11,12 @@ import os
 import shutil
 import sys
 import textwrap
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
+
+from playground.errors import PlaygroundWarning
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,6 +36,23 @@ def complain(text: str, severity: str = "error") -> None:
     """Print a mistake on standard error."""
     colour = "1;31" if severity == "error" else "1;33"
     print(f"{painted(f'{severity}:', colour, sys.stderr)} {text}", file=sys.stderr)
+
+
+@contextmanager
+def warnings_told() -> Iterator[None]:
+    """Print the playground's own warnings as sentences, wherever in the program they come up."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", PlaygroundWarning)
+        others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if issubclass(category, PlaygroundWarning):
+                complain(str(message), "warning")
+            else:
+                others(message, category, *place, **more)
+
+        warnings.showwarning = show
+        yield
 
 
 def note(text: str) -> None:

@@ -43,6 +43,7 @@ def main() -> None:
 
     try:
         with headless(software=renderer == "software", driver=driver) as engine:
+            engine.warnings.tell = None  # the window shows them
             answer = Finished(do(job, engine, tell, notes.append), notes=tuple(notes))
     except Stop:
         answer = Finished(None, stopped=True)

@@ -31,7 +31,7 @@ from playground.commands.arguments import (
     read_values,
 )
 from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
-from playground.errors import DataError, ParameterError
+from playground.errors import DataError, ParameterError, counted
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
 from playground.terminal import busy, console_for, note, progress
@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from playground.engine.engine import Engine
     from playground.sketch.model import Sketch
 
+
+_MOST_HIDDEN = 3  # defaults without effect that are told one by one
 
 HELP = help_text(
     "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
@@ -229,6 +231,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         steps=picture.steps,
         time=picture.time,
     )
+    _say_hidden_defaults(moment.sketch)
     if picture.asked is not None and picture.asked.many:
         make_many(picture.asked, moment, picture.output, picture.size, renderer, picture.driver)
         return
@@ -255,6 +258,18 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
             _print_profile(engine)
     if picture.output != "-":
         print(target)
+
+
+def _say_hidden_defaults(sketch: Sketch) -> None:
+    """Say which defaults of the sketch's own kernels have no effect, for its own files set them over."""
+    from playground.sketch.shadowed import shadowed_by_files
+
+    hidden = shadowed_by_files(sketch)
+    for one in hidden[:_MOST_HIDDEN]:
+        note(str(one))
+    if len(hidden) > _MOST_HIDDEN:
+        more = counted(len(hidden) - _MOST_HIDDEN, "more default")
+        note(f"{more} that a set stands over: playground check lists them")
 
 
 def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int], target: Path) -> None:

@@ -20,7 +20,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from playground.engine.plan import make_plan
+from playground.engine.plan import make_plan, told_at
+from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
@@ -30,9 +31,11 @@ from playground.sketch.assign import values_of
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, Input, Kernel, Output, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.places import TEXTS, root_of
+from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import Line, SourceText, read_text
 from playground.sketch.techniques import nothing_to_run, read_kernel, read_technique
 from playground.sketch.unpack import ENDING, is_pack, unpacked
+from playground.sketch.warnings import warnings_of_kernel
 from playground.sketch.wiring import input_names
 
 BOTH = (FRAGMENT, COMPUTE)
@@ -48,14 +51,23 @@ class FileReport:
     ok: bool
     skipped: tuple[str, ...] = ()  # drivers that this machine does not have
     errors: tuple[Diagnostic, ...] = ()
+    warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
     seconds: float = 0.0  # in the trial child
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
-        errors = [
-            {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in self.errors
-        ]
-        return {"path": self.path, "ok": self.ok, "skipped": list(self.skipped), "errors": errors}
+        errors, warnings = (
+            [{"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in some]
+            for some in (self.errors, self.warnings)
+        )
+        skipped = list(self.skipped)
+        return {
+            "path": self.path,
+            "ok": self.ok,
+            "skipped": skipped,
+            "errors": errors,
+            "warnings": warnings,
+        }
 
 
 def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
@@ -83,6 +95,8 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 wanted = ", ".join((*TEXTS, ENDING))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
+        elif path.exists():
+            raise DataError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
         else:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             hint = nearest(path.name, near)
@@ -113,6 +127,7 @@ class _Check:
         self.scratch = scratch  # where the stand-in picture is written
         self.skipped: dict[str, None] = {}
         self.errors: dict[Diagnostic, None] = {}
+        self.warnings: dict[Diagnostic, None] = {}
         self.seconds = 0.0
 
     def run(self) -> FileReport:
@@ -125,8 +140,8 @@ class _Check:
             check()
         except PlaygroundError as error:
             self.failed(error)
-        wrong = tuple(self.errors)
-        return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, self.seconds)
+        wrong, mild = tuple(self.errors), tuple(self.warnings)
+        return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, mild, self.seconds)
 
     # ── the kinds of file ────────────────────────────────────────────────────
 
@@ -134,12 +149,14 @@ class _Check:
         kernel = read_kernel(self.path, self.root)
         if kernel is None and self.path.suffix != ".glsl":
             raise nothing_to_run(self.path)
+        if kernel is not None:
+            self.warnings |= dict.fromkeys(warnings_of_kernel(kernel))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root)))
         elif kernel.kind.startswith("plain"):
             view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
             graph = Graph(kernel.name, str(self.path), (view,))
-            sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
+            sketch = self.with_pictures(Sketch(kernel.name, str(self.path), str(self.root), graph))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
             raise SketchError(
@@ -159,11 +176,14 @@ class _Check:
     def sketch(self) -> None:
         sketch = load(self.path)
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        make_plan(sketch, frame_size=_FRAME)
+        plan = make_plan(sketch, frame_size=_FRAME)
+        self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
+        self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
             make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+            with told_at(sketch, shot):
+                make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
         self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any"))
 
     # ── trying ───────────────────────────────────────────────────────────────
@@ -211,6 +231,10 @@ class _Check:
         passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
         graph = Graph(subject, str(self.path), tuple(passes))
         sketch = Sketch(self.path.stem, str(self.path), str(self.root), graph)
+        return self.with_pictures(sketch)
+
+    def with_pictures(self, sketch: Sketch) -> Sketch:
+        """Return a sketch whose files that nothing names are a stand-in picture."""
         return sketch.with_values({path: str(self.picture()) for path in _unnamed_files(sketch)})
 
     def picture(self) -> Path:

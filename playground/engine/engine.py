@@ -25,6 +25,7 @@ from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker, Keys
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -78,6 +79,7 @@ class Engine:
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.runner = Runner(ctx, self.info, self.pool)
+        self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
         self._keys = KeyMaker()
@@ -359,6 +361,7 @@ class Engine:
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0
+        self.warnings.look(plan)
         self.cache.begin()
         self.runner.begin(plan)
         goes_on = continued(plan)

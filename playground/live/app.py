@@ -293,7 +293,7 @@ class Live:
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
         above = (*area[:3], area[3] - height_of_timeline(actions, window.theme))
         draw_not_finite(self.finite, actions, window.theme, above)
         draw_errors(actions, window.theme, above)

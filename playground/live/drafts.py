@@ -30,6 +30,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
+from playground.sketch.shadowed import newly_shadowed
 from playground.sketch.stand_ins import stand_ins
 
 
@@ -135,6 +136,8 @@ class Drafts(ABC):
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
             return
+        if self.shown is not None and not self._another:
+            notes = [*notes, *map(str, newly_shadowed(self.shown.file, draft.sketch))]
         if self._companions and self.shown is not None and not self._another:
             notes = [*notes, *stand_ins(self.shown.file, loaded)]
         self._propose(draft, notes)

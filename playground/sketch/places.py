@@ -121,6 +121,14 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def exists(path: Path) -> bool:
+    """Say whether anything is there, a file or not, also for names that nothing can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
 def root_of(path: Path) -> Path:
     """Return the folder that a technique opened alone may read from, besides ``glsl/``.
 
