@@ -33,7 +33,7 @@ _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
 )
 _LAYOUT = re.compile(r"^\s*layout\s*\([^)]*\)(?=\s*uniform\b)")
-_UNFED = re.compile(r"\buniform\s+(?:(?:lowp|mediump|highp)\s+)?[iu]?sampler\w+\s+([^;]*);")
+_SAMPLERS = re.compile(r"\buniform\s+(?:(?:lowp|mediump|highp)\s+)?([iu]?sampler\w+)\s+([^;]*);")
 _WORD_UNIFORM = re.compile(r"\buniform\b")
 _IMAGE = re.compile(r"\b[iu]?image[123]D\b")
 _FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
@@ -103,20 +103,20 @@ def read_uniforms(
 def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
     """Return a warning for each sampler of a plain shader that no image file feeds: it reads black."""
     fed = {p.name for p in read_uniforms(source, plain=True)[0] if p.type == "sampler2D"}
-    found: dict[tuple[str, int, str], Diagnostic] = {}
+    found: list[Diagnostic] = []
     for line in source.lines:
-        for match in _UNFED.finditer(line.code):
-            for name in re.findall(r"(?<!\w)([A-Za-z_]\w*)", re.sub(r"\[[^\]]*\]", "", match.group(1))):
-                if name in fed:
-                    continue
-                at = re.search(rf"\b{name}\b", line.code[match.start(1) :])
-                column = match.start(1) + (at.start() if at else 0) + 1
-                message = f"nothing feeds '{name}', so it reads black; an image file does: "
+        for match in _SAMPLERS.finditer(line.code):
+            kind, names = match.groups()
+            for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
+                name, column = one.group(1), match.start(2) + one.start() + 1
                 example = f'uniform sampler2D {name};  //! file("picture.png")'
-                found.setdefault(
-                    (line.file, line.number, name), line.diagnostic(message + example, column, "warning")
+                more = (
+                    f"an image file does: {example}" if kind == "sampler2D" else "only a sampler2D may be fed"
                 )
-    return tuple(found.values())
+                message = f"nothing feeds '{name}', so it reads black; {more}"
+                if name not in fed:
+                    found.append(line.diagnostic(message, column, "warning"))
+    return tuple(dict.fromkeys(found))
 
 
 def is_given(name: str) -> bool:
