@@ -140,7 +140,8 @@ class _Check:
             check()
         except PlaygroundError as error:
             self.failed(error)
-        wrong, mild = tuple(self.errors), tuple(self.warnings)
+        wrong = tuple(self.errors)
+        mild = () if wrong else tuple(self.warnings)  # a misspelt name would be one that nothing reads
         return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, mild, self.seconds)
 
     # ── the kinds of file ────────────────────────────────────────────────────

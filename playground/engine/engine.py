@@ -361,7 +361,6 @@ class Engine:
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0
-        self.warnings.look(plan)
         self.cache.begin()
         self.runner.begin(plan)
         goes_on = continued(plan)
@@ -383,6 +382,7 @@ class Engine:
             execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
+        self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
     @contextmanager
