@@ -239,8 +239,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
+    from playground.engine.plan import told_at
 
     with (
+        told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),
         _target(picture, sketch) as target,
         headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
     ):

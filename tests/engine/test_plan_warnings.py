@@ -117,3 +117,12 @@ def test_a_hidden_default_is_told_by_render_and_check(folder, monkeypatch, capsy
     assert "default" not in capsys.readouterr().err
     assert cli.main(["check", "sketch.toml"]) == 0
     assert f"warning: one.glsl:2: {said} in pass 'a'" in capsys.readouterr().out
+
+
+def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
+    more = '[[shot]]\nname = "end"\nsteps = { a = 99 }\n'
+    folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("return 1.0", "return idle"), more=more)
+    monkeypatch.chdir(folder.path)
+    assert cli.main(["render", ".", "--shot", "end", "-o", "a.png"]) == 2
+    said = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
+    assert capsys.readouterr().err == said
