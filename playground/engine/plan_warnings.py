@@ -9,8 +9,8 @@ from pathlib import Path
 from playground.engine.plan import Plan
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
-from playground.sketch.model import Graph, kernels_of
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.model import Graph, Kernel, kernels_of
+from playground.sketch.warnings import unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
 
 
@@ -29,17 +29,19 @@ class PlanWarnings:
         found = list(source_warnings(plan))
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
-            found += kernel_warnings(plan.sketch.graph)
+            found += kernel_warnings(plan.sketch.graph, unheeded)
         for warning in found:
             if (key := (warning.message, warning.file)) not in self._told:
                 self._told.add(key)
                 self.tell(warning)
 
 
-def kernel_warnings(graph: Graph) -> list[Diagnostic]:
+def kernel_warnings(
+    graph: Graph, of: Callable[[Kernel], tuple[Diagnostic, ...]] = warnings_of_kernel
+) -> list[Diagnostic]:
     """Return the warnings of a sketch's own kernels; those that ship are left out."""
     own = [kernel for _, kernel in kernels_of(graph) if not Path(kernel.path).is_relative_to(GLSL)]
-    return list(dict.fromkeys(warning for kernel in own for warning in warnings_of_kernel(kernel)))
+    return list(dict.fromkeys(warning for kernel in own for warning in of(kernel)))
 
 
 def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:

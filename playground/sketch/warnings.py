@@ -9,8 +9,13 @@ from playground.sketch.unread import unread
 
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return a warning for each parameter that nothing reads, sampler that nothing feeds, and ``#line``."""
-    found = [*unread(kernel), *(unfed_samplers(kernel.source) if kernel.kind.startswith("plain") else ())]
+    """Return what a kernel's author should know: parameters that nothing reads, and ``unheeded``."""
+    return (*unread(kernel), *unheeded(kernel))
+
+
+def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
+    """Return what a picture does not show though the text says it: unfed samplers, ``#line``."""
+    found = [*(unfed_samplers(kernel.source) if kernel.kind.startswith("plain") else ())]
     found += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines

@@ -33,6 +33,7 @@ inputs = { shown = "height" }
 """
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform float idle = 1.0;  //! slider(0, 2)
+#line 7
 float kernel(ivec2 texel) { return 1.0; }
 """
 TURNED = "turned.tif: its grid is turned against north, so no spacing"
@@ -59,7 +60,7 @@ def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
         any_engine.render(load(sketch), size=size)
     place = next(place for place, message in told if message == TURNED)
     assert len(told) == 2 and place.endswith("sketch.toml:3")
-    assert sum("nothing reads 'idle'" in message for _, message in told) == 1
+    assert sum("#line is left out" in message for _, message in told) == 1
 
 
 def test_a_program_is_told_by_python_s_own_warnings(sketch):
@@ -84,7 +85,7 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     out = capsys.readouterr().out
     assert out.count(f"warning: sketch.toml:3: {TURNED}") == 1
     assert out.count("nothing reads 'idle'") == 1  # of the kernel, and again of the sketch
-    assert "2 files checked, none failed, 2 warnings" in out
+    assert "2 files checked, none failed, 3 warnings" in out
     with Trial() as made:
         report = check_file(sketch, made).as_json()
     assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
@@ -97,7 +98,7 @@ def test_the_window_lists_them(any_engine, sketch):
     assert [w.message for w in known.of(loaded, any_engine.plan)] == [TURNED]
     while known.waiting:
         known.look()
-    assert [w.line for w in known.of(loaded, any_engine.plan)] == [2, 3]
+    assert [w.line for w in known.of(loaded, any_engine.plan)] == [2, 3, 3]
 
 
 def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
@@ -108,7 +109,9 @@ def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(a
 
 
 def test_a_hidden_default_is_told_by_render_and_check(folder, monkeypatch, capsys):
-    folder.one(KERNEL.replace("return 1.0", "return idle"), more="set = { idle = 2.0 }")
+    folder.one(
+        KERNEL.replace("return 1.0", "return idle").replace("#line 7\n", ""), more="set = { idle = 2.0 }"
+    )
     monkeypatch.chdir(folder.path)
     said = "the default is 1; sketch.toml:6 sets 2"
     assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png"]) == 0
@@ -121,7 +124,7 @@ def test_a_hidden_default_is_told_by_render_and_check(folder, monkeypatch, capsy
 
 def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
     more = '[[shot]]\nname = "end"\nsteps = { a = 99 }\n'
-    folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("return 1.0", "return idle"), more=more)
+    folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("#line 7\n", ""), more=more)
     monkeypatch.chdir(folder.path)
     assert cli.main(["render", ".", "--shot", "end", "-o", "a.png"]) == 2
     said = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
