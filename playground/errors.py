@@ -133,6 +133,10 @@ class PlaygroundWarning(UserWarning):
     """What can be drawn, though not as its author may think: Python's own warnings tell it to a program."""
 
 
+class PlainFormWarning(PlaygroundWarning):
+    """A fast variant does not run: its technique's text is not the one that it was verified against."""
+
+
 def counted(number: int, noun: str) -> str:
     """Return "1 file", "2 files"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -10,9 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    PlainOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
 from playground.errors import Diagnostic, counted
-from playground.terminal import painted, progress
+from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -37,6 +43,7 @@ def check(
     as_json: Annotated[
         bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
     ] = False,
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
@@ -53,13 +60,13 @@ def check(
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root)
+            report = check_file(path, trial, root, plain=plain)
             report = replace(report, warnings=tuple(w for w in report.warnings if w not in told))
             told |= set(report.warnings)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
-                print(json.dumps(report.as_json(), ensure_ascii=False), flush=True)
+                print_json(report.as_json(), indent=None)
             else:
                 _print_report(report)
             advance()
@@ -82,4 +89,6 @@ def _print_report(report: FileReport) -> None:
     for diagnostic in (*report.errors, *report.warnings):
         text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
         print("\n".join(f"        {line}" for line in text.split("\n")))
+    for sentence in report.notes:
+        print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done
