@@ -25,6 +25,7 @@ from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker, Keys
 from playground.engine.plain_forms import PlainForms, warn
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -79,6 +80,7 @@ class Engine:
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.runner = Runner(ctx, self.info, self.pool)
+        self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
         self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
@@ -393,6 +395,7 @@ class Engine:
             execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
+        self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
     @contextmanager

@@ -327,7 +327,7 @@ class Live:
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
         self.terminal.take(actions.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:

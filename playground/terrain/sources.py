@@ -43,6 +43,7 @@ class SourceKind:
     make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
+    notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
 
 
 def source_kind(name: str) -> SourceKind:
@@ -120,6 +121,11 @@ def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[
     return {"height": heights}
 
 
+def _notes_of_elevation(values: Mapping[str, Value]) -> tuple[str, ...]:
+    elevation = _elevation(values)
+    return tuple(f"{elevation.name}: {note}" for note in elevation.notes)
+
+
 def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
     rules = Rules(
         points=int(_number(values, "points")),
@@ -153,6 +159,7 @@ SOURCES: dict[str, SourceKind] = {
         _make_elevation,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
+        _notes_of_elevation,
     ),
     "delaunay": SourceKind(
         lambda _: Land(),
