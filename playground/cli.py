@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -33,6 +35,7 @@ from playground.commands import (
     reduce,
     render,
     shots,
+    variants,
 )
 from playground.commands.arguments import (
     DeviceOption,
@@ -43,7 +46,7 @@ from playground.commands.arguments import (
     quoted,
     read_device,
 )
-from playground.errors import PlaygroundError, nearest
+from playground.errors import PlainFormWarning, PlaygroundError, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
@@ -85,7 +88,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
-        status = app(given, prog_name="playground", standalone_mode=False)
+        with _noting_plain_forms():
+            status = app(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:
@@ -113,6 +117,23 @@ def _status(given: list[str]) -> int:
         for stream in (output, sys.stderr):
             let_go(stream)
     return int(status or 0)
+
+
+@contextmanager
+def _noting_plain_forms() -> Iterator[None]:
+    """Print, as a note, why a fast variant does not run; other warnings are Python's."""
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *more: Any, **named: Any) -> None:
+            if issubclass(category, PlainFormWarning):
+                note(f"note: {message}")
+            else:
+                others(message, category, *more, **named)
+
+        warnings.simplefilter("always", PlainFormWarning)
+        warnings.showwarning = show
+        yield
 
 
 def _say_version(wanted: bool) -> None:
@@ -185,7 +206,7 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app, cache.app)
+_GROUPS = (shots.app, lesson.app, cache.app, variants.app)
 for _group in _GROUPS:
     app.add_typer(_group)
 _COMMANDS = (

@@ -520,7 +520,7 @@ def test_check_tries_both_drivers(run: Run, tmp_path: Path):
     assert json.loads(done.stdout)["errors"][0]["line"] == 4
 
 
-def test_check_takes_a_companion_with_its_kernel(run: Run, tmp_path: Path):
+def test_check_takes_a_compute_variant_with_its_kernel(run: Run, tmp_path: Path):
     (tmp_path / "fill.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
     )

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    PlainOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
 from playground.errors import counted
 from playground.terminal import painted, print_json, progress
 
@@ -35,6 +42,7 @@ def check(
     as_json: Annotated[
         bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
     ] = False,
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
@@ -50,7 +58,7 @@ def check(
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root)
+            report = check_file(path, trial, root, plain=plain)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
@@ -74,4 +82,6 @@ def _print_report(report: FileReport) -> None:
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
     for diagnostic in report.errors:
         print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")))
+    for sentence in report.notes:
+        print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

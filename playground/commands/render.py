@@ -14,6 +14,7 @@ from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
     Moment,
+    PlainOption,
     Renderer,
     SetOption,
     SizeOption,
@@ -84,6 +85,7 @@ class Picture:
     texture: str = ""
     profile: bool = False
     steps: dict[str, int] | None = None
+    plain: bool = False
     asked: Asked | None = None  # more than one picture
 
 
@@ -104,6 +106,7 @@ def render(
     time: TimeOption = "",
     settings: SetOption = None,
     driver: DriverOption = "auto",
+    plain: PlainOption = False,
     shot: Annotated[
         str, typer.Option("--shot", help="Render a shot of the sketch.", metavar="NAME", show_default=False)
     ] = "",
@@ -213,6 +216,7 @@ def render(
         texture,
         profile,
         read_steps(steps),
+        plain,
         asked,
     )
     make_picture(picture, ctx.obj.or_else(software, device))
@@ -223,7 +227,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     from playground.sketch.load import load
 
     moment = moment_of(
-        load(picture.sketch),
+        load(picture.sketch).plainly(picture.plain),
         shot=picture.shot,
         preset=picture.preset,
         values=picture.values,

@@ -17,6 +17,7 @@ from typing import cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
 from playground.engine.trial import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
@@ -68,6 +69,7 @@ def run(
     size: tuple[int, int] | None = None,
     software: bool = False,
     driver: str = "auto",
+    plain: bool = False,
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
     lesson: str = "",
@@ -100,7 +102,7 @@ def run(
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
-        engine = Engine(window.ctx, driver=driver)
+        engine = Engine(window.ctx, driver=driver, notice=silent)
         session = Session(
             engine,
             path,
@@ -108,6 +110,7 @@ def run(
             edits=found.edits,
             in_file=dict(found.in_file),
             camera_in_file=found.camera_in_file,
+            plain=plain,
             trial=trial,
             is_lost=lambda: window.lost,
         )
@@ -117,8 +120,7 @@ def run(
         live = Live(window, session, watcher, rememberer, Storing(session, keeps))
         if found.at is not None:
             live.place.stand_at(found.at)
-        density = window.scale * window.density
-        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
+        live.lessons.begin(lesson, language, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -228,7 +230,7 @@ class Live:
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
         self.window.reopen()
-        self.session.rebuild(Engine(self.window.ctx, driver=driver))
+        self.session.rebuild(Engine(self.window.ctx, driver=driver, notice=silent))
         self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
@@ -285,7 +287,6 @@ class Live:
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
         draws, error = session.draws, session.error
-        self.lessons.reading.stage.room = (wide - skipped, high)
         picture = session.frame((wide - skipped, high))
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
