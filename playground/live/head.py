@@ -8,6 +8,7 @@ from playground.errors import counted
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.chance import at_random, mutated
+from playground.live.field import letters, with_typed_ahead
 from playground.live.history import in_words
 from playground.live.listing import Filter, Item, set_words
 from playground.live.panel_memory import Memory
@@ -83,7 +84,7 @@ def _buttons(memory: Memory, actions: Actions, look: Theme) -> None:
     imgui.pop_style_var(2)
 
 
-def draw_search(memory: Memory, look: Theme) -> None:
+def draw_search(memory: Memory, actions: Actions) -> None:
     """Draw the search, and the switch that leaves only what is changed."""
     style = imgui.get_style()
     only = "Changed"
@@ -93,7 +94,9 @@ def draw_search(memory: Memory, look: Theme) -> None:
         memory.focus_search = False
     imgui.set_next_item_width(-wide - style.item_spacing.x)
     flags = imgui.InputTextFlags_.escape_clears_all
+    typed = letters()
     _, text = imgui.input_text_with_hint("##search", "Search  /", memory.filter.search, flags)
+    text = with_typed_ahead(actions, text, memory.filter.search, typed)
     imgui.set_item_tooltip("By label, name, pass, group or description; Esc ends it")
     imgui.same_line()
     _, changed = imgui.checkbox(f"{only}##only", memory.filter.changed)

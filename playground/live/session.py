@@ -19,6 +19,7 @@ from playground.errors import ContextError, PlaygroundError
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
+from playground.live.files import data_files
 from playground.live.framing import framed
 from playground.live.hasty import hastily
 from playground.live.maps import fitted, in_view, refs_of
@@ -27,6 +28,7 @@ from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch, Value, kernels_of
+from playground.sketch.places import Signature, signature
 
 if TYPE_CHECKING:
     import moderngl
@@ -90,6 +92,8 @@ class Session(Drafts):
         self._picture_size: tuple[int, int] | None = None  # asked for last
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
+        self._read: dict[Path, Signature | None] = {}  # images and elevation files that were drawn with
+        self._read_for: Sketch | None = None  # the sketch that these are the files of
         self.reload()
 
     @property
@@ -200,7 +204,7 @@ class Session(Drafts):
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
         """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
-        if self.sketch is None:
+        if self.sketch is None or self._awaits_data(self.sketch):
             return None
         try:
             steps = self._steps_for(self.sketch)
@@ -221,7 +225,8 @@ class Session(Drafts):
         if self.stage is Stage.DRAW:
             self._draw_coming(size)
         if self.shown is not None and self._wanted(size) != self._drawn:
-            self._draw_shown(size)
+            if not self._awaits_data(self.shown.sketch):
+                self._draw_shown(size)
         elif self.hasty and self.shown is not None and self._now() - self._drawn_at >= REST:
             self._draw_shown(size, in_full=True)
         return self._picture.texture
@@ -245,7 +250,7 @@ class Session(Drafts):
         if self._lost_over == drawn and self._picture_size is not None:
             self._drawn = self._wanted(self._picture_size)
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
-            self._draw_error = ContextError(message)
+            self._draw_error = explained(ContextError(message), self.path)
         self._lost_over = drawn
         self.notes.append("the graphics driver was reset; everything was built anew")
 
@@ -265,7 +270,7 @@ class Session(Drafts):
         Other values do: they say how often a loop turns.
         """
         texture = self._picture.texture
-        if self.shown is None or texture is None:
+        if self.shown is None or texture is None or self._reads_anew(sketch):
             return True
         chosen = self._framed(hastily(sketch) if self.hasty else sketch, texture.size)
         try:
@@ -274,6 +279,13 @@ class Session(Drafts):
             return bool(self.engine.stale(chosen, size=size, time=now, steps=steps, interpolated=fills))
         except PlaygroundError:
             return True
+
+    def _reads_anew(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with: the trial is to read them first."""
+        return any(
+            path not in self._own_files and self._read.get(path, ()) != signature(path)
+            for path in data_files(sketch)
+        )
 
     def _forget_view(self) -> None:
         self.map = self._next_view = None
@@ -292,8 +304,9 @@ class Session(Drafts):
                 raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             self.stage = Stage.FAILED
-            self._file_error = explained(error)
+            self._file_error = explained(error, self.path)
             return
+        self._note_read(self.coming.sketch)
         self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
@@ -314,7 +327,7 @@ class Session(Drafts):
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)
             self._draw_error = None
         except Exception as error:
-            self._draw_error = explained(error)
+            self._draw_error = explained(error, self.path)
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
         """Draw; where the processor draws, hastily first: see ``live.hasty``."""
@@ -323,6 +336,8 @@ class Session(Drafts):
         seen = self._framed(chosen, size)
         steps, now = self._steps_for(sketch), self.clock.time
         texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
+        if self._read_for is not sketch:
+            self._note_read(sketch)
         self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)
@@ -335,6 +350,15 @@ class Session(Drafts):
         if not is_seen_from_camera(sketch):
             return sketch
         return framed(sketch, self.clock.time, self.framed_for, size)
+
+    def _awaits_data(self, sketch: Sketch) -> bool:
+        """Say whether a file that a sketch reads is another by now, which the trial has not read yet."""
+        return self._trial is not None and self._reads_anew(sketch)
+
+    def _note_read(self, sketch: Sketch) -> None:
+        """Remember the data that a sketch was drawn with."""
+        self._read_for = sketch
+        self._read |= {path: signature(path) for path in data_files(sketch)}
 
     def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
         try:

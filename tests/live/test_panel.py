@@ -263,6 +263,8 @@ def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) 
         bare.press(False)
         assert not bare.actions.keymap_shown
         bare.key(imgui.Key.escape)
+        assert not bare.quits and "Ctrl+Q" in said(bare)
+        bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
         assert bare.quits
         bare.close()
 

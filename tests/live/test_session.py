@@ -424,7 +424,7 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
         patch.setattr(bench.session.engine, "draw", fails)
         bench.session.set("height.level", 0.5)
         np.testing.assert_array_equal(bench.picture(), before)
-        assert "a fault of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
+        assert "a bug of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
     assert "the playground itself failed" in caplog.text
     bench.session.set("height.level", 0.6)
     bench.picture()

@@ -23,6 +23,7 @@ class Lessons:
         self._rememberer = rememberer
         self._remember = remember
         actions.toggle_lessons, actions.turn_page = self.reading.toggle, self.reading.turn_page
+        actions.lesson_shown = lambda: self.reading.lesson is not None and self.reading.progress.shown
 
     def begin(self, name: str, language: str, *, beside: bool) -> None:
         """Open a lesson by name; else, ``beside`` the sketch, the one read last, unless all were closed."""
