@@ -370,7 +370,7 @@ class Engine:
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
-        self.plain_forms.tell(plan.sketch)
+        self.plain_forms.tell(plan.sketch, plan.lacking)
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0

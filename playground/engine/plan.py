@@ -97,6 +97,7 @@ class Plan:
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
+    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without compute shaders
 
     def walk(self) -> Iterator[Step]:
         """Yield every step, those inside loops included."""
@@ -185,7 +186,7 @@ def make_plan(
     opened = (wanted,) if wanted else ()
     flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
     fills = not wanted if interpolated is None else interpolated
-    return _Planner(sketch, flat, size, seconds, stopped, fills=fills).plan()
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute="compute" in variants).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -284,6 +285,7 @@ class _Planner:
         steps: dict[str, int],
         *,
         fills: bool,
+        compute: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -291,6 +293,8 @@ class _Planner:
         self.time = time
         self.steps = steps
         self.fills = fills
+        self.compute = compute
+        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
@@ -302,7 +306,12 @@ class _Planner:
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
         seen = self.frame_size, self.time, self.steps, self.fills
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen)
+        lacking = tuple(
+            f"{path or 'the sketch'} does without compute shaders, which are not here: "
+            f"see {shown(self.flat.graphs[path].path)}"
+            for path in self.lacking
+        )
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen, lacking)
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
@@ -472,7 +481,11 @@ class Names:
         try:
             target = resolve(graph, name)[0].path
         except PlaygroundError:
-            raise KeyError(name) from None
+            if name != "compute":
+                raise KeyError(name) from None
+            if not planner.compute:
+                planner.lacking[self.prefix] = None
+            return int(planner.compute)
         value = planner.flat.values[f"{self.prefix}.{target}" if self.prefix else target]
         if not isinstance(value, int | float):
             raise KeyError(name)
