@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import io
 import re
-import secrets
 import struct
 import warnings
 import zlib
@@ -36,6 +35,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError, nearest
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.images.endings import VALUE_ENDINGS
+from playground.partial import partial_file
 from playground.paths import shown
 
 if TYPE_CHECKING:
@@ -473,12 +473,8 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
             raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
         if path.is_dir():
             raise DataError("is a folder; expected the name of a file to write", file=path)
-        temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(6)}.part")
-        try:
-            with temporary.open("xb") as handle:
-                yield handle
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with partial_file(path) as partial:
+            yield partial.handle
+            partial.rename(path)
     except OSError as error:
         raise DataError(f"cannot be written: {reason(error)}", file=path) from error

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
 from playground.engine.trial import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
@@ -73,6 +74,7 @@ def run(
     size: tuple[int, int] | None = None,
     software: bool = False,
     driver: str = "auto",
+    plain: bool = False,
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
     lesson: str = "",
@@ -105,7 +107,7 @@ def run(
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
-        engine = Engine(window.ctx, driver=driver)
+        engine = Engine(window.ctx, driver=driver, notice=silent)
         session = Session(
             engine,
             path,
@@ -113,6 +115,7 @@ def run(
             edits=found.edits,
             in_file=dict(found.in_file),
             camera_in_file=found.camera_in_file,
+            plain=plain,
             trial=trial,
             is_lost=lambda: window.lost,
         )
@@ -122,8 +125,7 @@ def run(
         live = Live(window, session, watcher, rememberer, Storing(session, keeps))
         if found.at is not None:
             live.place.stand_at(found.at)
-        density = window.scale * window.density
-        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
+        live.lessons.begin(lesson, language, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -240,7 +242,7 @@ class Live:
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
         self.window.reopen()
-        self.session.rebuild(Engine(self.window.ctx, driver=driver))
+        self.session.rebuild(Engine(self.window.ctx, driver=driver, notice=silent))
         self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
@@ -313,7 +315,6 @@ class Live:
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
         session = self.session
         draws, error = session.draws, session.error
-        self.lessons.reading.stage.room = size
         picture = session.frame(size)
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,13 +24,15 @@ from playground.live.files import watched
 from playground.live.stages import Stage, Tester, explained, gone
 from playground.live.sunlight import suns_of, turned
 from playground.live.words import Said, said_by_files
+from playground.sketch.assign import LAND
 from playground.sketch.find import find
 from playground.sketch.kept import KeptTechniques
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
-from playground.sketch.stand_ins import stand_ins
+from playground.sketch.values import shortest
+from playground.sketch.variants import left_out
 
 _NAMED = 2  # files that are named of those saved at once
 
@@ -43,7 +45,8 @@ class Drafts(ABC):
         path: str | Path,
         *,
         driver: str,
-        companions: bool = False,
+        variants: Collection[str] = (),
+        plain: bool = False,
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
@@ -68,7 +71,8 @@ class Drafts(ABC):
         self._camera_in_file = camera_in_file
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
-        self._companions = companions  # whether what only compute can do stands in for kernels
+        self.plain = plain  # every technique in its canonical form
+        self._variants = tuple(variants)  # kinds of fast variants that can run
         self._techniques = KeptTechniques()
         self._trial = trial
         self._now = now
@@ -134,6 +138,7 @@ class Drafts(ABC):
         try:
             with noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
+            loaded = loaded.plainly(self.plain)
             old = None if self._another else self.shown or self.coming
             draft, notes = (
                 reload_draft(old, loaded)
@@ -151,9 +156,9 @@ class Drafts(ABC):
             if self._trial is not None and self._reads_anew(self.shown.sketch):
                 self._propose(self.shown, [])
             return
-        if self._companions and self.shown is not None and not self._another:
-            notes = [*notes, *stand_ins(self.shown.file, loaded)]
-        self._propose(draft, notes)
+        known = () if old is None else left_out(old.base, self._variants)
+        plain_forms = [note for note in left_out(draft.base, self._variants) if note not in known]
+        self._propose(draft, [*notes, *plain_forms])
 
     def open(
         self,
@@ -182,6 +187,12 @@ class Drafts(ABC):
         """Have texts, by absolute path, stand in for shaders' files; nothing is written."""
         if texts != self.texts:
             self.texts = dict(texts)
+            self.reload()
+
+    def run_plain(self, plain: bool) -> None:
+        """Run every technique in its canonical form, or fast variants again where they are verified."""
+        if plain != self.plain:
+            self.plain = plain
             self.reload()
 
     def choose(self, pass_name: str, use: str) -> None:
@@ -271,6 +282,15 @@ class Drafts(ABC):
             fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
             others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
             self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+
+    def tidy(self) -> None:
+        """Write what is set by hand in the fewest digits that a shader reads as the same numbers."""
+
+        def tidied(edits: Edits) -> Edits:
+            return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
+
+        if self.shown is not None and tidied(self.shown.edits) != self.shown.edits:
+            self._edit(tidied)
 
     def unset(self, *paths: str) -> None:
         """Give parameters back the file's values."""

@@ -33,8 +33,8 @@ def draw_parameter(
     value, changed = values.of[path], path in values.changed
     end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
     top = imgui.get_cursor_screen_pos()
-    with row(parameter.title, lambda: explanation(parameter, path), edited=changed):
-        if memory.entry == path:
+    with row(item.title, lambda: explanation(parameter, path), edited=changed):
+        if memory.entry == item.label:
             _entry(item, memory, actions)
         else:
             new = draw_value(parameter, value, Place(item.label, look.scale, folder))
@@ -55,11 +55,11 @@ def draw_parameter(
         if cross(f"{item.label}-reset", "Back to the file's value"):
             session.unset(path)
     if here and imgui.is_mouse_clicked(1):
-        memory.menu, memory.menu_opens = path, True
+        memory.menu, memory.menu_opens = item.label, True
 
 
 def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: Actions) -> None:
-    """Draw the menu of the parameter that was clicked on with the right button."""
+    """Draw the menu of the parameter that was clicked on with the right button; ``items`` by their labels."""
     if memory.menu_opens:
         memory.menu_opens = False
         imgui.open_popup(_MENU)
@@ -86,7 +86,7 @@ def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: A
 def open_entry(item: Item, values: Values, memory: Memory, actions: Actions) -> None:
     """Begin to type a parameter's value."""
     await_field(actions)
-    memory.entry, memory.entry_opens = item.path, True
+    memory.entry, memory.entry_opens = item.label, True
     memory.entry_text = write(item.parameter, values.of[item.path])
 
 
