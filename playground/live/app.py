@@ -8,7 +8,7 @@ is drawn. Each part of a turn has a guard: one that fails is left out, and the w
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from datetime import datetime
 from pathlib import Path
@@ -52,7 +52,7 @@ from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.storing import Storing
-from playground.live.terminal_errors import TerminalErrors
+from playground.live.terminal_errors import TerminalErrors, to_log
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
@@ -84,6 +84,7 @@ def run(
     beside: bool = False,
     keeps: int = 0,
     time_limit: float | None = None,
+    tell: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -92,6 +93,7 @@ def run(
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. Expensive land is kept on disk, in at most
     ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``tell`` is told of each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -124,7 +126,7 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
         live.lessons.begin(lesson, language, beside=beside)
@@ -169,7 +171,13 @@ class Live:
     """The window, the session and the watcher, turn by turn."""
 
     def __init__(
-        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+        self,
+        window: Window,
+        session: Session,
+        watcher: Watcher,
+        rememberer: Rememberer,
+        storing: Storing,
+        tell: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
@@ -184,7 +192,7 @@ class Live:
         self.actions.interface = remembered_size()
         self.actions.sign_held = lambda: window.sign_held
         self.guard = Guard(self.actions.say)
-        self.terminal = TerminalErrors()
+        self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()

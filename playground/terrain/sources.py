@@ -44,6 +44,8 @@ class SourceKind:
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
+    picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
+    # the image whose channels, where it has this size, are the texels of the one output as they are
 
 
 def source_kind(name: str) -> SourceKind:
@@ -147,6 +149,10 @@ def _make_mask(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, 
     return {"mask": read_mask(Path(str(values["image"])), size, (int(stated[0]), int(stated[1])))}
 
 
+def _mask_picture(values: Mapping[str, Value], size: tuple[int, int]) -> Path | None:
+    return Path(str(values["image"])) if values["texels"] in ((0, 0), size) else None
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -167,6 +173,8 @@ SOURCES: dict[str, SourceKind] = {
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
     ),
-    "mask_file": SourceKind(lambda _: Land(), _make_mask, ("image",), ("image", "texels")),
+    "mask_file": SourceKind(
+        lambda _: Land(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
+    ),
 }
 """Name → what it does."""
