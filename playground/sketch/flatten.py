@@ -19,6 +19,7 @@ from functools import lru_cache
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
+from playground.sketch.follows import Rule, follow, rules_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.same import Same
 from playground.sketch.wiring import (
@@ -117,6 +118,7 @@ class _Shape:
     outputs: dict[str, dict[str, Ref]]
     wires: dict[str, dict[str, Source | None]]
     paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
+    rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
 
 
@@ -135,6 +137,7 @@ def flatten(sketch: Sketch, *, compute: bool, opened: tuple[str, ...] = ()) -> F
             shape.targets[path] = tuple(target.path for target in resolve(graph, path))
         for target in shape.targets[path]:
             values[target] = value
+    follow(shape.rules, values)
     nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
     return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs, shape.wires)
 
@@ -174,7 +177,7 @@ def _loops_of(nodes: tuple[Node, ...]) -> Iterator[str]:
 def _shape(key: Same[Graph], compute: bool, opened: tuple[str, ...]) -> _Shape:
     maker = _Flattener(key.object, compute, opened)
     nodes = tuple(maker.expand(key.object, "", {}))
-    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.wires, maker.paths)
+    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.wires, maker.paths, rules_of(maker.graphs))
 
 
 def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str) -> Node:
