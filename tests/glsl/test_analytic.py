@@ -248,7 +248,9 @@ def test_a_sun_on_a_free_arc_is_measured_anew_when_its_azimuth_changes(kept, ske
 
 def test_a_daylights_sun_keeps_to_no_arc(kept, sketch):
     """Its azimuth is in no parameter: it takes eight horizons, whatever is set for the sun."""
-    passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 16.0, latitude = 40.0 }\n'
+    passes = (
+        '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 16.0, latitude = 40.0 }\n'
+    )
     land = steep(33)
     arc, eight = (
         kept.read(sketch(land, "horizon_sun", passes=passes, arc=0.0, measured=way), "light")
