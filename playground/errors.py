@@ -127,6 +127,10 @@ class TrialCrash(TrialError):
     """The trial child died: the driver or its compiler crashed, or memory ran out."""
 
 
+class PlainFormWarning(UserWarning):
+    """A fast variant does not run: its technique's text is not the one that it was verified against."""
+
+
 def counted(number: int, noun: str) -> str:
     """Return "1 file", "2 files"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -1,13 +1,12 @@
 // generation/diamond_square.comp -- diamond-square, two levels at a time and normalised as they are written.
 //
 //   gives    height, as generation/diamond_square.toml, for 2^n + 1 texels a side
-//   needs    generation/diamond_square/{lattice,order,rows}.glsl, terrain/extremes.glsl
+//   needs    generation/diamond_square/{lattice,order,rows}.glsl, noise/finest.glsl, terrain/extremes.glsl
 //   units    as the technique
-//   source   Belaiche 2010, section 4.3.1; a random number that depends on its texel alone
+//   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
-//   tested   tests/glsl/test_diamond_square_companion.py, against the technique's own passes
-//   agrees   to the last bit, where the compiler fuses no multiplication with an addition;
-//            else to 1e-5 of the land's range
+//   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
+//   agrees   to the last bit, where the compiler fuses no multiplication with an addition
 //
 // The first turn makes the coarse lattice, of 32 spacings a side or fewer, in one group's
 // shared memory. Each further turn makes a lattice of four times as many spacings: a thread
@@ -25,13 +24,14 @@
 #undef random
 #include "generation/diamond_square/lattice.glsl"
 #include "generation/diamond_square/order.glsl"
+#include "noise/finest.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height")
+#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height", agrees = "1e-5")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique
 uniform int random = 0;         //! menu("centred", "positive") As in the technique
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) As in the technique
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") As in the technique
 uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the technique
 
 const int LANES = 32;
@@ -58,7 +58,7 @@ int place_of(int level, int levels) {
 
 Lattice lattice_of(int level) {
     int side = 1 << level;
-    return Lattice(side, (size.x - 1) >> level, 2.0 / float(side) * smoothing, random == 0, seed);
+    return Lattice(side, FINEST_SIDE >> level, 2.0 / float(side) * smoothing, random == 0, seed + DIAMOND_SQUARE_SALT);
 }
 
 // What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl does.

@@ -1,44 +1,46 @@
-// generation/fourier.comp -- the same land by transforms of sixteen numbers at a time, of half the spectrum.
+// generation/fourier.comp -- the same land from half of its spectrum, sixteen numbers transformed at a time.
 //
 //   gives    height
-//   needs    maths/complex.glsl, maths/fourier.glsl, maths/power.glsl, maths/whole.glsl, noise/hash.glsl
+//   needs    generation/fourier/wave.glsl, maths/complex.glsl, maths/fourier.glsl, maths/power.glsl,
+//            maths/whole.glsl
 //   units    heights without unit: 0..1, unless normalise says otherwise
 //   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
 //            others 1992, "Numerical Recipes in C", section 12.3
 //   tested   tests/glsl/test_fourier.py, against scipy.fft and against generation/fourier
-//   agrees   with the passes of generation/fourier within 1e-5
+//
+// The technique draws waves, adds them up to a grid and transforms that: which gives the waves
+// again. Here they are weighed as they are drawn, and only the way back to heights is gone.
 //
 // Rows y, y + n/4, y + n/2 and y + 3n/4 of the land are two complex rows, and both lie in one
 // row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in
 // base 16: the top one, one more where n > 8, and a lowest of 1 to 4 bits. Each stage takes
 // sixteen numbers that differ in one digit, transforms them and puts them back where they were:
-//   DRAW      random numbers, and the top digit of x
-//   HIGHER    a middle digit
+//   DRAW      the waves, weighed, and the lowest digit of y
+//   HIGHER    a middle digit, or the top one of x
+//   TOP_Y     the top digit of y, and two complex rows from the spectra of four real ones
 //   LOW_X     the lowest digit of x
-//   TOP_Y     the spectra of the four real rows, from those of the two, and the top digit of y
-//   MIDDLE    the lowest digit of y, the filter, and the lowest digit again
-// and backwards to heights, whose range is then known, for SHOW. What a digit of place has
-// become is a digit of frequency, in reverse order: the top digit counts single waves.
+// The range of heights is then known, for SHOW. What a digit of frequency has become is a digit
+// of place, in reverse order: the top digit of a frequency's place counts single waves.
 //
-// Backward is forward of the conjugates, so MIDDLE conjugates, and two rows of four come out
-// negated. The real rows need frequencies 0 to n/2 along x only: a thread of TOP_Y takes two
-// of them with their opposites, four columns, in which it then leaves the two for all rows.
-// Frequencies 0 and n/2 are their own opposites and have the columns beyond the last instead.
+// Backward is forward of the conjugates, so DRAW conjugates, and two rows of four come out
+// negated. The real rows need half of the frequencies along x only, for opposite ones are
+// conjugates: in columns of four DRAW leaves two frequencies for all rows, of which TOP_Y makes
+// these two and their opposites. Frequencies 0 and n/2 are their own opposites and have the
+// columns beyond the last instead.
 //
-// Shorter sides than 64 are repeated up to 64; all other frequencies are then 0 by themselves.
+// Shorter sides than 64 are repeated up to 64; all other frequencies are then 0.
+#include "generation/fourier/wave.glsl"
 #include "maths/complex.glsl"
 #include "maths/fourier.glsl"
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
-#include "noise/hash.glsl"
-#pragma compute(stages = "0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 5, 7, 8", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 11 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4")
+#pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 6 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4", agrees = "1e-5")
 
 uniform float roughness = 2.0; //! slider(0, 4) step(0.01) The r of 1 / f^r
 uniform uint seed = 7u;        //! slider(0, 9999) Which land
 uniform int normalise = 2;     //! menu("none", "max", "minmax") What is stretched to 1
 
-const int DRAW = 0, HIGHER = 1, LOW_X = 2, TOP_Y = 3, MIDDLE = 4;
-const int HIGHER_BACK = 5, TOP_Y_BACK = 6, SHOW = 7, SHOW_LAST_ROW = 8;
+const int DRAW = 0, HIGHER = 1, TOP_Y = 2, LOW_X = 3, SHOW = 4, SHOW_LAST_ROW = 5;
 
 ivec2 period;  // texels after which the land repeats
 ivec2 count;   // of the numbers transformed, along each axis
@@ -140,34 +142,7 @@ vec2 root(int e) {
     return complex_product(near_roots[e & 3], far_roots[e >> 2]);
 }
 
-// The numbers of a texel and of the one half the count further north.
-vec2 drawn(int x, int y) {
-    ivec2 texel = ivec2(x, y) & (period - 1);
-    int half_way = period.y >> 1;
-    vec2 pair = random_pair(ivec2(texel.x, texel.y & (half_way - 1)), seed) * 2.0 - 1.0;
-    if (texel.y >= half_way) pair.x = pair.y;
-    return count.y > period.y ? pair.xx : pair;
-}
-
-void draw(int job) {
-    int p = bits.x - 4;
-    int low = job & ((1 << p) - 1);
-    int row = job >> p;
-    for (int e = 0; e < 16; e++) v[e] = vec4(drawn((e << p) | low, row), drawn((e << p) | low, row + rows)).xzyw;
-    transform16(v);
-    find_roots(low, p);
-    int base = row * pitch + low;
-    for (int e = 0; e < 16; e++) waves[base + (e << p)] = both_products(v[place16(e)], root(e));
-}
-
 void higher(Sixteen s, int p) {
-    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e * s.apart];
-    transform16(v);
-    find_roots(s.low, p);
-    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = both_products(v[place16(e)], root(e));
-}
-
-void higher_back(Sixteen s, int p) {
     find_roots(s.low, p);
     for (int e = 0; e < 16; e++) v[e] = both_products(waves[s.base + e * s.apart], root(e));
     transform16(v);
@@ -183,31 +158,6 @@ void low_x(Sixteen s) {
 }
 
 void top_y(int job) {
-    int pairs = (count.x >> 2) + 1;
-    int p = bits.y - 4;
-    int low = quotient(job, pairs);
-    ivec2 unused;
-    ivec4 columns = columns_of(job - low * pairs, unused);
-    ivec4 from = columns;
-    if (from.y >= count.x) from.y = from.x;
-    // Of z = r + i s the spectrum of r is Z[k] + conj Z[-k], that of s is (Z[k] - conj Z[-k]) / i, each doubled.
-    for (int i = 0; i < 4; i++) {
-        int base = ((i << p) | low) * pitch;
-        vec4 a = waves[base + from.x];
-        vec4 b = waves[base + from.y];
-        vec4 c = waves[base + from.z];
-        vec4 d = waves[base + from.w];
-        v[i] = vec4(a.x + b.x, a.y - b.y, c.x + d.x, c.y - d.y);
-        v[i + 4] = vec4(a.y + b.y, b.x - a.x, c.y + d.y, d.x - c.x);
-        v[i + 8] = vec4(a.z + b.z, a.w - b.w, c.z + d.z, c.w - d.w);
-        v[i + 12] = vec4(a.w + b.w, b.z - a.z, c.w + d.w, d.z - c.z);
-    }
-    transform16(v);
-    find_roots(low, p);
-    for (int e = 0; e < 16; e++) waves[(((e & 3) << p) | low) * pitch + columns[e >> 2]] = both_products(v[place16(e)], root(e));
-}
-
-void top_y_back(int job) {
     int pairs = (count.x >> 2) + 1;
     int p = bits.y - 4;
     int low = quotient(job, pairs);
@@ -230,26 +180,25 @@ void top_y_back(int job) {
     }
 }
 
-// What the filter makes of a frequency, with all that the transforms multiply a number by taken out.
-float weight(int k, int l) {
-    ivec2 along = ivec2(k, l);
-    along -= count * ivec2(greaterThan(2 * along, count));
-    vec2 f = vec2(along) * float(max(period.x, period.y)) / vec2(count);
+// A wave as the filter leaves it, with what the way back multiplies by taken out.
+vec2 weighed(ivec2 frequency) {
+    ivec2 along = frequency - count * ivec2(greaterThan(2 * frequency, count));
+    // Of a short side that is repeated, waves that do not end where it ends are 0.
+    ivec2 copies = count / period;
+    ivec2 waves = along / copies;
+    if (waves * copies != along) return vec2(0.0);
+    vec2 f = vec2(waves) * float(max(period.x, period.y)) / vec2(period);
     float squared = dot(f, f);
-    float found = squared > 0.0 ? power(max(squared, 0.5), -0.5 * roughness) : 1.0;
-    return found * 0.5 / (float(count.x) * float(count.y));
+    float weight = squared > 0.0 ? power(squared, -0.5 * roughness) : 1.0;
+    return wave_number(waves, period, seed) * (weight * inversesqrt(float(period.x) * float(period.y)));
 }
 
-void middle(Sixteen s) {
+void draw(Sixteen s) {
     int levels = lowest_digit(bits.y);
     int block = ~((1 << levels) - 1);
-    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e * s.apart];
-    transform_blocks(v, levels);
     for (int e = 0; e < 16; e++) {
         int l = frequency_of(s.place | (e & block) | block_number(e, levels), bits.y);
-        float a = weight(s.frequencies.x, l);
-        float b = weight(s.frequencies.y, l);
-        v[e] *= vec4(a, -a, b, -b);
+        v[e] = vec4(weighed(ivec2(s.frequencies.x, l)), weighed(ivec2(s.frequencies.y, l))) * vec4(1.0, -1.0, 1.0, -1.0);
     }
     transform_blocks_back(v, levels);
     for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[e];
@@ -320,27 +269,24 @@ void main() {
     pitch = count.x + 4;
 
     int job = int(gl_GlobalInvocationID.x);
-    bool x_axis = iteration < 3 || iteration > 7;
-    bool top = iteration == 10;
+    bool x_axis = iteration > 2;
+    bool top = iteration == 5;
     int n = x_axis ? bits.x : bits.y;
     int p = top ? n - 4 : n - 8;
     int jobs = x_axis ? count.x * rows >> 4 : ((count.x >> 2) + 1) * (count.y >> 4);
-    if ((stage == HIGHER || stage == HIGHER_BACK) && p <= 0) jobs = 0;
+    if (stage == HIGHER && p <= 0) jobs = 0;
     int fours = (size.x + 3) >> 2;
     if (stage == SHOW) jobs = fours * rows;
     if (stage == SHOW_LAST_ROW) jobs = size.y > count.y ? fours : 0;
     if (job >= jobs) return;
 
-    if (stage == DRAW) draw(job);
-    if (stage == LOW_X) low_x(along_x(job, 0));
+    if (stage == DRAW) draw(along_y(job, 0));
     if (stage == TOP_Y) top_y(job);
-    if (stage == MIDDLE) middle(along_y(job, 0));
-    if (stage == TOP_Y_BACK) top_y_back(job);
-    if (stage == HIGHER || stage == HIGHER_BACK) {
+    if (stage == LOW_X) low_x(along_x(job, 0));
+    if (stage == HIGHER) {
         Sixteen sixteen = along_x(job, p);
         if (!x_axis) sixteen = along_y(job, p);
-        if (stage == HIGHER) higher(sixteen, p);
-        else higher_back(sixteen, p);
+        higher(sixteen, p);
         if (top) measure();
     }
     if (stage == SHOW || stage == SHOW_LAST_ROW) {

@@ -13,8 +13,10 @@
 
 uniform uint seed = 7u; //! slider(0, 9999) Which land
 
+const uint SALT = 0x93e2094du;  // CRC-32 of "generation/white_noise"
+
 // anchor: kernel
 float kernel(ivec2 texel) {
-    return random(texel, seed);
+    return random(texel, seed + SALT);
 }
 // end: kernel

@@ -12,6 +12,13 @@
 // A sine-based hash differs from driver to driver and repeats far from the origin;
 // whole numbers do neither. The key is a lattice point and a seed, so a number does not
 // depend on the order in which numbers are asked for.
+//
+// Whoever draws adds a salt of its own to the seed, the CRC-32 of its name:
+//     const uint SALT = 0x93e2094du;  // CRC-32 of "generation/white_noise"
+//     ... random(texel, seed + SALT) ...
+// Without it two techniques of one seed would draw the same numbers at the same points, and
+// their sum or product would be that of a terrain with itself. Python gives the number:
+//     python -c "import zlib; print(hex(zlib.crc32(b'generation/white_noise')))"
 #ifndef NOISE_HASH
 #define NOISE_HASH
 

@@ -17,9 +17,11 @@ uniform float roughness = 0.6;   //! slider(0, 1) step(0.01) How uneven the surf
 uniform float furrows = 0.25;    //! slider(0, 1) step(0.01) How deep furrows are, from west to east
 uniform float grains = 0.4;      //! slider(0, 1) step(0.01) How strong single grains are
 
+const uint SALT = 0xeac5a27fu;  // CRC-32 of "texturing/detail"
+
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size);
-    uint number = seed * 32u;
+    uint number = seed * 32u + SALT;
     vec2 bend = vec2(gradient_noise_periodic(place * 20.0, ivec2(20), number),
                      gradient_noise_periodic(place * 20.0, ivec2(20), number + 1u));
     vec3 pieces = cells_periodic(place * 13.0 + 0.5 * bend, ivec2(13), number + 2u);

@@ -14,7 +14,7 @@
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D height;           //! input
-uniform ivec2 part = ivec2(0);      //! Which part of the land, counted east and north
+uniform ivec2 part = ivec2(0);      //! parts("east", "north") Which part of the land, counted east and north
 uniform int apron = 0;              //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part, in texels of the height
 uniform int patches = 64;           //! log_slider(4, 1024) unit("texels") Width of the widest patches
 uniform uint seed = 7u;             //! slider(0, 9999) Which patches
@@ -30,6 +30,8 @@ uniform vec3 sand = vec3(0.420, 0.360, 0.240);    //! colour group("Colours") Sa
 uniform vec3 snow = vec3(0.800, 0.840, 0.900);    //! colour group("Colours") Snow
 uniform float contrast = 0.35;      //! slider(0, 1) step(0.01) group("Colours") How much lighter and darker all of them become in patches
 uniform int shown = 0;              //! menu("colours", "weights") group("Colours") The ground, or what each colour counts: rock red, wood green, snow blue
+
+const uint SALT = 0xd657708du;  // CRC-32 of "texturing/endless_ground"
 
 // A random number at each point of a lattice, -1..1, smooth between them.
 float patch_at(ivec2 cell, vec2 share, uint which) {
@@ -78,7 +80,7 @@ vec4 kernel(ivec2 texel) {
     float slope = degrees(atan(length(relief * slope_at(height, place, spacing_of(grid, extent), CENTRAL_DIFFERENCES))));
     int finer = max((size.x - 1) / max(grid.x - 1, 1), 1);
     ivec2 node = node_of(texel, part, apron * finer, size);
-    vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u);
+    vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u + SALT);
     float broad = both.x;
     float fine = both.y;
     float level = metres + ragged * broad;

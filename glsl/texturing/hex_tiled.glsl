@@ -24,12 +24,14 @@ uniform float turn = 0.0;        //! angle(0, 180) How far chance turns each pie
 uniform uint seed = 1u;          //! slider(0, 9999) Which pieces
 uniform float detail = 1.0;      //! slider(0, 1) step(0.01) How much of the image's contrast is left. 0: its mean colour
 
+const uint SALT = 0x74014a9au;  // CRC-32 of "texturing/hex_tiled"
+
 vec3 piece(ivec2 corner, vec2 tile, float level) {
-    vec2 shift = random_pair(corner, seed);
+    vec2 shift = random_pair(corner, seed + SALT);
     if (turn > 0.0) {
         // About the corner, so that a piece does not depend on how far it is from the origin.
         vec2 middle = vec2(float(corner.x) + 0.5 * float(corner.y), 0.8660254 * float(corner.y)) / cells;
-        vec2 way = cos_sin_degrees(turn * random_signed(corner, seed + 0x51ed270bu));
+        vec2 way = cos_sin_degrees(turn * random_signed(corner, seed + SALT + 0x51ed270bu));
         vec2 away = tile - middle;
         tile = vec2(dot(way, away), way.x * away.y - way.y * away.x);
     }

@@ -20,10 +20,12 @@ uniform float wetness = 0.4;                  //! slider(0, 1) step(0.01) How mu
 uniform float cracks = 0.5;                   //! slider(0, 1) step(0.01) How dark the cracks in dry mud are
 uniform float roughness = 0.6;                //! slider(0, 1) step(0.01) How lumpy it is
 
+const uint SALT = 0x8dc1ce03u;  // CRC-32 of "texturing/mud"
+
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(clods);
     ivec2 period = ivec2(clods);
-    uint number = seed * 32u;
+    uint number = seed * 32u + SALT;
     vec2 bend = vec2(gradient_fbm_periodic(place * 2.0, period * 2, 3, 0.5, number),
                      gradient_fbm_periodic(place * 2.0, period * 2, 3, 0.5, number + 4u));
     vec2 bent = place + 0.35 * bend;

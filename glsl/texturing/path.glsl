@@ -21,6 +21,8 @@ uniform vec3 shade = vec3(0.060, 0.042, 0.028); //! colour The earth beside a st
 uniform float gravel = 0.6;                   //! slider(0, 1) step(0.01) How many stones there are
 uniform float roughness = 0.5;                //! slider(0, 1) step(0.01) How uneven earth and stones are
 
+const uint SALT = 0xfb71002cu;  // CRC-32 of "texturing/path"
+
 // The stone that reaches a place best: how far inside its rim that is, over its radius (below 0: outside), and a random number of it.
 vec2 nearest_stone(vec2 place, ivec2 period, float share, uint number) {
     vec2 found = vec2(-1e3, 0.0);
@@ -61,7 +63,7 @@ vec3 with_stones(vec3 ground, vec2 place, int across, float share, float dent, f
 
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size);
-    uint number = seed * 64u;
+    uint number = seed * 64u + SALT;
     ivec2 coarse = ivec2(5);
     float broad = gradient_fbm_periodic(place * vec2(coarse), coarse, 5, 0.6, number);
     ivec2 fine = ivec2(max(stones * 3, 16));

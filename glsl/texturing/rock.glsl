@@ -20,10 +20,12 @@ uniform vec3 shade = vec3(0.035, 0.031, 0.029); //! colour The depth of a crack
 uniform float cracks = 0.6;                   //! slider(0, 1) step(0.01) How dark the cracks are
 uniform float roughness = 0.6;                //! slider(0, 1) step(0.01) How uneven the faces are
 
+const uint SALT = 0xc76c3081u;  // CRC-32 of "texturing/rock"
+
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(blocks);
     ivec2 period = ivec2(blocks);
-    uint number = seed * 32u;
+    uint number = seed * 32u + SALT;
     vec2 bend = vec2(gradient_fbm_periodic(place, period, 5, 0.6, number),
                      gradient_fbm_periodic(place, period, 5, 0.6, number + 6u));
     vec2 bent = place + 0.85 * bend;

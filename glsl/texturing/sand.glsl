@@ -20,6 +20,8 @@ uniform vec3 shade = vec3(0.270, 0.175, 0.090); //! colour The depth of a trough
 uniform float height = 0.7;                   //! slider(0, 1) step(0.01) How much the wind has rippled it
 uniform float grain = 0.5;                    //! slider(0, 1) step(0.01) How coarse it looks close up
 
+const uint SALT = 0x505f1932u;  // CRC-32 of "texturing/sand"
+
 // One ripple, 0 in the trough and 1 on the crest: three quarters of it rise.
 float ripple(float phase) {
     float along = fract(phase);
@@ -29,7 +31,7 @@ float ripple(float phase) {
 
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size);
-    uint number = seed * 32u;
+    uint number = seed * 32u + SALT;
     ivec2 period = ivec2(5);
     float bend = gradient_fbm_periodic(place * vec2(4.0, 6.0), ivec2(4, 6), 3, 0.5, number);
     float sway = gradient_fbm_periodic(place * 2.0, ivec2(2), 2, 0.5, number + 4u);

@@ -18,10 +18,12 @@ uniform vec3 shade = vec3(0.50, 0.58, 0.70);    //! colour The depth of a hollow
 uniform float ripples = 0.4;                  //! slider(0, 1) step(0.01) How much the wind has furrowed it
 uniform float grain = 0.3;                    //! slider(0, 1) step(0.01) How coarse it looks close up
 
+const uint SALT = 0xc6a62e90u;  // CRC-32 of "texturing/snow"
+
 vec4 kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(drifts);
     ivec2 period = ivec2(drifts);
-    uint number = seed * 32u;
+    uint number = seed * 32u + SALT;
     float drift = gradient_fbm_periodic(place, period, 5, 0.65, number);
     // Furrows lie along the wind: six times as many across it; the drifts turn them a little.
     vec2 bent = place + vec2(0.15, 0.35) * drift;

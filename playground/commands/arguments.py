@@ -115,6 +115,10 @@ DriverOption = Annotated[
         autocompletion=complete_driver,
     ),
 ]
+PlainOption = Annotated[
+    bool,
+    typer.Option("--plain", metavar="", help="Run every technique in its plain form, no fast variant."),
+]
 SoftwareOption = Annotated[
     bool, typer.Option("--software", metavar="", help="Draw with the processor (Mesa llvmpipe).")
 ]

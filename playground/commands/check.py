@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    PlainOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
 from playground.errors import counted
-from playground.terminal import painted, progress
+from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -36,6 +42,7 @@ def check(
     as_json: Annotated[
         bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
     ] = False,
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
@@ -51,11 +58,11 @@ def check(
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root)
+            report = check_file(path, trial, root, plain=plain)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
-                print(json.dumps(report.as_json(), ensure_ascii=False), flush=True)
+                print_json(report.as_json(), indent=None)
             else:
                 _print_report(report)
             advance()
@@ -75,4 +82,6 @@ def _print_report(report: FileReport) -> None:
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
     for diagnostic in report.errors:
         print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")))
+    for sentence in report.notes:
+        print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

@@ -14,6 +14,7 @@ from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
     Moment,
+    PlainOption,
     Renderer,
     SetOption,
     SizeOption,
@@ -34,6 +35,7 @@ from playground.commands.film import Asked, make_many, read_count, read_fps, rea
 from playground.errors import DataError, ParameterError
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
@@ -83,6 +85,7 @@ class Picture:
     texture: str = ""
     profile: bool = False
     steps: dict[str, int] | None = None
+    plain: bool = False
     asked: Asked | None = None  # more than one picture
 
 
@@ -103,6 +106,7 @@ def render(
     time: TimeOption = "",
     settings: SetOption = None,
     driver: DriverOption = "auto",
+    plain: PlainOption = False,
     shot: Annotated[
         str, typer.Option("--shot", help="Render a shot of the sketch.", metavar="NAME", show_default=False)
     ] = "",
@@ -212,6 +216,7 @@ def render(
         texture,
         profile,
         read_steps(steps),
+        plain,
         asked,
     )
     make_picture(picture, ctx.obj.or_else(software, device))
@@ -222,7 +227,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     from playground.sketch.load import load
 
     moment = moment_of(
-        load(picture.sketch),
+        load(picture.sketch).plainly(picture.plain),
         shot=picture.shot,
         preset=picture.preset,
         values=picture.values,
@@ -246,6 +251,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         if not picture.texture and is_large(engine, sketch, size):
             if picture.profile:
                 raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+            if picture.output != "-" and target.suffix.lower() != ".png":
+                raise DataError(
+                    "a picture this large is drawn in parts, and written as .png", file=picture.output
+                )
             _draw_large(engine, moment, size, target, picture.output == "-")
         else:
             with busy(f"rendering {sketch.name}"):
@@ -275,7 +284,7 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
 
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
-        frame.save(target)
+        frame.save(target, say=note)
 
 
 def _say_not_finite(engine: Engine) -> None:
@@ -312,6 +321,8 @@ def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
+        if isinstance(sys.stdout, Nowhere):
+            raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
     if not picture.output:
         parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]

@@ -34,6 +34,7 @@ class Keys:
     """The keys of one plan."""
 
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
+    raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
     unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the count of turns
     loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, whatever the count of turns
     step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
@@ -94,7 +95,7 @@ class _Text:
 def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
-        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a companion's is not
+        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
     header += [
         kernel.samples,
@@ -160,7 +161,9 @@ class _Made:
         if node.path in self.continued:
             parts.append("continued")
         self.keys.unfinished[node.path] = _digest([node.path, parts])
-        self.keys.steps[node.path] = _digest([node.repeat, parts])
+        self.keys.raw[node.path] = self.keys.steps[node.path] = _digest([node.repeat, parts])
+        if node.between is not None:
+            self.keys.steps[node.path] = _digest([self.keys.raw[node.path], *node.between])
         varies = frozenset[str]().union(*(self._varies(source, varying) for _, source in node.inputs))
         if loop and kernel.repeat == "1" and kernel.reads("iteration"):
             varies |= {loop}

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 
+from playground.engine.between import Between, between_of
 from playground.engine.files import find_file
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch import expressions
@@ -58,6 +59,7 @@ class Step:
     whole: int  # turns in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
+    between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
 
     @property
     def whole_size(self) -> tuple[int, int]:
@@ -92,6 +94,7 @@ class Plan:
     frame_size: tuple[int, int]
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
+    interpolated: bool = False  # what stopped passes have not reached is filled
 
     def walk(self) -> Iterator[Step]:
         """Yield every step, those inside loops included."""
@@ -158,23 +161,28 @@ def make_plan(
     *,
     frame_size: tuple[int, int],
     time: float = 0.0,
-    compute: bool = False,
+    variants: Collection[str] = (),
     steps: Mapping[str, int] | None = None,
     wanted: str = "",
+    interpolated: bool | None = None,
     largest: int = LARGEST_SIDE,
 ) -> Plan:
     """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
 
-    ``compute`` lets companions stand for whole techniques, but not for those around the
-    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of
-    a technique will do where one pass inside it repeats). Raises ``SketchError`` or
-    ``DataError`` at the pass that is wrong, ``ShaderError`` at a kernel's header.
+    ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
+    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+    path (that of a technique will do where one pass inside it repeats). What a stopped pass has
+    not reached is ``interpolated`` in pictures and not in what is ``wanted``, unless told (see
+    ``between``). Raises ``SketchError`` or ``DataError`` at the pass that is wrong,
+    ``ShaderError`` at a kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
-    flat = flatten(sketch, compute=compute, opened=(*stopped, *filter(None, [wanted])))
-    return _Planner(sketch, flat, size, seconds, stopped).plan()
+    opened = (wanted,) if wanted else ()
+    flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
+    fills = not wanted if interpolated is None else interpolated
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -182,7 +190,7 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
-    nodes = flatten(sketch, compute=False).nodes
+    nodes = flatten(sketch).nodes
     found = repeated_path(str(path), nodes)
     if found is None:
         hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
@@ -238,7 +246,7 @@ def _turns(path: str, count: object) -> int:
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
     """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
 
@@ -252,13 +260,21 @@ def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
 
 class _Planner:
     def __init__(
-        self, sketch: Sketch, flat: Flat, frame_size: tuple[int, int], time: float, steps: dict[str, int]
+        self,
+        sketch: Sketch,
+        flat: Flat,
+        frame_size: tuple[int, int],
+        time: float,
+        steps: dict[str, int],
+        *,
+        fills: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
         self.frame_size = frame_size
         self.time = time
         self.steps = steps
+        self.fills = fills
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
@@ -269,7 +285,8 @@ class _Planner:
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, self.frame_size, self.time, self.steps)
+        seen = self.frame_size, self.time, self.steps, self.fills
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen)
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
@@ -289,7 +306,8 @@ class _Planner:
         whole = self._count(kernel.repeat, node.path, kernel, names)
         # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
-        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec)
+        between = between_of(node, repeat, whole, names) if self.fills else None
+        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec, between=between)
 
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
@@ -360,7 +378,7 @@ class _Planner:
         return values
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        """Return a leaf's size; a companion's is that of the pass whose output it gives."""
+        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
         path = leaf.path
         technique: Technique = self.flat.graphs.get(path, leaf.kernel)
         while isinstance(technique, Graph):

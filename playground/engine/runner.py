@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.engine.between import Between
 from playground.engine.binder import Binder
-from playground.engine.companions import Companions
+from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
+from playground.engine.fill import filled
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.plan import Plan, Step, placed
 from playground.engine.programs import Programs
@@ -41,7 +43,7 @@ class Runner:
         self.programs = Programs(ctx)
         self.binder = Binder(ctx, software=info.software)
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
-        self.companions = Companions(ctx, self.kernels)
+        self.compute_variants = ComputeVariants(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
         self.tell: Callable[[Step], None] | None = None  # called before each step runs
         self._plan: Plan | None = None
@@ -78,7 +80,7 @@ class Runner:
     def release(self) -> None:
         """Give back every program, mesh and texture kept."""
         self.draws.release()
-        self.companions.release()
+        self.compute_variants.release()
         self.binder.release()
         self.programs.release()
 
@@ -104,6 +106,10 @@ class Runner:
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
         return self.kernels.empty(step)
+
+    def filled(self, result: Result, between: Between) -> Result:
+        """Return new textures, with what a stopped run has not reached joined up: see ``between``."""
+        return filled(self.kernels, self.pool, result, between)
 
     def copy(self, target: moderngl.Texture, source: moderngl.Texture) -> None:
         """Fill a texture with another, nearest texel for nearest."""
@@ -144,7 +150,7 @@ class Runner:
         if kind == "draw":
             return self.draws.run(job)
         if kind == "compute":
-            return self.companions.run(job)
+            return self.compute_variants.run(job)
         if kind.startswith("plain"):
             return self.kernels.plain(job, self._usual(step))
         return self.kernels.run(job, driver)

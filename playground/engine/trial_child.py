@@ -15,6 +15,7 @@ from typing import IO, TYPE_CHECKING
 
 from playground.engine.engine import Engine
 from playground.engine.mistakes import all_mistakes
+from playground.engine.plain_forms import silent
 from playground.engine.plan import smallest_land
 from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch
 from playground.engine.trial_process import Doing, Ready, receive_bytes, send
@@ -95,7 +96,7 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request, te
                 skipped.append(COMPUTE)
                 continue
             if driver not in engines:
-                engines[driver] = Engine(ctx, driver=driver, cache_bytes=64 * 2**20)
+                engines[driver] = Engine(ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
                 # A mesh's fineness proves nothing more, and takes longer than all the rest.
                 engines[driver].runner.draws.finest = _FINEST
                 engines[driver].runner.tell = lambda step: tell(step.path, step.kernel.path)

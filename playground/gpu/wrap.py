@@ -55,14 +55,14 @@ class Wrapped:
 
 
 def wrap(kernel: Kernel, driver: str) -> Wrapped:
-    """Wrap a kernel, a draw, a companion or a plain shader.
+    """Wrap a kernel, a draw, a compute variant or a plain shader.
 
     Raises ``ShaderError`` where the file's functions do not have the signatures its header asks for.
     """
     if kernel.kind == "draw":
         return _wrap_draw(kernel)
     if kernel.kind == "compute":
-        return _wrap_companion(kernel)
+        return _wrap_variant(kernel)
     if kernel.kind == "plain_fragment":
         return Wrapped(
             kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": _whole(kernel)}
@@ -245,7 +245,7 @@ def _texel(output: Output) -> str:
     )
 
 
-def _wrap_companion(kernel: Kernel) -> Wrapped:
+def _wrap_variant(kernel: Kernel) -> Wrapped:
     before = [
         "#version 430",
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",

@@ -141,7 +141,7 @@ def _range(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[floa
 
 def _seen_from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Sketch:
     ref = table["view"]
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     try:
         found = flat.ref(ref, sketch.name)
     except PlaygroundError as error:

@@ -50,6 +50,7 @@ class Actions:
     history: History = field(default_factory=History)
     keymap_shown: bool = False
     full_screen: Callable[[], None] = lambda: None  # fills the screen, or no longer
+    fills_screen: Callable[[], bool] = lambda: False
     dropped: list[Path] = field(default_factory=list)  # images that wait to be put somewhere
     searching: bool = False  # the panel is asked for its search
     offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
@@ -61,8 +62,11 @@ class Actions:
     editing: list[Editing] = field(default_factory=list)  # files open in windows of our own
     copy_of: Callable[[Path], Editing | None] = lambda path: None  # what is drawn in place of a file
     leaving: bool = False  # the window is to close, and something is not saved: it is asked what to do
+    awaits_field: int = 0  # turns in which a field is still about to take the keys: see ``field``
+    typed_ahead: str = ""  # what was typed for it meanwhile
     reveal: str = ""  # the pass that the panel is to bring into sight
     toggle_lessons: Callable[[], None] = lambda: None  # shows the lessons, or no longer
+    lesson_shown: Callable[[], bool] = lambda: False
     turn_page: Callable[[int], None] = lambda pages: None  # goes so many pages of a lesson on
 
     def __post_init__(self) -> None:
@@ -125,15 +129,6 @@ class Actions:
     def toggle_keymap(self) -> None:
         """Show what every key does, or no longer."""
         self.keymap_shown = not self.keymap_shown
-
-    def escape(self) -> None:
-        """Put the key map or the capture's window away, or quit."""
-        if self.keymap_shown:
-            self.keymap_shown = False
-        elif self.capture.shown:
-            self.capture.shown = False
-        else:
-            self.quit()
 
     def rewind(self) -> None:
         """Go back to time 0."""

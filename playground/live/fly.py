@@ -225,8 +225,10 @@ class Fly:
             fresh = {n for n, b in enumerate(held) if b and not (self._buttons[n : n + 1] or (0,))[0]}
             self._buttons = held
             pressed |= {name for number, name in _PAD.items() if number in fresh}
-        if "quit" in pressed:
+        if self.paused and "quit" in pressed and (imgui.get_io().key_ctrl or imgui.get_io().key_super):
             self.window.ask_to_close()
+        if "leave" in pressed:
+            self._leave()
         if "help" in pressed:
             self.instruments.help = not self.instruments.help
         if "pause" in pressed:
@@ -240,6 +242,13 @@ class Fly:
                 asked = self.flight.hour if self._hour is None else self._hour
                 self._hour = (asked + hours) % 24.0
                 self.paused = False
+
+    def _leave(self) -> None:
+        """Put the help away; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
+        if self.instruments.help:
+            self.instruments.help = False
+        else:
+            self.paused = True
 
     def _write_status(self) -> None:
         """Add a line for a test that follows, at most twenty a second."""
@@ -268,7 +277,8 @@ class Fly:
 
 
 _PRESSES: dict[imgui.Key, str] = {
-    _K.escape: "quit",
+    _K.escape: "leave",
+    _K.q: "quit",
     _K.f1: "help",
     _K.p: "pause",
     _K.space: "pause",

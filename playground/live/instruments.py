@@ -23,7 +23,8 @@ HELP: tuple[tuple[str, str], ...] = (
     ("P or Space", "pause (gamepad: Start)"),
     ("R", "back to the start (gamepad: Back)"),
     ("?", "this help (also F1)"),
-    ("Esc", "quit"),
+    ("Esc", "put this help away; pause"),
+    ("Ctrl+Q", "quit, while it is paused"),
 )
 
 
@@ -58,9 +59,9 @@ class Instruments:
         return (
             (self.trouble, bool(self.trouble)),
             ("recording", self.recording),
-            ("end of the replay", self.ended),
+            ("end of the replay: Ctrl+Q quits", self.ended),
             ("replay", self.replaying and not self.ended),
-            ("paused", paused and not self.ended),
+            ("paused: P flies on, Ctrl+Q quits", paused and not self.ended),
         )
 
     def _reading(self, flight: Flight) -> str:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from playground.live.actions import Actions
+from playground.live.field import keeps_keys, left_a_field
+from playground.live.layers import close_one
 from playground.live.saving import save_values
 from playground.live.sources import edit_problem
 
@@ -65,7 +67,8 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
-    Key(imgui.Key.escape, "Esc", "quit", "quit", lambda a: a.escape()),
+    Key(imgui.Key.escape, "Esc", "close what is open, one thing at a time", "", close_one),
+    Key(imgui.Key.q, "Ctrl+Q", "quit", "quit", lambda a: a.quit(), ctrl=True),
 )
 
 
@@ -75,15 +78,25 @@ def _step(actions: Actions) -> None:
 
 
 def act_on_keys(actions: Actions) -> None:
-    """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu."""
+    """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu.
+
+    Two belong to neither: Esc, unless it leaves the field itself, and what quits.
+    """
     io = imgui.get_io()
-    if io.want_text_input or io.key_alt:
-        return
-    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
-        return
     # In a slow turn Ctrl may come up again together with the key that it was held for.
     ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
     shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
+    if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
+        actions.quit()
+        return
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
+        if not left_a_field():
+            close_one(actions)
+        return
+    if keeps_keys(actions) or io.want_text_input or io.key_alt:
+        return
+    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        return
     typed = {chr(letter) for letter in io.input_queue_characters}
     for key in KEYS:
         if key.letter:

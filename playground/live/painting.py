@@ -183,6 +183,7 @@ class Painting:
             self.session.notes.append(str(error))
             return None
         self._canvases[path] = canvas
+        self.session.vouch_for(canvas.path)
         self.session.set(path, str(canvas.path))
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
         return canvas

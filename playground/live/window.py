@@ -23,6 +23,7 @@ import glfw
 from playground.errors import ContextError
 from playground.gpu.context import abandon, adopt_context
 from playground.gpu.mend import mend
+from playground.live.clicks import Clicks
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Window:
         if not glfw.init():
             raise _refused("glfw.init failed")
         self._title = title
+        self._clicks = Clicks()
         self._screen_size = (0, 0)
         self._screen: moderngl.Framebuffer | None = None
         try:
@@ -115,17 +117,23 @@ class Window:
 
     def wait(self, seconds: float) -> None:
         """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
+        self._clicks.asks()
         if seconds <= 0:
             glfw.poll_events()
         else:
             glfw.wait_events_timeout(seconds)
+        self._clicks.asked()
 
     def begin(self) -> None:
         """Begin a turn of the interface."""
         self.theme.rescale(self.scale)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
+        io, longest = imgui.get_io(), self._clicks.longest()
+        io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
         imgui.new_frame()
+        if imgui.is_mouse_clicked(0):
+            self._clicks.taken()
 
     def end(self) -> None:
         """Draw the interface over what is on the screen, and show it."""
@@ -177,8 +185,14 @@ class Window:
     def _start_backends(self) -> None:
         address = ctypes.cast(self._handle, ctypes.c_void_p).value
         assert address is not None
+        pressed: Any = self._press
+        glfw.set_mouse_button_callback(self._handle, pressed)  # imgui's own callback hands on to it
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330 core")
+
+    def _press(self, _: object, button: int, action: int, __: int) -> None:
+        if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS:
+            self._clicks.press()
 
     def _start_imgui(self) -> Theme:
         imgui.create_context()

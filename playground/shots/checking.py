@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn
 
@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.plain_forms import PlainForms, warn
 from playground.errors import (
     ContextError,
     DataError,
@@ -75,6 +76,7 @@ class Checker:
         self.expected: str = config.getoption("--shots-renderer")
         self.any_renderer: bool = config.getoption("--shots-any-renderer")
         self.updating: bool = config.getoption("--shots-update")
+        self.plain: bool = config.getoption("--shots-plain")
         software = ContextInfo(0, self.expected, "", "", 0).software
         renderer = "any" if not software else "either" if self.any_renderer else "software"
         self.studio = Studio(config.getoption("--shots-timeout"), renderer)
@@ -88,7 +90,9 @@ class Checker:
     def shot(self, node: pytest.Item, case: ShotCase) -> None:
         """Draw a shot and hold it to its reference."""
         start = time.perf_counter()
+        case = replace(case, sketch=case.sketch.plainly(self.plain))
         renderer = self.renderer(node, case)
+        PlainForms(warn, renderer.compute).tell(case.sketch)
         taken: Taken | PlaygroundError
         try:
             taken = self.studio.take(case)
@@ -153,7 +157,7 @@ class Checker:
 
     def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
         """Return the command that would accept the picture; "" where none would."""
-        if outcome.ok or outcome.word in NEVER_ACCEPTED:
+        if outcome.ok or self.plain or outcome.word in NEVER_ACCEPTED:
             return ""
         options = ["--shots-update"]
         if self.expected != REFERENCE_RENDERER:

@@ -10,9 +10,10 @@ from typing import Any
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import wiring
+from playground.sketch.agreement import read_agreement
 from playground.sketch.assign import LAND, check_value, flat_values, resolve
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
-from playground.sketch.places import leads_outside
+from playground.sketch.places import is_variant, leads_outside
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
@@ -28,8 +29,14 @@ _PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
 
 def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
     """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
-    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS))
+    more = ("agrees",) if is_variant(file.path) else ()
+    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS, *more))
     file.version(required=False)
+    try:
+        stated = file.take(file.table, "agrees", str, "")
+        agrees = read_agreement(stated) if stated else ()
+    except ValueError as error:
+        raise file.error(f"agrees: {error}", "agrees") from None
     graph = Graph(
         name,
         str(file.path),
@@ -38,6 +45,7 @@ def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
         _exports(file, "inputs"),
         file.texts(file.table, "outputs"),
         file.take(file.table, "title", str, ""),
+        agrees,
         line=file.line("outputs"),
     )
     for key, names in (

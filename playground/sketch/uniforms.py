@@ -33,7 +33,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "follows"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows"})
 
 Calls = dict[str, list[str]]
 
@@ -188,6 +188,7 @@ def _parameter(
         _text(calls, "group", line),
         _text(calls, "label", line),
         tooltip,
+        parts=_parts(name, glsl_type, kind, calls, line),
         file=line.file,
         line=line.number,
     )
@@ -196,6 +197,21 @@ def _parameter(
         return replace(parameter, default=values.coerce(parameter, default))
     except ParameterError as error:
         raise line.error(f"the default of {error.diagnostics[0].message}") from None
+
+
+def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:
+    """Return the names of a vector's components, one each."""
+    found = tuple(calls.get("parts", ()))
+    count = values.length_of(glsl_type)
+    if not found:
+        return ()
+    if kind not in ("slider", "number"):
+        raise line.error(f"parts is for a vector of numbers; '{name}' is a {kind}")
+    if count == 1 or len(found) != count or len(set(found)) < count or not all(found):
+        example = ", ".join(f'"{part}"' for part in ("west", "east", "south", "north")[:count])
+        wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
+        raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
+    return found
 
 
 def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:

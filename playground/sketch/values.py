@@ -11,6 +11,8 @@ import os
 import reprlib
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Value
@@ -116,6 +118,20 @@ def write(parameter: Parameter, value: Value) -> str:
     if isinstance(value, tuple):
         return ",".join(map(_digits, value))
     return value if isinstance(value, str) else _digits(value)
+
+
+def tidied(value: float) -> float:
+    """Return the shortest decimal number that a shader cannot tell from it: 0.37 for 0.3700000048."""
+    with np.errstate(all="ignore"):
+        single = np.float32(value)
+    return float(str(single)) if np.isfinite(single) else value
+
+
+def shortest(value: Value) -> Value:
+    """Return a value whose numbers with fractions are ``tidied``: what a file is to say of it."""
+    if isinstance(value, tuple):
+        return tuple(tidied(n) if isinstance(n, float) else n for n in value)
+    return tidied(value) if isinstance(value, float) else value
 
 
 def spell(value: object) -> str:

@@ -14,7 +14,7 @@ GIVEN: dict[str, tuple[str, str]] = {
     "size": ("ivec2", "texels of this pass's textures"),
     "iteration": ("int", "this turn of a repeated kernel, from 0"),
     "iterations": ("int", "turns in all"),
-    "stage": ("int", "what this turn of a companion does, where its header lists stages"),
+    "stage": ("int", "what this turn of a compute variant does, where its header lists stages"),
     "until": ("int", "the turn after the last of this run, where one run takes several"),
     "time": ("float", "seconds"),
     "spacing": ("vec2", "metres from one texel of this pass to the next, east and north"),

@@ -24,6 +24,7 @@ lattice, and over 18 on the longest land, where rounding moves it by less than o
 from __future__ import annotations
 
 import heapq
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -42,6 +43,8 @@ LONGEST = 8.0
 
 _CELLS = 4096  # sides are multiples of SIDE / _CELLS, so that GLSL can divide them by a land's texels
 _MASK = 2**32 - 1
+SALT = zlib.crc32(b"delaunay")
+"""Added to the seed, as every kernel that draws adds one of its own (noise/hash.glsl)."""
 _OUTSIDE = -1
 
 
@@ -202,7 +205,7 @@ class _Growing:
         """Return the lattice point nearest to a triangle's barycentre, its corners weighed."""
         weights = (1, 1, 1)
         if self.rules.random_weights:  # none below 64/702 of the whole
-            a, b, c = hash3(point, 1, self.rules.seed)
+            a, b, c = self._drawn(point, 1)
             weights = (64 + (a >> 24), 64 + (b >> 24), 64 + (c >> 24))
         whole = sum(weights)
         # In the order that does not depend on how the triangle is kept.
@@ -211,8 +214,11 @@ class _Growing:
         y = sum(w * self.y[c] for w, c in zip(weights, corners, strict=True))
         return (2 * x + whole) // (2 * whole), (2 * y + whole) // (2 * whole)
 
+    def _drawn(self, point: int, which: int) -> tuple[int, int, int]:
+        return hash3(point, which, self.rules.seed + SALT & _MASK)
+
     def _height(self, triangle: int, area: int, point: int, x: int, y: int) -> float:
-        number = (hash3(point, 0, self.rules.seed)[0] >> 8) / 2**24
+        number = (self._drawn(point, 0)[0] >> 8) / 2**24
         if not self.rules.displaced:
             return number
         a, b, c = self._triple(triangle)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.images.bounds import refuse_bomb
 from playground.images.files import reason
 from playground.terrain.geodesy import spacing_from_degrees
 from playground.terrain.grid import EIGHT_BIT, SIXTEEN_BIT, Found, Packing, check_grid, from_channels
@@ -52,6 +53,7 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         end = max((o + n for o, n in zip(page.dataoffsets, page.databytecounts, strict=False)), default=0)
         if end > path.stat().st_size:
             raise DataError(f"is cut short: its data ends at byte {end}, the file before", file=path)
+        refuse_bomb(path, math.prod(shape) * page.dtype.itemsize, sum(page.databytecounts))
         values = _tiff_values(page, path)
         if axes == "SYX":
             values = np.moveaxis(values, 0, -1)

@@ -1,4 +1,4 @@
-"""Sizes as a sketch writes them: of passes, of what feeds an input, and of what a companion stands for."""
+"""Sizes as a sketch writes them: of passes, of what feeds an input, and of fast variants."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ size = 1
 [inputs]
 height = "rows.height"
 """
-COMPANION = """// The same sum at once.
+VARIANT = """// The same sum at once.
 #pragma compute(groups = "1, 1", local = "1, 1")
 uniform sampler2D height; //! input
 void main() {
@@ -90,8 +90,9 @@ def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, fol
     assert float(found[0, 0]) == total(engine, folder)
 
 
-def test_a_companion_has_the_size_of_the_pass_it_stands_for(engine: Engine, folder: Path):
-    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+@pytest.mark.usefixtures("trusted_variants")
+def test_a_compute_variant_has_the_size_of_the_pass_it_stands_for(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     sketch = load(folder)
     found = engine.read(sketch, "sum")
     stood_in = engine.driver == "compute"
@@ -100,6 +101,7 @@ def test_a_companion_has_the_size_of_the_pass_it_stands_for(engine: Engine, fold
     assert float(found[0, 0]) == total(engine, folder)
 
 
-def test_a_pass_that_a_companion_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
-    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+@pytest.mark.usefixtures("trusted_variants")
+def test_a_pass_that_a_compute_variant_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     assert engine.read(load(folder), "sum.rows").shape == (12, 1)

@@ -150,11 +150,14 @@ def make_sketch(tmp_path: Path) -> Callable[..., Sketch]:
 
 
 @pytest.fixture(scope="session")
-def python_random() -> Callable[[object, object, int], np.ndarray]:
-    """Give noise/hash.glsl's ``random(point, seed)`` in Python: x and y broadcast, float64 in [0, 1)."""
+def python_random() -> Callable[..., np.ndarray]:
+    """Give noise/hash.glsl's ``random(point, seed)`` in Python: x and y broadcast, float64 in [0, 1).
 
-    def number(x: object, y: object, seed: int) -> np.ndarray:
-        return np.asarray(mixed(x, y, seed)[0] // 256, np.float64) / 2.0**24
+    ``part`` 1 is the second number of ``random_pair``.
+    """
+
+    def number(x: object, y: object, seed: int, part: int = 0) -> np.ndarray:
+        return np.asarray(mixed(x, y, seed)[part] // 256, np.float64) / 2.0**24
 
     return number
 

@@ -5,6 +5,8 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from .drawing import salt
+
 DEFAULTS = {"iterations": 200, "seed": 7, "smallest": 0.02, "largest": 0.2, "rise": 0.1}
 DOME = "generation/circles/dome.glsl"
 SHAPES = [
@@ -35,7 +37,12 @@ def discs(on_gpu):
     def make(extent, **values):
         v = DEFAULTS | values
         index = np.arange(v["iterations"], dtype=np.uint32)
-        bits = on_gpu("noise/hash.glsl", "hash3(uvec3(i, 0u, s))", i=index, s=np.uint32(v["seed"]))
+        bits = on_gpu(
+            "noise/hash.glsl",
+            "hash3(uvec3(i, 0u, s))",
+            i=index,
+            s=np.uint32(v["seed"] + salt("generation/circles")),
+        )
         numbers = (bits >> 8) / 2.0**24
         low, high = sorted((v["smallest"], v["largest"]))
         share = np.interp(numbers[:, 2], [0, 1], [low, high])

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from .drawing import salt
+
 FOLDS = "generation/deterministic_fractal/folds.glsl"
 LABEL = "generation/deterministic_fractal/label.glsl"
 FACETS = "generation/fractalised_triangle/facets.glsl"
@@ -280,7 +282,8 @@ def divided(depth, roughness, number):
 def number(on_gpu):
     y, x = np.mgrid[0:65, 0:65]
     points = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
-    drawn = on_gpu("noise/hash.glsl", "random_pair(p, 7u)", p=points).reshape(65, 65, 2)
+    seed = np.uint32(7 + salt("generation/fractalised_triangle"))
+    drawn = on_gpu("noise/hash.glsl", "random_pair(p, s)", p=points, s=seed).reshape(65, 65, 2)
     return lambda i, j: drawn[j, i].astype(np.float64)
 
 

@@ -6,6 +6,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import SketchError
 
+from .drawing import FINEST_SIDE, salt
+
 CORNERS = (0.1, 0.7, 0.4, 0.9)  # south-west, south-east, north-west, north-east
 
 
@@ -65,8 +67,8 @@ def sketch_of(make_sketch, size, **values):
 @pytest.fixture
 def numbers(python_random):
     def make(size, seed, positive=False):
-        y, x = np.mgrid[0:size, 0:size]
-        drawn = python_random(x, y, seed)
+        y, x = np.mgrid[0:size, 0:size] * (FINEST_SIDE // (size - 1))
+        drawn = python_random(x, y, seed + salt("generation/diamond_square"))
         return drawn if positive else 2 * drawn - 1
 
     return make

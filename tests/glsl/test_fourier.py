@@ -12,6 +12,8 @@ from playground.errors import PlaygroundError, SketchError
 from playground.paths import GLSL
 from playground.sketch.source import read_source
 
+from .drawing import salt
+
 NUMBERS = """
 #include "noise/hash.glsl"
 #pragma kernel(output = "numbers:rg32f")
@@ -101,14 +103,29 @@ def sketch_of(make_sketch):
     return make
 
 
-def grid_of(engine, sketch, size):
-    """Return the random numbers of one period."""
-    nx, ny = even(size)
-    return engine.read(sketch, "land.grid")[:ny, :nx]
+def waves_by_hash(nx, ny, seed, python_random):
+    """Return the spectrum of the grid, each pair of opposite waves drawn once by its own frequency."""
+
+    def signed(k, n):
+        return k if 2 * k <= n else k - n
+
+    spectrum = np.zeros((ny, nx), complex)
+    key = seed + salt("generation/fourier")
+    for y, x in product(range(ny), range(nx)):
+        kx, ky = signed(x, nx), signed(y, ny)
+        to = (-y % ny, -x % nx)
+        mirrored = signed(to[1], nx), signed(to[0], ny)
+        if (kx, ky) < mirrored:
+            continue
+        a, b = (2 * python_random(kx, ky, key, part) - 1 for part in (0, 1))
+        own = (kx, ky) == mirrored
+        spectrum[to] = a if own else (a - 1j * b) / np.sqrt(2)
+        spectrum[y, x] = a if own else (a + 1j * b) / np.sqrt(2)
+    return spectrum * np.sqrt(nx * ny)
 
 
 def truth_of(engine, sketch, size, roughness):
-    land = filtered(grid_of(engine, sketch, size), roughness)
+    land = filtered(engine.read(sketch, "land.grid"), roughness)
     return np.pad(land, [(0, side % 2) for side in size[::-1]], mode="wrap")
 
 
@@ -213,17 +230,32 @@ def test_powers(on_gpu, y):
 # ── the land ─────────────────────────────────────────────────────────────────
 
 
-def test_the_grid_is_random_and_repeats(engine, sketch_of, on_gpu):
-    size = (65, 33)
-    grid = engine.read(sketch_of(size, seed=11), "land.grid")
-    x, y = np.meshgrid(np.arange(64), np.arange(16))
-    texel = (x.ravel(), y.ravel())
-    pairs = on_gpu("noise/hash.glsl", "random_pair(texel, 11u)", texel=np.stack(texel, axis=-1)) * 2 - 1
-    np.testing.assert_array_equal(grid[:16, :64].ravel(), pairs[:, 0])
-    np.testing.assert_array_equal(grid[16:32, :64].ravel(), pairs[:, 1])
-    np.testing.assert_array_equal(grid[:, 64], grid[:, 0])
-    np.testing.assert_array_equal(grid[32], grid[0])
-    assert len(np.unique(grid[:32, :64])) > 0.99 * 32 * 64
+@pytest.mark.parametrize("size", [(2, 2), (65, 33), (4, 32), (33, 33)], ids=str)
+def test_waves_are_drawn_by_their_frequency(engine, sketch_of, python_random, size):
+    sketch = sketch_of(size, seed=11)
+    wanted = waves_by_hash(*even(size), 11, python_random)
+    assert apart(as_complex(engine.read(sketch, "land.period")), wanted) < 1e-6
+    assert apart(engine.read(sketch, "land.grid"), scipy.fft.ifft2(wanted).real) < 2e-6
+    assert np.abs(scipy.fft.ifft2(wanted).imag).max() < 1e-12, "opposite waves are conjugates"
+    assert apart(as_complex(engine.read(sketch, "land.spectrum")), wanted) < 2e-6
+
+
+@pytest.mark.parametrize("seed", [0, 7, 9999])
+def test_the_grid_is_white_noise(any_engine, sketch_of, seed):
+    """Mean square 1/3, as that of numbers from -1 to 1; no texel knows of another, whatever lies between."""
+    n = 512
+    grid = any_engine.read(sketch_of((n, n), seed=seed), "land.grid").astype(np.float64)
+    # Four standard errors of the mean and of the mean square of n² numbers in a bell curve.
+    assert abs(grid.mean()) < 4 / np.sqrt(3) / n
+    assert abs((grid**2).mean() - 1 / 3) < 4 * np.sqrt(2) / 3 / n
+    power = np.abs(np.fft.fft2(grid - grid.mean())) ** 2
+    correlation = np.fft.ifft2(power).real / power.mean()
+    correlation[0, 0] = 0
+    nearest = [correlation[0, 1], correlation[1, 0], correlation[1, 1], correlation[1, -1]]
+    assert np.abs(nearest).max() <= 4 / n
+    assert np.abs(correlation).max() <= 6 / n
+    shares = [(np.abs(grid) < k / np.sqrt(3)).mean() for k in (1, 2, 3)]
+    np.testing.assert_allclose(shares, [0.6827, 0.9545, 0.9973], atol=4 * 0.5 / n)
 
 
 @pytest.mark.parametrize(
@@ -277,7 +309,7 @@ def test_normalise(engine, sketch_of, mode):
 
 
 def test_a_land_all_below_0_stays_by_max(engine, sketch_of):
-    sketch = sketch_of((2, 2), seed=1, roughness=4.0, normalise="max")
+    sketch = sketch_of((2, 2), seed=11, roughness=4.0, normalise="max")
     land = engine.read(sketch, "land")
     assert land.max() < 0, "this seed's four numbers are below 0"
     np.testing.assert_allclose(land, truth_of(engine, sketch, (2, 2), 4.0), atol=1e-6)
@@ -318,13 +350,14 @@ def test_the_mean_is_left_alone(engine, sketch_of, roughness):
     sketch = sketch_of((64, 32), roughness=roughness, normalise="none")
     spectrum, weighed = (engine.read(sketch, f"land.{name}") for name in ("spectrum", "filtered"))
     np.testing.assert_array_equal(weighed[0, 0], spectrum[0, 0])
-    mean = grid_of(engine, sketch, (64, 32)).mean(dtype=np.float64)
+    mean = engine.read(sketch, "land.grid").mean(dtype=np.float64)
     assert engine.read(sketch, "land").mean(dtype=np.float64) == pytest.approx(mean, abs=1e-7)
 
 
 def test_without_roughness_nothing_changes(engine, sketch_of):
     sketch = sketch_of((65, 65), roughness=0.0, normalise="none")
-    np.testing.assert_allclose(engine.read(sketch, "land"), engine.read(sketch, "land.grid"), atol=2e-6)
+    grid = np.pad(engine.read(sketch, "land.grid"), (0, 1), mode="wrap")
+    np.testing.assert_allclose(engine.read(sketch, "land"), grid, atol=2e-6)
 
 
 @pytest.mark.parametrize("roughness", [1.0, 2.0, 2.5, 3.0])
@@ -384,7 +417,7 @@ def test_the_steps_of_a_land_s_transform(any_engine, sketch_of):
     sketch = sketch_of((32, 16))
     shown = [values for _, values in any_engine.steps(sketch, "land.spectrum")]
     assert len(shown) == 5 + 4 + 1
-    np.testing.assert_array_equal(shown[0][..., 0], grid_of(any_engine, sketch, (32, 16)))
+    np.testing.assert_array_equal(shown[0][..., 0], any_engine.read(sketch, "land.grid"))
     assert apart(as_complex(shown[-1]), scipy.fft.fft2(as_complex(shown[0]))) < 5e-7
 
 
@@ -401,19 +434,19 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
     assert np.median(found) == pytest.approx(1 + np.log10(np.sqrt(2)) / 4, abs=0.05)  # of two numbers a texel
 
 
-# ── the companion ────────────────────────────────────────────────────────────
+# ── the fast variant ────────────────────────────────────────────────────────────
 
 
-def test_a_companion_makes_the_land_where_there_is_compute(any_engine, sketch_of):
+def test_the_fast_variant_makes_the_land_where_there_is_compute(any_engine, sketch_of):
     sketch = sketch_of((64, 64))
     any_engine.read(sketch, "land")
     assert (any_engine.ran == ["land"]) == any_engine.info.compute
     any_engine.read(sketch, "land", steps={"land.spectrum": 3})
-    assert "land.spectrum" in any_engine.ran, "turns are not shown by the companion"
+    assert "land.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])
-def test_the_companion_is_the_passes_at_every_size(ctx, sketch_of, side):
+def test_the_fast_variant_is_the_passes_at_every_size(ctx, sketch_of, side):
     """Sides of every number of bits, beside one that is longer and one that is shorter."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
@@ -424,7 +457,7 @@ def test_the_companion_is_the_passes_at_every_size(ctx, sketch_of, side):
                 np.testing.assert_allclose(fast.read(sketch, "land"), slow.read(sketch, "land"), atol=3e-6)
 
 
-def test_sides_too_long_for_the_companion_are_refused(any_engine, sketch_of):
+def test_sides_too_long_for_the_fast_variant_are_refused(any_engine, sketch_of):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     with pytest.raises(PlaygroundError, match="MiB; 2048 at most"):

@@ -7,6 +7,8 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from .drawing import salt
+
 RNG = np.random.default_rng(3)
 WHOLE = 2**32
 SHIFT = 0.618034  # of every octave, in its own cells, to the east
@@ -86,7 +88,7 @@ def land(
     for k in range(octaves):
         frequency = lacunarity**k
         visible = min(max(texels / frequency - 1, 0), 1)
-        which = seed * 0x2545F491 + k * 0xC2B2AE3D
+        which = (seed + salt("generation/gradient_noise")) * 0x2545F491 + k * 0xC2B2AE3D
         noise = NOISE[basis](x * frequency + SHIFT, y * frequency, which)
         if shape == "billow":
             noise = 2 * abs(noise) - 1

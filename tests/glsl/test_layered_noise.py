@@ -1,7 +1,6 @@
 """Layered noise against a twin in Python: the thesis's loops, with exact fractions for its nodes."""
 
 from fractions import Fraction
-from functools import lru_cache
 from math import floor
 
 import numpy as np
@@ -11,7 +10,11 @@ from playground.paths import GLSL
 from playground.sketch.expressions import evaluate_pair
 from playground.sketch.techniques import read_technique
 
+from .drawing import salt
+
 SEED = 7
+DRAWN = SEED + salt("generation/layered_noise")
+RANDOM_SIDE = 2**15  # numbers a side of the layer that all nodes read
 
 
 def curve(y1, y2, n, delta, smooth):
@@ -31,15 +34,29 @@ def bounds(place, size, frequency):
     return floor(q * step), min(floor((q + 1) * step), size - 1)
 
 
+def read_at(place, size, frequency):
+    """Return which numbers of the random layer those nodes read: those at their shares of the side."""
+    q = floor(Fraction(place * frequency, size))
+    return tuple(floor(Fraction(k * RANDOM_SIDE, frequency)) for k in (q, q + 1))
+
+
 def one_layer(size, frequencies, drawn, smooth):
+    """Return a layer; ``drawn(x, y)`` are the numbers of the random layer."""
     nx, ny = size
     land = np.zeros((ny, nx))
+    keys = [
+        [read_at(i, n, frequency) for i in range(n)] for n, frequency in zip(size, frequencies, strict=True)
+    ]
+    xs, ys = (sorted({k for pair in axis for k in pair}) for axis in keys)
+    numbers = dict(zip([(x, y) for y in ys for x in xs], drawn(*np.meshgrid(xs, ys)).ravel(), strict=True))
     for j in range(ny):
         y1, y2 = bounds(j, ny, frequencies[1])
+        low, high = keys[1][j]
         for i in range(nx):
             x1, x2 = bounds(i, nx, frequencies[0])
-            v1 = curve(drawn[y1, x1], drawn[y2, x1], y2 - y1, j - y1, smooth)
-            v2 = curve(drawn[y1, x2], drawn[y2, x2], y2 - y1, j - y1, smooth)
+            west, east = keys[0][i]
+            v1 = curve(numbers[west, low], numbers[west, high], y2 - y1, j - y1, smooth)
+            v2 = curve(numbers[east, low], numbers[east, high], y2 - y1, j - y1, smooth)
             land[j, i] = curve(v1, v2, x2 - x1, i - x1, smooth)
     return land
 
@@ -54,11 +71,6 @@ def frequencies_of(k, frequency, size):
 
 @pytest.fixture
 def twin(python_random):
-    @lru_cache
-    def drawn(size, seed):
-        y, x = np.mgrid[0 : size[1], 0 : size[0]]
-        return python_random(x, y, seed)
-
     def make(
         size=(33, 33),
         frequency=4,
@@ -70,8 +82,10 @@ def twin(python_random):
         layer=0,
     ):
         def at(k):
-            seed = (SEED + k * 2654435769) % 2**32 if independent else SEED
-            return one_layer(size, frequencies_of(k, frequency, size), drawn(size, seed), smooth)
+            seed = DRAWN + k * 2654435769 if independent else DRAWN
+            return one_layer(
+                size, frequencies_of(k, frequency, size), lambda x, y: python_random(x, y, seed), smooth
+            )
 
         if layer:
             return at(layer - 1)
@@ -132,7 +146,8 @@ def test_a_large_land_at_places_of_its_own(any_engine, sketch_of, python_random)
         for k in range(5):
             frequency = min(4 ** (k + 1), 1024)
             (x1, x2), (y1, y2) = bounds(x, 1025, frequency), bounds(y, 1025, frequency)
-            corners = python_random(np.array([x1, x2, x1, x2]), np.array([y1, y1, y2, y2]), SEED)
+            (west, east), (low, high) = read_at(x, 1025, frequency), read_at(y, 1025, frequency)
+            corners = python_random(np.array([west, east] * 2), np.array([low, low, high, high]), DRAWN)
             south = curve(corners[0], corners[1], x2 - x1, x - x1, True)
             north = curve(corners[2], corners[3], x2 - x1, x - x1, True)
             total += 0.6 ** (k + 1) * curve(south, north, y2 - y1, y - y1, True)
@@ -177,8 +192,8 @@ def test_coarse_layers_left_out(engine, sketch_of):
 
 def test_as_many_intervals_as_gaps_give_each_texel_its_own_number(engine, sketch_of, python_random):
     found = raw(engine, sketch_of(frequency=32, octaves=1))
-    y, x = np.mgrid[0:33, 0:33]
-    np.testing.assert_allclose(found, python_random(x, y, SEED), atol=4e-7)
+    y, x = np.mgrid[0:33, 0:33] * (RANDOM_SIDE // 32)
+    np.testing.assert_allclose(found, python_random(x, y, DRAWN), atol=4e-7)
 
 
 @pytest.mark.parametrize("random_layers", ["one", "independent"])

@@ -7,6 +7,8 @@ import pytest
 
 from playground.errors import SketchError
 
+from .drawing import FINEST_SIDE, salt
+
 
 def by_squares(size, roughness, number):
     """Return the land of one square of height 0, divided in four until its sides are one texel long."""
@@ -61,8 +63,10 @@ def segment_of(make_sketch, length, rows, **values):
 
 @pytest.fixture
 def number(python_random):
-    def of(seed):
-        return lambda x, y: 2.0 * float(python_random(x, y, seed)) - 1.0
+    def of(seed, length, name=""):
+        apart = FINEST_SIDE // (length - 1)
+        drawn = seed + salt("generation/midpoint_displacement" + name)
+        return lambda x, y: 2.0 * float(python_random(x * apart, y * apart, drawn)) - 1.0
 
     return of
 
@@ -71,7 +75,7 @@ def number(python_random):
 @pytest.mark.parametrize("roughness", [0.5, 0.7])
 def test_it_is_squares_divided_in_four(engine, make_sketch, number, size, roughness):
     sketch = sketch_of(make_sketch, size, roughness=roughness, seed=11)
-    truth = by_squares(size, roughness, number(11))
+    truth = by_squares(size, roughness, number(11, size))
     np.testing.assert_allclose(engine.read(sketch, "land.raw"), truth, atol=2e-6)
 
 
@@ -83,7 +87,7 @@ def test_both_drivers_give_the_same_bits(same_by_both_drivers, make_sketch, size
 
 def test_each_turn_divides_every_square(engine, make_sketch, number):
     sketch = sketch_of(make_sketch, 17, seed=5)
-    truth = by_squares(17, 0.5, number(5))
+    truth = by_squares(17, 0.5, number(5, 17))
     for turn, values in engine.steps(sketch, "land.raw"):
         step = 16 >> turn
         known = np.zeros((17, 17), bool)
@@ -138,7 +142,7 @@ def test_a_size_it_cannot_halve_is_refused_with_the_nearest(any_engine, make_ske
 @pytest.mark.parametrize("roughness", [0.5, 0.8])
 def test_each_row_is_the_line_after_so_many_steps(engine, make_sketch, number, length, rows, roughness):
     lines = engine.read(segment_of(make_sketch, length, rows, roughness=roughness, seed=6), "land")
-    truth = [by_a_growing_list(length, k, roughness, number(6)) for k in range(rows)]
+    truth = [by_a_growing_list(length, k, roughness, number(6, length, "/segment")) for k in range(rows)]
     np.testing.assert_allclose(lines, truth, atol=2e-6)
 
 

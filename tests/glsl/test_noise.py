@@ -96,3 +96,35 @@ def test_seeds_know_nothing_of_each_other(field):
     lands = np.stack([field(s).ravel() for s in (0, 1, 2, 3, 1000)])
     correlations = np.corrcoef(lands)[np.triu_indices(5, 1)]
     assert np.abs(correlations).max() < 4 / SIDE
+
+
+# ── keys of terrains made by halving ─────────────────────────────────────────
+
+
+@pytest.mark.parametrize("side", [1, 2, 64, 1024, 32768])
+def test_a_point_s_place_on_the_finest_lattice(on_gpu, side):
+    points = RNG.integers(0, side + 1, (100, 2)).astype(np.int32)
+    found = on_gpu("noise/finest.glsl", "finest_point(p, side)", p=points, side=np.int32(side))
+    np.testing.assert_array_equal(found, points * (32768 // side))
+
+
+@pytest.mark.parametrize("shift", [0, 5, 10])
+def test_points_far_apart_have_numbers_as_good_as_neighbours(on_gpu, shift):
+    """On a coarse lattice the lower bits of every key are 0."""
+    points = (np.stack([X % 64, Y % 64, X // 64 + 4 * (Y // 64)], axis=1)).astype(np.int64)
+    values = on_gpu(
+        "noise/hash.glsl",
+        f"random(p.xy * {1 << shift}, uint(p.z) + 0xfaac44f9u)",
+        p=points.astype(np.int32),
+    ).astype(np.float64)
+    # Sixteen lattices of 64 x 64 points, a seed each.
+    values = values[np.lexsort(points.T)].reshape(16, 64, 64) - 0.5
+    assert abs(values.mean()) < 4 / np.sqrt(12 * values.size)
+    assert abs((values**2).mean() - 1 / 12) < 4 / np.sqrt(180 * values.size)
+    for a, b in (
+        (values[:, 1:], values[:, :-1]),
+        (values[:, :, 1:], values[:, :, :-1]),
+        (values[:, 1:, 1:], values[:, :-1, :-1]),
+        (values[1:], values[:-1]),
+    ):
+        assert abs(np.corrcoef(a.ravel(), b.ravel())[0, 1]) < 4 / np.sqrt(a.size)

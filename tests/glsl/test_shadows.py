@@ -382,7 +382,7 @@ def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
 
 
 def test_both_drivers_sweep_alike(ctx, lit):
-    """The fragment driver sweeps each texel's band anew, the companion each band once."""
+    """The fragment driver sweeps each texel's band anew, the compute variant each band once."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:

@@ -7,7 +7,10 @@ layer's last interval before a seam is drawn anew, from its first column to the 
 import numpy as np
 import pytest
 
+from .drawing import salt
+
 SEED = 5
+RANDOM_SIDE = 2**15  # numbers a side of the layer that all nodes read
 
 
 @pytest.fixture
@@ -24,16 +27,17 @@ def curve(a):
     return a * a * (3 - 2 * a)
 
 
-def weights_on_nodes(side, intervals):
-    """Return (nodes, matrix): what each node counts for at each place along one side."""
+def weights_on_nodes(side, intervals, tiles):
+    """Return (numbers, matrix): what each node reads of the random layer, and counts for at each place of a side."""
     nodes = [q * side // intervals for q in range(intervals)] + [side - 1]
+    numbers = [q * RANDOM_SIDE // (intervals * tiles) for q in range(intervals + 1)]
     matrix = np.zeros((side, intervals + 1))
     for place in range(side):
         q = place * intervals // side
         a = curve((place - nodes[q]) / max(nodes[q + 1] - nodes[q], 1))
         matrix[place, q] += 1 - a
         matrix[place, q + 1] += a
-    return np.array(nodes), matrix
+    return np.array(numbers), matrix
 
 
 def drawn_anew(layer, intervals):
@@ -56,9 +60,11 @@ def tile_of(python_random):
             whole = min(frequency ** (k + 1), (width - 1) * tiles)
             x_intervals = max((whole + tiles // 2) // tiles, 1)
             y_intervals = max(round(x_intervals * (height - 1) / (width - 1)), 1)
-            xs, across = weights_on_nodes(width, x_intervals)
-            ys, up = weights_on_nodes(height, y_intervals)
-            layer = up @ python_random(*np.meshgrid(xs, ys), SEED) @ across.T
+            xs, across = weights_on_nodes(width, x_intervals, tiles)
+            ys, up = weights_on_nodes(height, y_intervals, tiles)
+            layer = (
+                up @ python_random(*np.meshgrid(xs, ys), SEED + salt("generation/layered_noise")) @ across.T
+            )
             if mended and tiles > 1:
                 layer = drawn_anew(drawn_anew(layer, x_intervals).T, y_intervals).T
             total = total + persistence ** (k + 1) * layer
@@ -92,7 +98,7 @@ def test_the_mixed_model_is_shape_and_tile(
     sketch = sketch_of("mixed_tiled", size, seams=seams, **values)
     tile = tile_of((size, size), tiles, frequency, octaves, 0.3, seams == "mended")
     weights = sum(0.3 ** (k + 1) for k in range(octaves))
-    shape = engine.read(sketch, "land.stretched").astype(np.float64)
+    shape = engine.read(sketch, "land.shape").astype(np.float64)
     truth = (laid(tile, (size, size), tiles) * weights + shape) / (weights + 1)
     np.testing.assert_allclose(engine.read(sketch, "land.mix"), truth, atol=2e-6)
     found = engine.read(sketch, "land")

@@ -115,7 +115,11 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     app.wait(lambda now: not now["help"] and now["steps"] > still + 5)
     app.screen.do("key", "r")
     app.wait(lambda now: now["hour"] == 10.0 and abs(now["roll"]) < 0.2)
+    app.screen.do("key", "F1", "key", "Escape")
+    app.wait(lambda now: not now["help"] and not now["paused"])
     app.screen.do("key", "Escape")
+    app.wait(lambda now: now["paused"])
+    app.screen.do("keydown", "ctrl", "sleep", 0.2, "key", "q", "keyup", "ctrl")
     assert app.ended() == 0, app.complaint()
 
     record = read_record(tmp_path / "a.jsonl")
@@ -136,5 +140,5 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
     app = open_app("--replay", "b.jsonl")
     now = app.wait(lambda now: now["ready"] and now["paused"])
     assert now["steps"] == 70 and now["hour"] == 16.0 and now["roll"] > 0.3
-    app.screen.do("key", "Escape")
+    app.screen.do("keydown", "ctrl", "sleep", 0.2, "key", "q", "keyup", "ctrl")
     assert app.ended() == 0, app.complaint()

@@ -12,9 +12,10 @@ from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, SketchError, TrialTimeout
 from playground.live.files import files_of
+from playground.live.framing import framed
 from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
-from playground.sketch.model import Camera
+from playground.sketch.model import DEFAULT_PICTURE, Camera
 
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope
@@ -222,7 +223,8 @@ def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_re
     assert session.hasty
     saved = session.read()
     assert saved is not None and session.sketch is not None
-    expected = any_engine.render(session.sketch, size=SIZE).array
+    seen = framed(session.sketch, 0.0, DEFAULT_PICTURE, SIZE)
+    expected = any_engine.render(seen, size=SIZE).array
     np.testing.assert_array_equal(saved.array[..., :3], expected[..., :3], "what is saved is drawn in full")
     session.release()
 
@@ -422,7 +424,7 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
         patch.setattr(bench.session.engine, "draw", fails)
         bench.session.set("height.level", 0.5)
         np.testing.assert_array_equal(bench.picture(), before)
-        assert "a fault of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
+        assert "a bug of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
     assert "the playground itself failed" in caplog.text
     bench.session.set("height.level", 0.6)
     bench.picture()

@@ -18,8 +18,10 @@ uniform float largest = 0.2;     //! slider(0, 1) step(0.005) Largest radius, as
 uniform float rise = 0.1;        //! log_slider(0.001, 1) Height of the widest dome
 uniform int rises = 0;           //! menu("with the radius", "alike") Heights of the others
 
+const uint SALT = 0x610a4b03u;  // CRC-32 of "generation/circles"
+
 vec4 kernel(ivec2 texel) {
-    uvec3 bits = hash3(uvec3(uint(texel.x), 0u, seed));
+    uvec3 bits = hash3(uvec3(uint(texel.x), 0u, seed + SALT));
     vec2 middle = vec2(unit_from_bits(bits.x), unit_from_bits(bits.y)) * extent / land_side(extent);
     float low = min(smallest, largest);
     float high = max(smallest, largest);

@@ -1,6 +1,6 @@
 // generation/diamond_square/lattice.glsl -- which texels a turn of diamond-square sets, and how far their neighbours are.
 //
-//   gives    half_spacing, texel_of_cell, is_set_by
+//   gives    DIAMOND_SQUARE_SALT, half_spacing, texel_of_cell, is_set_by
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    texels; turns from 0; a side is a power of two, one less than a land's texels
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
@@ -11,6 +11,8 @@
 //   edges     (even turns)  every texel between known ones, s/2 along the axes
 #ifndef GENERATION_DIAMOND_SQUARE_LATTICE
 #define GENERATION_DIAMOND_SQUARE_LATTICE
+
+const uint DIAMOND_SQUARE_SALT = 0xfaac44f9u;  // CRC-32 of "generation/diamond_square"
 
 // Half the spacing of a turn, a power of two: half the side for turns 1 and 2, a quarter for 3 and 4, ..
 int half_spacing(int turn, int side) {

@@ -1,7 +1,7 @@
 // generation/diamond_square/raw.glsl -- land by halving a square: its centres, then its edges, over and over.
 //
 //   gives    height, for any land of 2^n + 1 texels a side
-//   needs    noise/hash.glsl, generation/diamond_square/lattice.glsl
+//   needs    noise/finest.glsl, noise/hash.glsl, generation/diamond_square/lattice.glsl
 //   units    heights without unit; not normalised, so that smoothing means something
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1, after Fournier, Fussell and
 //            Carpenter 1982 (Communications of the ACM 25, 6)
@@ -18,13 +18,14 @@
 // The thesis calls the centres' turn "square" in one section and "diamond" in the other:
 // here they are centres and edges.
 #include "generation/diamond_square/lattice.glsl"
+#include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)")
+#pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", between = "squares")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) Roughness: height added per side of land. Above 0.5 it looks like rubble
 uniform uint seed = 7u;         //! slider(0, 9999) Which land
 uniform int sign_of_random = 0; //! menu("centred", "positive") label("Random") The thesis adds only positive numbers, which leaves creases
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) Heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") Heights of the corners: south-west, south-east, north-west, north-east
 
 ivec2 visit(ivec2 cell) {
     return texel_of_cell(cell, iteration, size.x - 1);
@@ -61,7 +62,9 @@ float kernel(ivec2 texel) {
     }
     // anchor: height
     float share = float(2 * r) / float(side);
-    float number = sign_of_random == 0 ? random_signed(texel, seed) : random(texel, seed);
+    ivec2 point = finest_point(texel, side);
+    uint which = seed + DIAMOND_SQUARE_SALT;
+    float number = sign_of_random == 0 ? random_signed(point, which) : random(point, which);
     return is_new ? total / (all(inside) ? 4.0 : 3.0) + number * share * smoothing : here;
     // end: height
 }

@@ -2,10 +2,10 @@
 //
 //   gives    Lattice, new_height, edge_in_column, four_centres, five_centres, six_of_even_row, six_of_odd_row,
 //            eight_of_even_row, eight_of_odd_row
-//   needs    noise/hash.glsl
+//   needs    generation/diamond_square/lattice.glsl, noise/hash.glsl
 //   units    heights without unit; columns and rows in spacings of the lattice they belong to
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
-//   tested   tests/glsl/test_diamond_square_companion.py: the companion that uses them, against
+//   tested   tests/glsl/test_diamond_square_variant.py: the variant that uses them, against
 //            generation/diamond_square/raw.glsl, bit for bit
 //
 // A lattice's points with even columns and rows are those of the coarser lattice; centres have
@@ -19,20 +19,21 @@
 // does: sums are the same to the last bit.
 #ifndef GENERATION_DIAMOND_SQUARE_ROWS
 #define GENERATION_DIAMOND_SQUARE_ROWS
+#include "generation/diamond_square/lattice.glsl"
 #include "noise/hash.glsl"
 
 struct Lattice {
     int side;      // spacings
-    int apart;     // texels of the land in one spacing
+    int apart;     // spacings of the finest lattice in one of these, see noise/finest.glsl
     float reach;   // how far a random number of 1 moves a new height
     bool centred;  // random numbers in [-1, 1), not in [0, 1)
-    uint seed;
+    uint seed;     // the salt added
 };
 
 // The height of a new point between four neighbours, or three of them at the border.
 float new_height(vec4 neighbours, bvec4 inside, ivec2 point, Lattice lattice) {
-    ivec2 texel = point * lattice.apart;
-    float number = lattice.centred ? random_signed(texel, lattice.seed) : random(texel, lattice.seed);
+    ivec2 key = point * lattice.apart;
+    float number = lattice.centred ? random_signed(key, lattice.seed) : random(key, lattice.seed);
     // In a loop: Mesa makes a sum of sums out of a + b + c + d.
     float total = 0.0;
     for (int i = 0; i < 4; i++) total += inside[i] ? neighbours[i] : 0.0;

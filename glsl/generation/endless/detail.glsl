@@ -16,6 +16,8 @@ uniform float gain = 0.45;         //! slider(0, 1) step(0.01) Height of each la
 uniform int form = 1;              //! menu("plain", "ridged") Hills as they come, or creased along their zeros
 uniform uint seed = 7u;            //! slider(0, 9999) Which land
 
+const uint SALT = 0x70a3c1cbu;  // CRC-32 of "generation/endless/detail"
+
 float kernel(ivec2 texel) {
     // The texel after the last one is the first again.
     vec2 place = vec2(texel) / vec2(size) * float(frequency);
@@ -25,7 +27,7 @@ float kernel(ivec2 texel) {
     float strength = 1.0;
     for (int k = 0; k < octaves; k++) {
         // Moved by uneven parts of a cell: else all layers were zero at the points of the first.
-        float noise = gradient_noise_periodic(place + float(k) * vec2(0.618, 0.382), period, seed + uint(k) * 101u);
+        float noise = gradient_noise_periodic(place + float(k) * vec2(0.618, 0.382), period, seed + SALT + uint(k) * 101u);
         float crest = 1.0 - abs(noise);
         total += strength * (form == 1 ? crest * crest : 0.5 + 0.5 * noise);
         strengths += strength;

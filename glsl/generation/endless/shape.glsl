@@ -11,12 +11,14 @@
 #include "terrain/parts.glsl"
 #pragma kernel(output = "shape:r32f")
 
-uniform ivec2 part = ivec2(0);     //! Which part of the land, counted east and north
+uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the land, counted east and north
 uniform int apron = 0;             //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part
 uniform int hills = 256;           //! log_slider(2, 4096) unit("texels") Width of the widest hills
 uniform int layers = 3;            //! slider(1, 8) Layers of hills, each half as wide as the one before
 uniform float persistence = 0.4;   //! slider(0, 1) step(0.01) Height of each layer over the one before
 uniform uint seed = 7u;            //! slider(0, 9999) Which land
+
+const uint SALT = 0xa677a9a0u;  // CRC-32 of "generation/endless/shape"
 
 float hills_at(ivec2 node, int wide, uint which) {
     vec2 share;
@@ -39,7 +41,7 @@ float kernel(ivec2 texel) {
         // Off the lattice of the layer before by an uneven part of a cell: points of the two never meet.
         int wide = max(hills >> k, 2);
         ivec2 moved = node + k * ivec2((wide * 5) >> 3, (wide * 3) >> 3);
-        total += strength * hills_at(moved, wide, lattice_seed(seed, k));
+        total += strength * hills_at(moved, wide, lattice_seed(seed + SALT, k));
         strengths += strength;
         strength *= persistence;
     }

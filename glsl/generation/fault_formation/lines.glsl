@@ -22,9 +22,11 @@ uniform int fall = 0;            //! menu("linear", "ratio") From the first faul
 uniform float last = 0.1;        //! slider(0.001, 1) step(0.001) What the height falls to, as a share of the first
 uniform float variation = 1.0;   //! slider(0, 1) step(0.01) How far heights are random: 0 not at all, 1 from nothing to all
 
+const uint SALT = 0xa3d24078u;  // CRC-32 of "generation/fault_formation"
+
 vec4 kernel(ivec2 texel) {
-    uvec3 one = hash3(uvec3(uint(texel.x), 0u, seed));
-    uvec3 two = hash3(uvec3(uint(texel.x), 1u, seed));
+    uvec3 one = hash3(uvec3(uint(texel.x), 0u, seed + SALT));
+    uvec3 two = hash3(uvec3(uint(texel.x), 1u, seed + SALT));
     ivec3 line = fault_line(ivec2(one.xy >> 20u), ivec2(two.xy >> 20u));
     // anchor: fall
     float way = float(texel.x) / float(max(faults, 1));

@@ -12,11 +12,13 @@
 #include "noise/octaves.glsl"
 #pragma kernel(output = "height:r32f")
 
-uniform vec4 hurst = vec4(0.8, 0.6, 0.4, 0.3);  //! slider(0, 1) step(0.01) label("Hurst exponents") Of the first four rows
+uniform vec4 hurst = vec4(0.8, 0.6, 0.4, 0.3);  //! slider(0, 1) step(0.01) label("Hurst exponents") parts("first", "second", "third", "fourth") Of the first four rows
 uniform float hurst_last = 0.2;                 //! slider(0, 1) step(0.01) label("Hurst exponent, last") Of all other rows
 uniform int octaves = 10;                       //! slider(0, 16) Sums of noise; those too fine for the texels are left out
 uniform float frequency = 4.0;                  //! log_slider(0.25, 1024) Cells along the row in the first octave
 uniform uint seed = 7u;                         //! slider(0, 9999) Which curves
+
+const uint SALT = 0xe23d26d9u;  // CRC-32 of "generation/fbm/curve"
 
 // The noise's standard deviation, as a root of an integral: sqrt(2/3 integral of (1 - fade(t))^2 t^2).
 const float DEVIATION = 0.140695;
@@ -40,7 +42,7 @@ float kernel(ivec2 texel) {
     float strength = 1.0;
     for (int k = 0; k < octaves && cells < nodes; k++) {
         float weight = strength * octave_weight(nodes / cells);
-        total += weight * noise_along(float(texel.x) * (cells / nodes) + OCTAVE_SHIFT.x, texel.y, lattice_seed(seed, k));
+        total += weight * noise_along(float(texel.x) * (cells / nodes) + OCTAVE_SHIFT.x, texel.y, lattice_seed(seed + SALT, k));
         squares += weight * weight;
         cells *= 2.0;
         strength *= falling;

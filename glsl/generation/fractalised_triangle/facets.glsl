@@ -18,6 +18,7 @@ uniform bool panels = true;  //! Show the first six states side by side, as far 
 uniform vec3 ink = vec3(0.012, 0.03, 0.07);   //! colour Colour of the edges
 uniform vec3 paper = vec3(0.86, 0.84, 0.78);  //! colour Colour of the ground
 
+const uint SALT = 0xd5257541u;  // CRC-32 of "generation/fractalised_triangle/facets"
 const vec3 DARK = vec3(0.16, 0.24, 0.10);
 const vec3 BRIGHT = vec3(0.50, 0.44, 0.24);
 
@@ -57,7 +58,7 @@ vec4 kernel(ivec2 texel) {
             vec2 c = texelFetch(point, (low + ivec2(0, 1)) * stride, 0).rg;
             vec3 sides = vec3(turned(a, b, place), turned(b, c, place), turned(c, a, place));
             if (min(min(sides.x, sides.y), sides.z) >= 0.0 || max(max(sides.x, sides.y), sides.z) <= 0.0) {
-                shown = mix(DARK, BRIGHT, random(ivec2(n, j), uint(turns)));
+                shown = mix(DARK, BRIGHT, random(ivec2(n, j), uint(turns) + SALT));
             }
             nearest = min(nearest, min(far_from_edge(place, b, c), min(far_from_edge(place, a, b), far_from_edge(place, c, a))));
         }

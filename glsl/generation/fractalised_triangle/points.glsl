@@ -17,6 +17,7 @@ uniform int depth = 5;          //! slider(0, 6) How many times each edge is hal
 uniform uint seed = 7u;         //! slider(0, 9999) Which triangle
 uniform float roughness = 0.15; //! slider(0, 0.5) step(0.01) How far a middle moves, over the edge's length
 
+const uint SALT = 0x62d29298u;  // CRC-32 of "generation/fractalised_triangle"
 const int DEEPEST = 6;
 
 vec2 kernel(ivec2 texel) {
@@ -35,6 +36,6 @@ vec2 kernel(ivec2 texel) {
     ivec2 along = odd.y == 0 ? ivec2(r, 0) : odd.x == 0 ? ivec2(0, r) : ivec2(r, -r);
     vec2 one = previous(texel - along);
     vec2 other = previous(texel + along);
-    vec2 move = random_pair(texel * max((1 << DEEPEST) / side, 1), seed) * 2.0 - 1.0;
+    vec2 move = random_pair(texel * max((1 << DEEPEST) / side, 1), seed + SALT) * 2.0 - 1.0;
     return 0.5 * (one + other) + move * (roughness * length(other - one));
 }

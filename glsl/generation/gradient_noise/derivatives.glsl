@@ -1,13 +1,14 @@
 // generation/gradient_noise/derivatives.glsl -- the slopes of hills of gradient noise, without differences.
 //
 //   gives    slope: to the east and to the north, of the land that gradient_noise/sum makes
-//   needs    noise/octaves.glsl
+//   needs    generation/gradient_noise/seed.glsl, noise/octaves.glsl
 //   units    height per metre; height is that of the sum, not normalised
 //   source   see noise/octaves.glsl
 //   tested   tests/glsl/test_gradient_noise.py, against finite differences
 //
 // A slope from two texels is the slope between them; this is the slope at the texel, however
 // far apart texels are. Where the height is normalised, divide by the range of the sum.
+#include "generation/gradient_noise/seed.glsl"
 #include "noise/octaves.glsl"
 #pragma kernel(output = "slope:rg32f")
 
@@ -25,6 +26,6 @@ uniform uint seed = 7u;          //! slider(0, 9999) Which land
 vec2 kernel(ivec2 texel) {
     float scale = cells_a_metre(frequency, extent, spacing);
     float texels = 1.0 / (scale * max(spacing.x, spacing.y));
-    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity), texels, seed);
+    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity), texels, octaves_seed(strength, seed));
     return scale * octaves_shaped(shape, vec2(texel) * (spacing * scale), o, warp).yz;
 }

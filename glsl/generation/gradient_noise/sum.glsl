@@ -1,13 +1,14 @@
 // generation/gradient_noise/sum.glsl -- hills of gradient noise, octave upon octave.
 //
 //   gives    height, for any land; not normalised
-//   needs    noise/octaves.glsl
+//   needs    generation/gradient_noise/seed.glsl, noise/octaves.glsl
 //   units    heights without unit; the first octave lies in -1..1, ridged in 0..1
 //   source   see noise/octaves.glsl
 //   tested   tests/glsl/test_gradient_noise.py, against float64 twins
 //
 // Places are counted in metres over the land's width, so the same seed at another size is the
 // same land, and hills are as wide as they are long whatever the land's shape.
+#include "generation/gradient_noise/seed.glsl"
 #include "noise/octaves.glsl"
 #pragma kernel(output = "height:r32f")
 
@@ -25,6 +26,6 @@ uniform uint seed = 7u;          //! slider(0, 9999) Which land
 float kernel(ivec2 texel) {
     float scale = cells_a_metre(frequency, extent, spacing);
     float texels = 1.0 / (scale * max(spacing.x, spacing.y));
-    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity), texels, seed);
+    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity), texels, octaves_seed(strength, seed));
     return octaves_shaped(shape, vec2(texel) * (spacing * scale), o, warp).x;
 }

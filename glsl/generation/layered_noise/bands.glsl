@@ -7,9 +7,10 @@
 //            the polynomial is derived here
 //   tested   tests/glsl/test_layered_noise.py, against a twin in NumPy written as its loops
 //
-// Layer k has the weight persistence^(k+1); its nodes take their heights from one texel each
-// of a layer of random numbers. Within a band every layer runs between two of its rows of
-// nodes, d rows apart, from one height to the other along 3a² - 2a³ (or a), where a = a0 + v / d.
+// Layer k has the weight persistence^(k+1); its nodes take their heights from one number each
+// of a layer of random numbers, which is the same at every size (layers.glsl). Within a band
+// every layer runs between two of its rows of nodes, d rows apart, from one height to the other
+// along 3a² - 2a³ (or a), where a = a0 + v / d.
 // Written out in powers of v such layers add up, however many they are: four numbers hold all.
 #include "noise/hash.glsl"
 #pragma kernel(output = "bands:rgba32f")
@@ -25,6 +26,8 @@ uniform int interpolation = 1;   //! menu("linear", "smooth") Between nodes: a l
 uniform int random_layers = 0;   //! menu("one", "independent") All layers read one random layer, or each its own
 uniform int overflow = 0;        //! menu("divide", "clamp", "wrap") A sum above 1: divided by the weights' sum, cut, or begun again at 0 (a fault, to look at)
 uniform int layer = 0;           //! slider(0, 8) Show this layer alone, at full weight; 0: their sum
+
+const uint SALT = 0x31b64f5bu;  // CRC-32 of "generation/layered_noise"
 
 // The curve from 0 to 1 in powers of v, where it is a0 far at v = 0 and rises by `step_on` a row.
 vec4 curve(float a0, float step_on) {
@@ -51,7 +54,7 @@ vec4 kernel(ivec2 texel) {
         ivec2 x = ivec2(column.xy);
         ivec2 y = ivec2(row.xy);
         // An odd number far from every seed, so that the second layer of one land is not the first of the next.
-        uint which = random_layers == 1 ? seed + uint(k) * 2654435769u : seed;
+        uint which = random_layers == 1 ? seed + SALT + uint(k) * 2654435769u : seed + SALT;
         vec2 west = vec2(random(ivec2(x.x, y.x), which), random(ivec2(x.x, y.y), which));
         vec2 east = vec2(random(ivec2(x.y, y.x), which), random(ivec2(x.y, y.y), which));
         vec2 between = west + (east - west) * column.b;

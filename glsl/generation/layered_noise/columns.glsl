@@ -1,9 +1,9 @@
 // generation/layered_noise/columns.glsl -- where each column of texels stands between the nodes of each layer.
 //
-//   gives    columns: the node to the west, the one to the east, the part between them after
-//            the curve, and the layer's intervals; a layer a row
+//   gives    columns: which random numbers the node to the west and the one to the east read, the
+//            part between them after the curve, and the layer's intervals; a layer a row
 //   needs    generation/layered_noise/layers.glsl
-//   units    texels; part 0..1
+//   units    places on the layer of random numbers, see layers.glsl; part 0..1
 //   source   Belaiche 2010, sections 1.3.9 and 4.3.4
 //   tested   tests/glsl/test_layered_noise.py, as part of the whole
 #include "generation/layered_noise/layers.glsl"
@@ -19,10 +19,11 @@ vec4 kernel(ivec2 texel) {
     for (int k = 0; k <= texel.y; k++) intervals = finer(intervals, frequency, (size.x - 1) * tiles + 1);
     intervals = within_a_part(intervals, tiles);
     // anchor: part
+    int west;
     ivec2 nodes;
     float part;
-    nodes_around(texel.x, size.x, intervals, nodes, part);
+    nodes_around(texel.x, size.x, intervals, west, nodes, part);
     if (interpolation == 1) part = part * part * (3.0 - 2.0 * part);
     // end: part
-    return vec4(float(nodes.x), float(node_beyond(nodes.y, size.x, seams == 0 && tiles > 1)), part, float(intervals));
+    return vec4(vec2(numbers_around(west, intervals, tiles, seams == 0 && tiles > 1)), part, float(intervals));
 }

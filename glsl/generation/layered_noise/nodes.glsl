@@ -1,9 +1,9 @@
 // generation/layered_noise/nodes.glsl -- where the first row of each band stands between the nodes of each layer.
 //
-//   gives    nodes: the node to the south, the one to the north, the part between them before
-//            the curve, and what of it a row is; a layer a row
+//   gives    nodes: which random numbers the node to the south and the one to the north read, the
+//            part between them before the curve, and what of it a row is; a layer a row
 //   needs    generation/layered_noise/layers.glsl
-//   units    texels; part 0..1
+//   units    places on the layer of random numbers, see layers.glsl; part 0..1
 //   source   Belaiche 2010, sections 1.3.9 and 4.3.4
 //   tested   tests/glsl/test_layered_noise.py, as part of the whole
 #include "generation/layered_noise/layers.glsl"
@@ -18,9 +18,11 @@ vec4 kernel(ivec2 texel) {
     ivec2 land = ivec2(textureSize(columns, 0).x, size.x);
     int intervals = int(texelFetch(columns, ivec2(0, texel.y), 0).a);
     int first = int(texelFetch(rows, ivec2(texel.x, 0), 0).b);
+    int upwards = upright(intervals, land);
+    int south;
     ivec2 around;
     float part;
-    nodes_around(first, land.y, upright(intervals, land), around, part);
-    float north = float(node_beyond(around.y, land.y, seams == 0 && tiles > 1));
-    return vec4(float(around.x), north, part, 1.0 / float(max(around.y - around.x, 1)));
+    nodes_around(first, land.y, upwards, south, around, part);
+    vec2 numbers = vec2(numbers_around(south, upwards, tiles, seams == 0 && tiles > 1));
+    return vec4(numbers, part, 1.0 / float(max(around.y - around.x, 1)));
 }

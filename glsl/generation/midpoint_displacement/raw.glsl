@@ -1,7 +1,7 @@
 // generation/midpoint_displacement/raw.glsl -- land by dividing a square in four and displacing what is in the middle.
 //
 //   gives    height, for any land of 2^n + 1 texels a side; not normalised
-//   needs    noise/hash.glsl
+//   needs    noise/finest.glsl, noise/hash.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.5
 //   tested   tests/glsl/test_midpoint_displacement.py, against squares that are divided one by
@@ -12,11 +12,14 @@
 // random number in [-d, d]. The first turn's d is 1, each next turn's `roughness` times the
 // one before: the thesis names the factor for its next technique, "as for midpoint
 // displacement", and gives no value.
+#include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1)", accepts = "2**n + 1", visits = "2**(iteration + 1) + 1, 2**(iteration + 1) + 1", stride = "(size.x - 1) // 2**(iteration + 1)")
+#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1)", accepts = "2**n + 1", visits = "2**(iteration + 1) + 1, 2**(iteration + 1) + 1", stride = "(size.x - 1) // 2**(iteration + 1)", between = "squares")
 
 uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each turn's random numbers, over those of the turn before
 uniform uint seed = 7u;         //! slider(0, 9999) Which land
+
+const uint SALT = 0x370b75bau;  // CRC-32 of "generation/midpoint_displacement"
 
 ivec2 visit(ivec2 cell) {
     // Of the cells of a turn, those with two even numbers were corners before.
@@ -36,5 +39,6 @@ float kernel(ivec2 texel) {
     float most = 1.0;
     for (int turn = 0; turn < iteration; turn++) most *= roughness;
     bool is_new = rising.x + rising.y > 0;
-    return is_new ? mean + random_signed(texel, seed) * most : mean;
+    ivec2 point = finest_point(texel, size.x - 1);
+    return is_new ? mean + random_signed(point, seed + SALT) * most : mean;
 }

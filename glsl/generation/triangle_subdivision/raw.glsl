@@ -1,7 +1,7 @@
 // generation/triangle_subdivision/raw.glsl -- land by dividing two triangles in four, over and over.
 //
 //   gives    height, for any land of 2^n + 1 texels a side; not normalised
-//   needs    noise/hash.glsl
+//   needs    noise/finest.glsl, noise/hash.glsl
 //   units    heights without unit; lengths in sides of the land
 //   source   Belaiche 2010, section 1.3.1, after Fournier, Fussell and Carpenter 1982
 //            (Communications of the ACM 25, 6)
@@ -18,13 +18,16 @@
 // as long as its triangle's other edges.
 // A vertex knows two others only, so creases stay along the edges, the worst of them on the
 // main diagonal: the fault that the thesis tells of, kept here.
+#include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration")
+#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration", between = "triangles")
 
 uniform float r = 1.0;    //! slider(0, 3) step(0.05) How fast the random numbers fall with the length of an edge: the more, the smoother
 uniform uint seed = 7u;   //! slider(0, 9999) Which land
 uniform int corners_are = 0;  //! menu("random", "given") Corners at random in [-1, 1], or as given below
-uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) Given heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) parts("SW", "SE", "NW", "NE") Given heights of the corners: south-west, south-east, north-west, north-east
+
+const uint SALT = 0xa289e770u;  // CRC-32 of "generation/triangle_subdivision"
 
 ivec2 visit(ivec2 cell) {
     // Of the cells of a turn, those with two even numbers were vertices before.
@@ -32,8 +35,13 @@ ivec2 visit(ivec2 cell) {
     return known ? ivec2(-1) : cell * ((size.x - 1) >> iteration);
 }
 
+// A number in [-1, 1) for a vertex.
+float number(ivec2 texel) {
+    return random_signed(finest_point(texel, size.x - 1), seed + SALT);
+}
+
 float corner(ivec2 texel) {
-    if (corners_are == 0) return random_signed(texel, seed);
+    if (corners_are == 0) return number(texel);
     bool east = texel.x > 0;
     bool north = texel.y > 0;
     return north ? (east ? corners.w : corners.z) : (east ? corners.y : corners.x);
@@ -54,6 +62,6 @@ float kernel(ivec2 texel) {
     // k is 2^(1 - iteration), and sqrt(2) times as much along a diagonal.
     float log_k = (is_diagonal ? 1.5 : 1.0) - float(iteration);
     bool is_new = half_edge.x + half_edge.y > 0;
-    return is_new ? mean + random_signed(texel, seed) * exp2(r * log_k) : mean;
+    return is_new ? mean + number(texel) * exp2(r * log_k) : mean;
     // end: height
 }

@@ -23,6 +23,7 @@ uniform float verge = 30.0;              //! slider(0, 500) step(1) unit("m") Ov
 uniform float wander = 0.0;              //! slider(0, 500) step(1) unit("m") How far chance moves it aside
 uniform float strength = 1.0;            //! slider(0, 1) step(0.01) How much it covers
 
+const uint SALT = 0x98bd00cbu;  // CRC-32 of "texturing/alpha_map/path"
 const int PIECES = 12;  // from one point to the next
 
 vec2 between(vec2 before, vec2 from, vec2 to, vec2 after, float t) {
@@ -35,8 +36,8 @@ float kernel(ivec2 texel) {
     vec2 place = share_of_texel(texel, size) * extent;
     if (wander > 0.0) {
         vec2 bay = place / max(8.0 * width, 1.0);
-        place += wander * vec2(gradient_fbm_periodic(bay, ivec2(1 << 20), 4, 0.5, 11u),
-                               gradient_fbm_periodic(bay, ivec2(1 << 20), 4, 0.5, 21u));
+        place += wander * vec2(gradient_fbm_periodic(bay, ivec2(1 << 20), 4, 0.5, SALT + 11u),
+                               gradient_fbm_periodic(bay, ivec2(1 << 20), 4, 0.5, SALT + 21u));
     }
     float nearest = 1e30;
     vec2 from = first * extent;

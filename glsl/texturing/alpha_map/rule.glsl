@@ -34,6 +34,8 @@ uniform float ragged = 0.0;           //! slider(0, 4) step(0.05) group("Chance"
 uniform float grain = 80.0;           //! log_slider(1, 2000) unit("m") group("Chance") How wide the largest of its bays are
 uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which chance
 
+const uint SALT = 0xef495a59u;  // CRC-32 of "texturing/alpha_map"
+
 // 0 below a band, 1 inside, 0 above; an edge that does not fade is a step.
 float band(float value, float from, float to, float fade, float moved) {
     float wide = max(fade, 1e-6);
@@ -51,7 +53,7 @@ float kernel(ivec2 texel) {
     float moved = 0.0;
     if (ragged > 0.0) {
         vec2 bay = share_of_texel(texel, size) * extent / grain;
-        moved = ragged * gradient_fbm_periodic(bay, ivec2(1 << 20), 5, 0.6, 64u * seed);
+        moved = ragged * gradient_fbm_periodic(bay, ivec2(1 << 20), 5, 0.6, 64u * seed + SALT);
     }
     // At the ends of their ranges thresholds are no edges: nothing is flatter than level.
     float cover = band(level, height_from > -1.0 ? height_from : -1e6, height_to < 2.0 ? height_to : 1e6, height_fade, moved)

@@ -109,11 +109,7 @@ def _with_turns(graph: Graph, more: int) -> Graph:
 def _turned(technique: Technique, more: int) -> Technique:
     if isinstance(technique, Kernel):
         repeats = technique.kind == "kernel" and technique.repeat != "1"
-        return (
-            replace(technique, repeat=f"({technique.repeat}) + {more}", companion=None)
-            if repeats
-            else technique
-        )
+        return replace(technique, repeat=f"({technique.repeat}) + {more}") if repeats else technique
     passes = tuple(
         replace(
             spec,
@@ -122,7 +118,7 @@ def _turned(technique: Technique, more: int) -> Technique:
         )
         for spec in technique.passes
     )
-    return technique if passes == technique.passes else replace(technique, passes=passes, companion=None)
+    return technique if passes == technique.passes else replace(technique, passes=passes)
 
 
 def _changed(sketch: Sketch, path: str, factor: float = 1.0, more: object = 0.0) -> Sketch:

@@ -1,0 +1,99 @@
+"""No two techniques draw the same numbers: each adds a salt of its own to the seed, found here in the library."""
+
+import re
+from itertools import combinations
+from zlib import crc32
+
+import numpy as np
+import pytest
+
+from playground.paths import GLSL
+from playground.sketch.source import read_source
+from playground.terrain import delaunay
+
+SALT = re.compile(r'^const uint \w*SALT = 0x([0-9a-f]{8})u;  // CRC-32 of "([^"]+)"$', re.M)
+DRAWS = re.compile(r"\b(hash3|random|random_pair|random_signed|lattice_seed|perlin|simplex|\w+_periodic)\(")
+FILES = [path for end in ("glsl", "comp") for path in sorted(GLSL.rglob(f"*.{end}"))]
+WINDOW = 2**20
+"""Seeds go up to 9999, times 64 in some materials, and each has some numbers more for its layers."""
+
+TERRAINS = [
+    "diamond_square",
+    "midpoint_displacement",
+    "triangle_subdivision",
+    "layered_noise",
+    "white_noise",
+    "fourier",
+    "fbm",
+    "gradient_noise",
+    "circles",
+    "fault_formation",
+]
+
+
+def salts():
+    found = [(m[2], int(m[1], 16)) for path in FILES for m in SALT.finditer(path.read_text(encoding="utf-8"))]
+    return [*found, ("delaunay", delaunay.SALT)]
+
+
+def test_a_salt_is_the_checksum_of_its_name():
+    assert len(salts()) > 25
+    for name, number in salts():
+        assert number == crc32(name.encode()), name
+
+
+def test_all_salts_differ_by_more_than_seeds_do():
+    """A salted seed of one technique is never one of another's."""
+    assert len({name for name, _ in salts()}) == len(salts())
+    for (one, a), (other, b) in combinations(salts(), 2):
+        apart = (a - b) % 2**32
+        assert min(apart, 2**32 - apart) > WINDOW, (one, other)
+
+
+def test_whoever_draws_has_a_salt():
+    """Kernels, not the library that they include; the technique's name begins as the file's does."""
+    seen = 0
+    for path in FILES:
+        text = path.read_text(encoding="utf-8")
+        name = path.relative_to(GLSL).with_suffix("").as_posix()
+        if name.startswith("noise/") or "#pragma" not in text:
+            continue
+        code = read_source(path, (GLSL,)).code
+        own = code[code.rfind("#pragma") :]
+        if not DRAWS.search(re.sub(r"//.*", "", text)) and "octaves_seed" not in own:
+            continue
+        seen += 1
+        assert re.search(r"\b\w*SALT\b|\boctaves_seed\(", text), f"{name} draws without a salt"
+    assert seen > 20
+
+
+@pytest.fixture
+def lands(any_engine, make_sketch):
+    def make(size, seed):
+        found = {}
+        for name in TERRAINS:
+            sketch = make_sketch(
+                f'[[pass]]\nname = "a"\nuse = "generation/{name}"\nset = {{ seed = {seed} }}\n', size=size
+            )
+            found[name] = any_engine.read(sketch, "a").astype(np.float64)
+        return found
+
+    return make
+
+
+def bumps(land):
+    """Return how far each texel stands above the mean of the four around it: what was drawn for it, above all."""
+    around = land[1:-1, :-2] + land[1:-1, 2:] + land[:-2, 1:-1] + land[2:, 1:-1]
+    return (land[1:-1, 1:-1] - around / 4).ravel()
+
+
+def test_techniques_of_one_seed_know_nothing_of_each_other(lands):
+    """Texel by texel, over several seeds: white noise, the halved terrains and layers shared their numbers."""
+    sums = {}
+    for seed in (0, 7, 4242):
+        found = {name: bumps(land) for name, land in lands(65, seed).items()}
+        for one, other in combinations(TERRAINS, 2):
+            r = np.corrcoef(found[one], found[other])[0, 1]
+            sums.setdefault((one, other), []).append(r)
+    for pair, each in sums.items():
+        assert abs(np.mean(each)) < 0.1, (pair, each)
