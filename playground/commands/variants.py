@@ -31,7 +31,7 @@ HELP = help_text(
     " the bound that the variant states; a file fast_variants.json beside them says so. Otherwise the plain"
     " form runs. Without WHAT, the variants that ship.",
     "playground variants list",
-    "playground variants verify generation/fourier",
+    "playground variants verify lighting",
     "playground variants renew my-land",
 )
 LIST_HELP = help_text(

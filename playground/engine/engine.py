@@ -26,6 +26,7 @@ from playground.engine.keys import Form, KeyMaker, Keys
 from playground.engine.painted import PaintedFiles
 from playground.engine.plain_forms import PlainForms, warn
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -81,6 +82,7 @@ class Engine:
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
         self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
@@ -370,7 +372,7 @@ class Engine:
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
-        self.plain_forms.tell(plan.sketch)
+        self.plain_forms.tell(plan.sketch, plan.lacking)
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0
@@ -395,6 +397,7 @@ class Engine:
             execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
+        self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
     @contextmanager

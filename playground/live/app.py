@@ -34,17 +34,19 @@ from playground.live.finite import FiniteWatch, draw_not_finite
 from playground.live.follow import Follower
 from playground.live.guard import Guard
 from playground.live.hand import Hand
+from playground.live.interface_size import remembered_size
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_trial, draw_waiting, trial_text
 from playground.live.panel import Panel
+from playground.live.part_labels import draw_part_labels
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
-from playground.live.see.ab import drag_line, paint_both
+from playground.live.see.ab import below_bar, drag_line, paint_both
 from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
@@ -187,6 +189,8 @@ class Live:
         self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
         self.actions.fills_screen = lambda: self.place.full
         self.actions.opener = Opener(wake)
+        self.actions.interface = remembered_size()
+        self.actions.sign_held = lambda: window.sign_held
         self.guard = Guard(self.actions.say)
         self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
@@ -295,6 +299,7 @@ class Live:
         look = window.theme
         window.call(title_of(self.session.path))
         guard.run("taking in what was dropped", lambda: take_dropped(actions, self.place.dropped()), None)
+        window.zoom = actions.interface.size
         window.begin()
         actions.see.begin()
         left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
@@ -335,7 +340,7 @@ class Live:
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
         self.terminal.take(actions.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
@@ -351,6 +356,9 @@ class Live:
             draw_waiting(trial_text(subject, seconds), look, area)
         else:
             draw_trial(session, look, area)
+        if picture is not None and session.sketch is not None and session.map is None:
+            parted, free = session.sketch, below_bar(actions, look, area)
+            draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = actions, picture, look, area, self.window.density
         draw("what is shown beside the picture", lambda: draw_see(*view), None)
         draw("the notices", lambda: draw_notices(actions, look, area), None)
