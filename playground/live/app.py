@@ -8,7 +8,7 @@ is drawn. Each part of a turn has a guard: one that fails is left out, and the w
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from datetime import datetime
 from pathlib import Path
@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.plain_forms import silent
 from playground.engine.trial import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
@@ -52,7 +51,7 @@ from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.storing import Storing
-from playground.live.terminal_errors import TerminalErrors
+from playground.live.terminal_errors import TerminalErrors, to_log
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
@@ -84,6 +83,7 @@ def run(
     beside: bool = False,
     keeps: int = 0,
     time_limit: float | None = None,
+    tell: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -92,6 +92,7 @@ def run(
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. Expensive land is kept on disk, in at most
     ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``tell`` is told of each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -109,7 +110,7 @@ def run(
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
-        engine = Engine(window.ctx, driver=driver, notice=silent)
+        engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
             path,
@@ -124,7 +125,7 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
         live.lessons.begin(lesson, language, beside=beside)
@@ -169,7 +170,13 @@ class Live:
     """The window, the session and the watcher, turn by turn."""
 
     def __init__(
-        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+        self,
+        window: Window,
+        session: Session,
+        watcher: Watcher,
+        rememberer: Rememberer,
+        storing: Storing,
+        tell: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
@@ -184,7 +191,7 @@ class Live:
         self.actions.interface = remembered_size()
         self.actions.sign_held = lambda: window.sign_held
         self.guard = Guard(self.actions.say)
-        self.terminal = TerminalErrors()
+        self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
@@ -246,7 +253,7 @@ class Live:
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
         self.window.reopen()
-        self.session.rebuild(Engine(self.window.ctx, driver=driver, notice=silent))
+        self.session.rebuild(Engine(self.window.ctx, driver=driver))
         self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
@@ -332,7 +339,7 @@ class Live:
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
         self.terminal.take(actions.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
