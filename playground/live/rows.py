@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 
-_LABELS = 0.40  # share of the width that labels take
+_LABELS = 0.41  # share of the width that labels take
 _TOOLTIP = 24.0  # width of a tooltip, in heights of its text
 _fitted: dict[tuple[str, float, float], str] = {}  # text, width and size of the font → what fits
 
@@ -30,11 +30,13 @@ def row(
     labels = (room - slots) * _LABELS
     start = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
-    text = fitting(label, labels - imgui.get_style().item_spacing.x)
+    size, text = fitting_label(label, labels - imgui.get_style().item_spacing.x)
+    imgui.push_font(None, size)
     if edited:
         imgui.text_colored(theme.colour(theme.WARM), text)
     else:
         imgui.text_unformatted(text)
+    imgui.pop_font()
     if imgui.is_item_hovered():
         explain(label, note() if callable(note) else note)
     imgui.same_line(start + labels)
@@ -84,6 +86,16 @@ def fitting(text: str, width: float) -> str:
             _fitted.clear()
         _fitted[key] = _cut(text, width)
     return _fitted[key]
+
+
+def fitting_label(text: str, width: float) -> tuple[float, str]:
+    """Return the size at which a label fits a width, and what fits: a small one before an ellipsis."""
+    if fitting(text, width) == text:
+        return theme.TEXT_SIZE, text
+    imgui.push_font(None, theme.SMALL)
+    cut = fitting(text, width)
+    imgui.pop_font()
+    return theme.SMALL, cut
 
 
 def fitting_choice(text: str) -> str:
