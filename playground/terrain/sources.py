@@ -6,7 +6,8 @@ of its land before any texel is made (``describe``), then makes the texels (``ma
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -68,6 +69,14 @@ def _read(
     return fill_no_data(elevation, voids)
 
 
+@contextmanager
+def _memory_explained(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except MemoryError:
+        raise DataError("there is not enough memory to read it", file=shown(path)) from None
+
+
 def _elevation(values: Mapping[str, Value]) -> Elevation:
     path = Path(str(values["elevation"]))
     try:
@@ -79,7 +88,8 @@ def _elevation(values: Mapping[str, Value]) -> Elevation:
     packing: Packing = "rgb" if values["packing"] == 1 else "grey"
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
-    return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
+    with _memory_explained(path):
+        return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
 
 
 def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
@@ -113,13 +123,14 @@ def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[
     elevation = _elevation(values)
     low, high = _span(elevation)
     span = high - low
-    heights = (
-        (elevation.heights - np.float32(low)) / np.float32(span)
-        if span > 0
-        else np.zeros_like(elevation.heights)
-    )
-    if size != elevation.size:
-        heights = resample(heights, size, within=(0.0, 1.0))
+    with _memory_explained(Path(str(values["elevation"]))):
+        heights = (
+            (elevation.heights - np.float32(low)) / np.float32(span)
+            if span > 0
+            else np.zeros_like(elevation.heights)
+        )
+        if size != elevation.size:
+            heights = resample(heights, size, within=(0.0, 1.0))
     return {"height": heights}
 
 
@@ -165,7 +176,7 @@ SOURCES: dict[str, SourceKind] = {
         _make_elevation,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
-        _notes_of_elevation,
+        notes=_notes_of_elevation,
     ),
     "delaunay": SourceKind(
         lambda _: Land(),
