@@ -244,7 +244,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
-    from playground.engine.plan import told_at
+    from playground.engine.placing import told_at
 
     with (
         told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),

@@ -18,7 +18,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from playground.engine.plan import make_plan, told_at
+from playground.engine.placing import told_at
+from playground.engine.plan import make_plan
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.stage import free_name, stage, with_pictures
 from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 
 from playground.engine.between import Between, between_of
 from playground.engine.files import find_file
+from playground.engine.placing import placed
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
@@ -28,7 +28,7 @@ from playground.sketch.flatten import (
     repeated_path,
     repeated_paths,
 )
-from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Shot, Sketch, Technique, Value
+from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
@@ -209,34 +209,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
         if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
-
-
-def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
-    """Return an error of a data file at the pass that names it, the file in the sentence.
-
-    Where a file was set for the pass from outside, the sketch's text is not at fault, and
-    the error stays as it is.
-    """
-    by_hand = any(
-        path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
-    )
-    if by_hand or not spec.file:
-        return error
-    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
-    return DataError(found, file=spec.file, line=spec.line)
-
-
-@contextmanager
-def told_at(sketch: Sketch, shot: Shot) -> Iterator[None]:
-    """Have a mistake in what a shot asks for, as its steps, point at the shot."""
-    try:
-        yield
-    except ParameterError as error:
-        first = error.diagnostics[0]
-        if first.file or not shot.line:
-            raise
-        message = f"shot '{shot.name}': {first.message}"
-        raise SketchError(message, file=shown(sketch.file), line=shot.line) from None
 
 
 def _pixels(size: object, largest: int) -> tuple[int, int]:

@@ -15,7 +15,8 @@ from playground.engine.draws import Draws
 from playground.engine.fill import filled
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.painted import Painted, PaintedFiles, PaintedTextures
-from playground.engine.plan import Plan, Step, placed
+from playground.engine.placing import placed
+from playground.engine.plan import Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.errors import DataError

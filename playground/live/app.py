@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.plain_forms import silent
 from playground.engine.trial import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
@@ -111,7 +110,7 @@ def run(
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
-        engine = Engine(window.ctx, driver=driver, notice=silent)
+        engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
             path,
@@ -254,7 +253,7 @@ class Live:
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
         self.window.reopen()
-        self.session.rebuild(Engine(self.window.ctx, driver=driver, notice=silent))
+        self.session.rebuild(Engine(self.window.ctx, driver=driver))
         self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES

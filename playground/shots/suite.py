@@ -13,7 +13,7 @@ from pathlib import Path
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.engine.plan import told_at
+from playground.engine.placing import told_at
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png

@@ -14,6 +14,7 @@ from dataclasses import replace
 from playground.errors import Diagnostic, ParameterError, nearest
 from playground.sketch import values
 from playground.sketch.annotation import calls as read_calls
+from playground.sketch.follows import read_follows
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
@@ -44,7 +45,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows"})
 
 Calls = dict[str, list[str]]
 
@@ -61,6 +62,7 @@ def read_uniforms(
     parameters: list[Parameter] = []
     inputs: list[Input] = []
     seen: dict[str, Line] = {}
+    following: list[tuple[int, list[str], Line]] = []  # which parameter, what it follows
     for line in source.lines:
         match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
         if not plain:
@@ -94,9 +96,14 @@ def read_uniforms(
             else:
                 parameters.append(item)
         elif glsl_type in _TYPES:
+            if "follows" in calls:
+                following.append((len(parameters), calls["follows"], line))
             parameters.append(_parameter(name, glsl_type, initial, calls, tooltip, line))
         else:
             raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
+    for index, words, line in following:
+        found = read_follows(parameters[index], words, parameters, line)
+        parameters[index] = replace(parameters[index], follows=found)
     return tuple(parameters), tuple(inputs)
 
 

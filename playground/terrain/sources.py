@@ -44,9 +44,9 @@ class SourceKind:
     make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
+    notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
     # the image whose channels, where it has this size, are the texels of the one output as they are
-    notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
 
 
 def source_kind(name: str) -> SourceKind:
