@@ -2,23 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from playground.engine.engine import Engine, opened
 from playground.engine.frame import Frame
+from playground.engine.plain_forms import warn
+from playground.errors import Diagnostic, PlaygroundWarning
 from playground.gpu.context import open_context
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
 
 
-def headless(*, software: bool = False, device: int | None = None, driver: str = "auto") -> Engine:
+def headless(
+    *,
+    software: bool = False,
+    device: int | None = None,
+    driver: str = "auto",
+    notice: Callable[[str], None] = warn,
+) -> Engine:
     """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
 
     ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". Raises ``ContextError`` in a sentence.
+    ``driver`` is "auto", "fragment" or "compute". What is drawn though something is wrong with
+    it is told by Python's warnings, as ``PlaygroundWarning``, once. Where a fast variant does not
+    run, ``notice`` is told why: a ``PlainFormWarning``, unless told otherwise, and then the other
+    warnings are left out as well. Raises ``ContextError`` in a sentence.
     """
-    return Engine(open_context(software=software, device=device), driver=driver, owns_context=True)
+    context = open_context(software=software, device=device)
+    engine = Engine(context, driver=driver, owns_context=True, notice=notice)
+    if notice is warn:
+        engine.warnings.tell = _warn
+    return engine
+
+
+def _warn(warning: Diagnostic) -> None:
+    warnings.warn(str(warning), PlaygroundWarning, stacklevel=2)
 
 
 def render(
@@ -27,15 +47,17 @@ def render(
     size: tuple[int, int] = DEFAULT_PICTURE,
     time: float = 0.0,
     values: Mapping[str, object] | None = None,
+    plain: bool = False,
 ) -> Frame:
     """Render one picture with a context of its own.
 
-    ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path. For more than
-    one picture, keep an engine from ``headless()``.
+    ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path; ``plain`` runs
+    every technique in its canonical form, no fast variant. For more than one picture, keep an
+    engine from ``headless()``.
     """
     found = opened(sketch)
     with headless() as engine:
-        return engine.render(found.with_values(values or {}), size=size, time=time)
+        return engine.render(found.plainly(plain).with_values(values or {}), size=size, time=time)
 
 
 def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:

@@ -3,7 +3,7 @@
 Standard output holds the answer (a path, a table, JSON); notes, progress and errors go to
 standard error. A mistake of the user's is one sentence, never a traceback. Exit status:
 0 well; 1 ``check`` or ``doctor`` found something; 2 a mistake in what was asked; 130
-interrupted; 141 the reader of a pipe has gone.
+interrupted; 141 the reader of a pipe has gone; 143 and 129 ended by SIGTERM or SIGHUP.
 
 What is heavy (NumPy, OpenGL, tables) is imported by the command that needs it.
 """
@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -33,6 +35,7 @@ from playground.commands import (
     reduce,
     render,
     shots,
+    variants,
 )
 from playground.commands.arguments import (
     DeviceOption,
@@ -43,8 +46,10 @@ from playground.commands.arguments import (
     quoted,
     read_device,
 )
-from playground.errors import PlaygroundError, nearest
+from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
+from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
+from playground.streams import let_go, open_streams
 from playground.terminal import complain, note
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -74,10 +79,17 @@ app = typer.Typer(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    open_streams()
+    with ended_by_signals() as came:
+        status = _status(sys.argv[1:] if arguments is None else list(arguments))
+    return 128 + came[-1] if came else status
+
+
+def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
-        status = app(given, prog_name="playground", standalone_mode=False)
+        with _printing_warnings():
+            status = app(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:
@@ -89,19 +101,41 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     except BrokenPipeError:
-        # What is still in the buffer cannot be written either; without this, Python says so as it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except SystemExit as left:
-        # Completion leaves so; and typer, having silenced the output, where a pipe has no reader.
-        return BROKEN_PIPE if sys.stdout is not output else int(left.code or 0)
+        # Completion leaves so; and rich and typer, where a pipe has no reader.
+        gone = isinstance(left.__context__, OSError) or sys.stdout is not output
+        return BROKEN_PIPE if gone else int(left.code or 0)
     except MemoryError:
         complain("out of memory; choose a smaller --size, or a smaller land, as --set size=513")
         return MISTAKE
     except OSError as error:
         complain(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
         return MISTAKE
+    finally:
+        # What is still in their buffers cannot be written either; without this, Python says so as it ends.
+        for stream in (output, sys.stderr):
+            let_go(stream)
     return int(status or 0)
+
+
+@contextmanager
+def _printing_warnings() -> Iterator[None]:
+    """Print the playground's own warnings as sentences, why a fast variant does not run as a note."""
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *more: Any, **named: Any) -> None:
+            if issubclass(category, PlainFormWarning):
+                note(f"note: {message}")
+            elif issubclass(category, PlaygroundWarning):
+                complain(str(message), "warning")
+            else:
+                others(message, category, *more, **named)
+
+        warnings.simplefilter("always", PlaygroundWarning)
+        warnings.showwarning = show
+        yield
 
 
 def _say_version(wanted: bool) -> None:
@@ -174,7 +208,7 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app, cache.app)
+_GROUPS = (shots.app, lesson.app, cache.app, variants.app)
 for _group in _GROUPS:
     app.add_typer(_group)
 _COMMANDS = (

@@ -21,15 +21,28 @@ CHECKOUT: Path | None = (
 """The repository's root where the package runs from one (so that its own shots are found), else None."""
 
 
+_current = Path("/")
+
+
 def shown(path: str | Path) -> str:
     """Name a file as its user would: from the current folder, from ``glsl/``, else whole."""
     full = Path(path)
     if not full.is_absolute():
         return full.as_posix()
-    for base, prefix in ((Path.cwd(), ""), (GLSL, "glsl/")):
+    for base, prefix in ((current_folder(), ""), (GLSL, "glsl/")):
         if full.is_relative_to(base):
             return prefix + full.relative_to(base).as_posix()
     return str(full)
+
+
+def current_folder() -> Path:
+    """Return the current folder, or what it was called last where it has been deleted since."""
+    global _current
+    try:
+        _current = Path.cwd()
+    except FileNotFoundError:
+        pass
+    return _current
 
 
 DEFAULT_SKETCH = "jacksboro"

@@ -3,10 +3,13 @@
 Colour only on a terminal, and not where NO_COLOR is set; bars and spinners only on
 standard error. Tables are drawn on a terminal; in a pipe each row is a line, its columns
 parted by tabs.
+
+What is printed on standard error never ends a command: whoever read it may have gone.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sys
@@ -14,6 +17,8 @@ import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
+
+from playground.streams import let_go
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,12 +37,15 @@ def painted(text: str, code: str, stream: TextIO) -> str:
 def complain(text: str, severity: str = "error") -> None:
     """Print a mistake on standard error."""
     colour = "1;31" if severity == "error" else "1;33"
-    print(f"{painted(f'{severity}:', colour, sys.stderr)} {text}", file=sys.stderr)
+    note(f"{painted(f'{severity}:', colour, sys.stderr)} {text}")
 
 
 def note(text: str) -> None:
     """Print a note on standard error."""
-    print(text, file=sys.stderr)
+    try:
+        print(text, file=sys.stderr)
+    except OSError:  # nobody reads it any more
+        let_go(sys.stderr)
 
 
 def console_for(stream: TextIO) -> Console:
@@ -68,6 +76,16 @@ def print_rows(rows: Sequence[Sequence[str]]) -> None:
     """Print one line a row on standard output, its columns parted by tabs."""
     for row in rows:
         print("\t".join(" ".join(cell.split()) for cell in row))
+
+
+def print_json(value: object, indent: int | None = 2) -> None:
+    """Print a value as JSON on standard output: as text where its encoding has all of it, else escaped."""
+    text = json.dumps(value, indent=indent, ensure_ascii=False)
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        text = json.dumps(value, indent=indent)
+    print(text, flush=True)
 
 
 def print_indented(text: str) -> None:

@@ -34,6 +34,12 @@ def _strict_numbers() -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def trusted_variants(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fast variants run though nobody verified them: what is tested is how they run."""
+    monkeypatch.setattr("playground.sketch.variants.is_verified", lambda technique, variant: True)
+
+
 @pytest.fixture(scope="session")
 def shared_context() -> Iterator[moderngl.Context]:
     """Give one headless context for the whole session."""

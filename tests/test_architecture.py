@@ -21,6 +21,7 @@ LAYERS = (
     ("cli",),
     ("commands",),
     ("terminal",),
+    ("signals", "streams"),
     ("live",),
     ("reduce",),
     ("shots",),
@@ -32,7 +33,7 @@ LAYERS = (
     ("terrain",),
     ("images",),
     ("sketch",),
-    ("errors", "folders", "markup", "paths", "_version"),
+    ("errors", "folders", "json_text", "markup", "partial", "paths", "_version"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

@@ -217,10 +217,11 @@ def test_completion_offers_the_shipped_sketches(start: Run):
         (["render", "--device", "first"], "--device first: expected the number of an EGL device"),
         (["--device", "-1", "render"], "--device -1: expected the number of an EGL device"),
         (["render", "--steps", "height"], "--steps height: expected a pass and a whole number, as height=9"),
+        (["render", "diamond_square", "--steps", "height=99"], "steps: 'height.raw' stops after 99 steps"),
         (["render", "--steps", "height=3"], "steps: no repeated pass 'height' in sketch jacksboro"),
         (["render", "--shot", "nigth"], "no shot 'nigth' in sketch jacksboro"),
         (["render", "--preset", "nigth"], "no preset 'nigth'"),
-        (["render", "-o", "land.jpg"], "land.jpg: a picture is written to a name ending in .png"),
+        (["render", "-o", "land.gif"], "land.gif: a picture is written to a name ending in .png, .jpg"),
         (["render", "-o", "no/land.png"], "no/land.png: there is no folder 'no' to write into"),
         (["render", "-o", "empty"], "empty: is a folder; expected the name of a file to write"),
         (["render", "--texture", "height", "-o", "h.jpg"], "h.jpg: values are written to a name"),
@@ -520,7 +521,7 @@ def test_check_tries_both_drivers(run: Run, tmp_path: Path):
     assert json.loads(done.stdout)["errors"][0]["line"] == 4
 
 
-def test_check_takes_a_companion_with_its_kernel(run: Run, tmp_path: Path):
+def test_check_takes_a_compute_variant_with_its_kernel(run: Run, tmp_path: Path):
     (tmp_path / "fill.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
     )

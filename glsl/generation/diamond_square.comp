@@ -5,9 +5,8 @@
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
-//   tested   tests/glsl/test_diamond_square_companion.py, against the technique's own passes
-//   agrees   to the last bit, where the compiler fuses no multiplication with an addition;
-//            else to 1e-5 of the land's range
+//   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
+//   agrees   to the last bit, where the compiler fuses no multiplication with an addition
 //
 // The first turn makes the coarse lattice, of 32 spacings a side or fewer, in one group's
 // shared memory. Each further turn makes a lattice of four times as many spacings: a thread
@@ -27,12 +26,12 @@
 #include "generation/diamond_square/order.glsl"
 #include "noise/finest.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height")
+#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height", agrees = "1e-5")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique
 uniform int random = 0;         //! menu("centred", "positive") As in the technique
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) As in the technique
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") As in the technique
 uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the technique
 
 const int LANES = 32;
@@ -65,9 +64,9 @@ Lattice lattice_of(int level) {
 // What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl does.
 vec2 scale_of(vec2 range) {
     float low = normalise == 1 ? 0.0 : range.x;
-    float span = range.y - low;
+    float span = span_of(vec2(low, range.y));
     // A land without a range becomes 0, or with "max" stays as it is.
-    if (!(span > 1e-37)) span = normalise == 1 ? 1.0 : 3.4e38;
+    if (span == 0.0) span = normalise == 1 ? 1.0 : 3.4e38;
     return vec2(low, span);
 }
 

@@ -5,13 +5,13 @@
 //   units    rise over run; -10000 where no land stands towards the sun
 //   source   see lighting/sun_sweep/band.glsl
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
-//   agrees   to the last bit: it does what the kernel beside it does, less often
+//   agrees   exactly: it does what the kernel beside it does, less often
 //
 // A thread has a band. Bands that begin beside the land enter it later.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "maths/land.glsl"
-#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4")
+#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4", agrees = "exact")
 
 uniform sampler2D height;              //! input
 uniform sampler2D daylight;            //! input("black")

@@ -14,7 +14,7 @@
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D height;           //! input
-uniform ivec2 part = ivec2(0);      //! Which part of the land, counted east and north
+uniform ivec2 part = ivec2(0);      //! parts("east", "north") Which part of the land, counted east and north
 uniform int apron = 0;              //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part, in texels of the height
 uniform int patches = 64;           //! log_slider(4, 1024) unit("texels") Width of the widest patches
 uniform uint seed = 7u;             //! slider(0, 9999) Which patches

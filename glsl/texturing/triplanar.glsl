@@ -26,7 +26,7 @@ uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 uniform sampler2D height;  //! input
 
 uniform float repeats = 24.0;    //! slider(1, 256) step(1) How often the image stands side by side from west to east
-uniform vec2 cliffs = vec2(30.0, 45.0);  //! slider(0, 90) step(1) unit("degrees") How steep land must be for its sides to be seen, and for them to be all that counts
+uniform vec2 cliffs = vec2(30.0, 45.0);  //! slider(0, 90) step(1) unit("degrees") parts("seen from", "alone from") How steep land must be for its sides to be seen, and for them to be all that counts
 uniform float sharpness = 4.0;   //! slider(1, 16) step(0.1) How narrow the borders are between the planes
 uniform float detail = 1.0;      //! slider(0, 1) step(0.01) How much of the image's contrast is left. 0: its mean colour
 

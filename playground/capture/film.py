@@ -116,8 +116,9 @@ def write_film(
         for picture in frames(engine, film):
             video.add(picture)
             done()
-    if note := alpha_note(video.dropped, film.count, "the video"):
-        say(note)
+    for note in (video.warning, alpha_note(video.dropped, film.count, "the video")):
+        if note:
+            say(note)
     return Path(path)
 
 

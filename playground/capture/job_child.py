@@ -14,6 +14,7 @@ from pathlib import Path
 from playground.api import headless
 from playground.capture.job import Job, do
 from playground.capture.working import Finished, Progress
+from playground.engine.plain_forms import silent
 from playground.engine.trial_process import Ready, receive_bytes, send
 from playground.engine.trial_wire import Reader
 from playground.errors import PlaygroundError
@@ -42,7 +43,7 @@ def main() -> None:
         send(answers, Progress("", "", done, of))
 
     try:
-        with headless(software=renderer == "software", driver=driver) as engine:
+        with headless(software=renderer == "software", driver=driver, notice=silent) as engine:
             answer = Finished(do(job, engine, tell, notes.append), notes=tuple(notes))
     except Stop:
         answer = Finished(None, stopped=True)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Window
-from playground.errors import ParameterError, SketchError
+from playground.errors import DataError, ParameterError, SketchError
 from playground.gpu.textures import read_picture
 from playground.images.files import replacing
 from playground.images.png_strips import PngStrips
@@ -130,10 +130,16 @@ def write_large(
 ) -> Path:
     """Write a picture of up to 65,536 pixels a side as a PNG, whole or not at all, and return its path.
 
+    Raises ``DataError`` for a path with another ending.
+
     Arguments as for ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
     one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
     whatever the height.
     """
+    if Path(path).suffix.lower() != ".png":
+        raise DataError(
+            "a picture that is drawn in parts is written to a name ending in .png", file=str(path)
+        )
     with replacing(path) as handle:
         pack_large(engine, sketch, handle, size, time=time, steps=steps, tile=tile, text=text, done=done)
     return Path(path)

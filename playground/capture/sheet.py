@@ -142,8 +142,9 @@ def write_sweep_film(
     with Video(path, size, fps, sum(map(len, rows)), quality=quality) as video:
         for picture in _counted(pictures(engine, rows, size, time), done):
             video.add(picture)
-    if note := alpha_note(video.dropped, video.count, "the video"):
-        say(note)
+    for note in (video.warning, alpha_note(video.dropped, video.count, "the video")):
+        if note:
+            say(note)
     return Path(path)
 
 

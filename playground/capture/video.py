@@ -8,7 +8,7 @@ each. Alpha is dropped, and counted: ``Video.dropped``.
 
 from __future__ import annotations
 
-import secrets
+from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.errors import ContextError, DataError, ParameterError, counted, nearest
+from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.images.endings import VIDEO_ENDINGS
 from playground.images.files import reason
+from playground.partial import partial_file
 from playground.paths import shown
 
 if TYPE_CHECKING:
@@ -52,9 +53,11 @@ class Video:
     """A video being written: use it with ``with``, and ``add()`` every picture.
 
     ``size`` in pixels; ``count`` pictures are expected. At the end the file is read back,
-    and takes its name if all are in it at the rate asked for. When the block fails,
-    nothing is left; when it is interrupted, what is there becomes a shorter video, as
-    ``film-first-120.mp4``, and ``Stopped`` tells its name.
+    and takes its name if all are in it at the rate asked for. Where it cannot be read back it
+    takes its name all the same, and ``warning`` says so; where another number of pictures is
+    in it, it is kept as ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
+    before that, nothing is left; when it is interrupted, what is there becomes a shorter
+    video, as ``film-first-120.mp4``, and ``Stopped`` tells its name.
 
     Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
     ending, odd sides, a rate that a GIF has not, a missing folder, and where PyAV is missing.
@@ -67,14 +70,16 @@ class Video:
         self.size, self.fps, self.count = size, fps, count
         self.added = 0
         self.dropped = 0  # pictures so far whose alpha was below one somewhere
+        self.warning = ""  # a sentence where the finished file could not be checked
         self._ending = check_video(self.path, size, fps, quality)
         self._av = _pyav()
-        self._temporary = self.path.with_name(f".{self.path.name[:40]}.{secrets.token_hex(6)}.part")
-        try:
+        with ExitStack() as stack:
+            try:
+                self._partial = stack.enter_context(partial_file(self.path))
+            except OSError as error:
+                raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
             self._open(quality)
-        except BaseException:
-            self._temporary.unlink(missing_ok=True)
-            raise
+            self._open_partial = stack.pop_all()
 
     def __enter__(self) -> Video:
         return self
@@ -89,7 +94,7 @@ class Video:
                 raise Stopped(self._shorter(), self.added) from None
         finally:
             self._container.close()
-            self._temporary.unlink(missing_ok=True)
+            self._open_partial.close()
 
     def add(self, picture: NDArray[np.uint8]) -> None:
         """Encode the next picture, (height, width, 3 or 4) bytes, top row first, sRGB."""
@@ -110,7 +115,7 @@ class Video:
         moved = {"movflags": "+faststart"} if form == "mp4" else {}
         try:
             self._container: av.container.OutputContainer = self._av.open(
-                str(self._temporary), "w", format=form, options=moved
+                str(self._partial.path), "w", format=form, options=moved
             )
             self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
         except OSError as error:
@@ -153,30 +158,47 @@ class Video:
             raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _finish(self) -> None:
-        """Give the video its name, if all the pictures that were asked for are in it."""
-        found, rate = self._closed()
-        if found != self.count or rate != self.fps:
-            raise DataError(
-                f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
-                f"{float(self.fps):g}",
-                file=self.path,
-            )
-        self._name(self.path)
+        """Give the video its name; one that holds other pictures than were asked for gets another."""
+        if not self.added:
+            raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
+        self._close()
+        try:
+            found, rate = count_pictures(self._partial.path)
+        except KeyboardInterrupt:
+            self._name(self._first(self.added))
+            raise Stopped(self._first(self.added), self.added) from None
+        except Exception as error:  # whatever a version of PyAV raises: the film is encoded, and is kept
+            self._name(self.path)
+            why = error.diagnostics[0].message if isinstance(error, PlaygroundError) else reason(error)
+            self.warning = f"{shown(self.path)} was written, but could not be checked: {why}"
+            return
+        if found == self.count and rate == self.fps:
+            self._name(self.path)
+            return
+        kept = self._first(found)
+        self._name(kept)
+        raise DataError(
+            f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
+            f"{float(self.fps):g}; they are kept in {kept.name}",
+            file=self.path,
+        )
 
-    def _closed(self) -> tuple[int, Fraction]:
-        """Write what the encoder still holds; return how many pictures are in the file, and their rate."""
+    def _close(self) -> None:
+        """Write what the encoder still holds, and the end of the file."""
         self._mux(None)
         try:
             self._container.close()
-            return count_pictures(self._temporary)
         except OSError as error:
             raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _name(self, path: Path) -> None:
         try:
-            self._temporary.replace(path)
+            self._partial.rename(path)
         except OSError as error:
             raise DataError(f"cannot be written: {reason(error)}", file=path) from None
+
+    def _first(self, count: int) -> Path:
+        return self.path.with_name(f"{self.path.stem}-first-{count}{self.path.suffix}")
 
     def _shorter(self) -> Path | None:
         """Return where the pictures so far are, once they are a video; None for none.
@@ -185,8 +207,10 @@ class Video:
         """
         if not self.added:
             return None
-        self.added, _ = self._closed()
-        path = self.path.with_name(f"{self.path.stem}-first-{self.added}{self.path.suffix}")
+        self._close()
+        with suppress(Exception, KeyboardInterrupt):  # then the count is what was added
+            self.added, _ = count_pictures(self._partial.path)
+        path = self._first(self.added)
         self._name(path)
         return path
 
@@ -237,14 +261,15 @@ def count_pictures(path: str | Path) -> tuple[int, Fraction]:
     try:
         with module.open(str(path), format=None) as container:
             stream = container.streams.video[0]
+            rate = Fraction(stream.average_rate or 0)  # a closed container has none
             packets = [packet for packet in container.demux(stream) if packet.size]
             times = sorted(packet.pts * packet.time_base for packet in packets if packet.pts is not None)
-    except (OSError, IndexError) as error:
+    except (OSError, IndexError, ValueError) as error:
         raise DataError(f"cannot be read back: {reason(error)}", file=Path(path)) from None
-    rate = Fraction(stream.average_rate or 0)
-    if len(times) > 1:  # what is written is times; some formats round them to thousandths
+    if len(times) > 1 and times[-1] > times[0]:  # what is written is times; some formats round to thousandths
         mean = Fraction(len(times) - 1) / (times[-1] - times[0])
-        rate = rate if abs(mean / rate - 1) < Fraction(1, 100) else mean.limit_denominator(1001)
+        near = rate and abs(mean / rate - 1) < Fraction(1, 100)
+        rate = rate if near else mean.limit_denominator(1001)
     return len(packets), rate
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ import typer
 
 from playground.commands.arguments import JsonOption, help_text
 from playground.errors import counted
-from playground.terminal import print_table
+from playground.terminal import print_json, print_table
 
 if TYPE_CHECKING:
     from playground.engine.store import Listed
@@ -58,7 +57,7 @@ def show(as_json: JsonOption = False) -> None:
     folder, limit = place(), limit_in()
     found = listed(folder)
     if as_json:
-        print(json.dumps(_as_json(str(folder), limit, found), indent=2, ensure_ascii=False))
+        print_json(_as_json(str(folder), limit, found))
         return
     print(kept_text(str(folder), len(found), sum(each.bytes for each in found), limit))
     if found:

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import FAILED, DeviceOption, Renderer, SoftwareOption, help_text
-from playground.errors import counted
-from playground.terminal import painted, progress
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    PlainOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
+from playground.errors import Diagnostic, counted
+from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
     from playground.engine.check import FileReport
@@ -36,6 +43,7 @@ def check(
     as_json: Annotated[
         bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
     ] = False,
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
@@ -46,21 +54,26 @@ def check(
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)
     failed, skipped = 0, False
+    told: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (
         Trial(software=renderer.software, device=renderer.device) as trial,
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root)
+            report = check_file(path, trial, root, plain=plain)
+            report = replace(report, warnings=tuple(w for w in report.warnings if w not in told))
+            told |= set(report.warnings)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
-                print(json.dumps(report.as_json(), ensure_ascii=False), flush=True)
+                print_json(report.as_json(), indent=None)
             else:
                 _print_report(report)
             advance()
     if not as_json:
-        print(f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{_why_skipped(skipped)}")
+        warned = f", {counted(len(told), 'warning')}" if told else ""
+        said = f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{warned}"
+        print(f"{said}{_why_skipped(skipped)}")
     if failed:
         raise typer.Exit(FAILED)
 
@@ -73,6 +86,9 @@ def _print_report(report: FileReport) -> None:
     mark = painted("ok", "32", sys.stdout) if report.ok else painted("FAILED", "1;31", sys.stdout)
     skipped = f"  (skipped: {', '.join(report.skipped)})" if report.skipped else ""
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
-    for diagnostic in report.errors:
-        print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")))
+    for diagnostic in (*report.errors, *report.warnings):
+        text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
+        print("\n".join(f"        {line}" for line in text.split("\n")))
+    for sentence in report.notes:
+        print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

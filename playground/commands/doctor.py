@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypedDict
@@ -19,7 +18,7 @@ from playground.commands.arguments import (
     help_text,
 )
 from playground.commands.cache import kept_text
-from playground.terminal import complain
+from playground.terminal import complain, print_json
 
 if TYPE_CHECKING:
     from playground.gpu.doctor import Health
@@ -47,7 +46,7 @@ def doctor(
     renderer: Renderer = ctx.obj.or_else(software, device)
     health = examine(software=renderer.software, device=renderer.device)
     if as_json:
-        print(json.dumps(health.as_json() | {"cache": _cache()}, indent=2, ensure_ascii=False))
+        print_json(health.as_json() | {"cache": _cache()})
     else:
         findings = list(_findings(health))
         width = max(len(label) for label, _ in findings) + 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,7 +18,7 @@ from playground.commands.arguments import (
     help_text,
 )
 from playground.errors import PlaygroundError, SketchError, counted, nearest
-from playground.terminal import complain, note, painted, print_table, progress
+from playground.terminal import complain, note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -145,7 +144,7 @@ def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
             }
             for one in found
         ]
-        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        print_json(rows)
         return
     table = [(str(one.number), one.name, one.title, f"{one.minutes} min") for one in found]
     print_table("Lessons (playground lesson open NAME)", ("", "lesson", "title", "time"), table)
@@ -177,7 +176,7 @@ def status(as_json: JsonOption = False) -> None:
     names = [one.name for one in summaries(SOURCE)]
     found = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
     if as_json:
-        print(json.dumps([one.as_json() for one in found], indent=2, ensure_ascii=False))
+        print_json([one.as_json() for one in found])
     else:
         rows = [(one.name, one.language, one.word, "; ".join(one.sentences)) for one in found]
         print_table("Translations", ("lesson", "language", "state", "what"), rows)

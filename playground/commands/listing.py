@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +9,7 @@ import typer
 
 from playground.commands.arguments import JsonOption, complete_listed, help_text
 from playground.errors import SketchError
-from playground.terminal import note, painted, print_indented, print_rows, print_table
+from playground.terminal import note, painted, print_indented, print_json, print_rows, print_table
 
 if TYPE_CHECKING:
     from playground.sketch.catalogue import Choice, Entry
@@ -50,7 +49,7 @@ def list_(
         for entry in named:
             groups["sketches" if entry.kind == "sketch" else "techniques"].append(entry)
         table = {group: [entry.as_json() for entry in entries] for group, entries in groups.items()}
-        print(json.dumps(table, indent=2, ensure_ascii=False))
+        print_json(table)
         return
     if len(named) == 1:
         _print_entry(named[0])

@@ -11,6 +11,7 @@ import typer
 
 from playground.commands.arguments import (
     DriverOption,
+    PlainOption,
     Renderer,
     SetOption,
     SizeOption,
@@ -24,6 +25,7 @@ from playground.commands.arguments import (
 )
 from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
+from playground.terminal import complain
 
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
@@ -67,6 +69,7 @@ def live(
     size: SizeOption = None,
     settings: SetOption = None,
     driver: DriverOption = "auto",
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     fresh: FreshOption = False,
     lesson: LessonOption = "",
@@ -84,6 +87,7 @@ def live(
         renderer,
         read_driver(driver),
         values,
+        plain=plain,
         fresh=fresh,
         lesson=lesson,
         language=lang,
@@ -110,6 +114,7 @@ def open_window(
     driver: str,
     values: dict[str, object],
     *,
+    plain: bool = False,
     fresh: bool = False,
     lesson: str = "",
     language: str = "",
@@ -133,11 +138,13 @@ def open_window(
         software=renderer.software,
         driver=driver,
         values=values,
+        plain=plain,
         fresh=fresh,
         lesson=lesson,
         language=language,
         beside=beside,
         keeps=keeps,
+        tell=complain,
     )
     if status:
         raise typer.Exit(status)

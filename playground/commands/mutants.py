@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ from playground.commands.arguments import (
 )
 from playground.errors import DataError, counted
 from playground.paths import shown
-from playground.terminal import note, painted, print_table, progress
+from playground.terminal import note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
     from playground.shots.mutants.again import Redrawn
@@ -117,9 +116,7 @@ def mutants(
             redrawn.append(drawn)
             advance()
     if as_json:
-        print(
-            json.dumps(_as_json(loaded.name, info.renderer, results, redrawn), indent=2, ensure_ascii=False)
-        )
+        print_json(_as_json(loaded.name, info.renderer, results, redrawn))
     else:
         _print(results)
         _print_again(redrawn)

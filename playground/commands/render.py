@@ -14,6 +14,7 @@ from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
     Moment,
+    PlainOption,
     Renderer,
     SetOption,
     SizeOption,
@@ -31,15 +32,18 @@ from playground.commands.arguments import (
     read_values,
 )
 from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
-from playground.errors import DataError, ParameterError
+from playground.errors import DataError, ParameterError, counted
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
     from playground.sketch.model import Sketch
 
+
+_MOST_HIDDEN = 3  # defaults without effect that are told one by one
 
 HELP = help_text(
     "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
@@ -83,6 +87,7 @@ class Picture:
     texture: str = ""
     profile: bool = False
     steps: dict[str, int] | None = None
+    plain: bool = False
     asked: Asked | None = None  # more than one picture
 
 
@@ -103,6 +108,7 @@ def render(
     time: TimeOption = "",
     settings: SetOption = None,
     driver: DriverOption = "auto",
+    plain: PlainOption = False,
     shot: Annotated[
         str, typer.Option("--shot", help="Render a shot of the sketch.", metavar="NAME", show_default=False)
     ] = "",
@@ -212,6 +218,7 @@ def render(
         texture,
         profile,
         read_steps(steps),
+        plain,
         asked,
     )
     make_picture(picture, ctx.obj.or_else(software, device))
@@ -222,13 +229,14 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     from playground.sketch.load import load
 
     moment = moment_of(
-        load(picture.sketch),
+        load(picture.sketch).plainly(picture.plain),
         shot=picture.shot,
         preset=picture.preset,
         values=picture.values,
         steps=picture.steps,
         time=picture.time,
     )
+    _say_hidden_defaults(moment.sketch)
     if picture.asked is not None and picture.asked.many:
         make_many(picture.asked, moment, picture.output, picture.size, renderer, picture.driver)
         return
@@ -236,8 +244,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
+    from playground.engine.placing import told_at
 
     with (
+        told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),
         _target(picture, sketch) as target,
         headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
     ):
@@ -246,6 +256,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         if not picture.texture and is_large(engine, sketch, size):
             if picture.profile:
                 raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+            if picture.output != "-" and target.suffix.lower() != ".png":
+                raise DataError(
+                    "a picture this large is drawn in parts, and written as .png", file=picture.output
+                )
             _draw_large(engine, moment, size, target, picture.output == "-")
         else:
             with busy(f"rendering {sketch.name}"):
@@ -255,6 +269,18 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
             _print_profile(engine)
     if picture.output != "-":
         print(target)
+
+
+def _say_hidden_defaults(sketch: Sketch) -> None:
+    """Say which defaults of the sketch's own kernels have no effect, for its own files set them over."""
+    from playground.sketch.shadowed import shadowed_by_files
+
+    hidden = shadowed_by_files(sketch)
+    for one in hidden[:_MOST_HIDDEN]:
+        note(str(one))
+    if len(hidden) > _MOST_HIDDEN:
+        more = counted(len(hidden) - _MOST_HIDDEN, "more default")
+        note(f"{more} that a set stands over: playground check lists them")
 
 
 def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int], target: Path) -> None:
@@ -275,7 +301,7 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
 
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
-        frame.save(target)
+        frame.save(target, say=note)
 
 
 def _say_not_finite(engine: Engine) -> None:
@@ -312,6 +338,8 @@ def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
+        if isinstance(sys.stdout, Nowhere):
+            raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
     if not picture.output:
         parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]

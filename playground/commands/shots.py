@@ -5,14 +5,13 @@ One command a file where it is more than a few lines; here they are gathered.
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from playground.commands import mutants, shots_results
 from playground.commands.arguments import JsonOption, complete_sketch, help_text
-from playground.terminal import print_table
+from playground.terminal import print_json, print_table
 
 if TYPE_CHECKING:
     from playground.sketch.model import Sketch
@@ -68,7 +67,7 @@ def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> Non
     techniques = Techniques()  # most sketches share theirs
     rows = [row for name in sketches or shipped_sketches() for row in _rows(load_with(techniques, name))]
     if as_json:
-        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        print_json(rows)
         return
     table = []
     for row in rows:

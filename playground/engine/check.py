@@ -18,22 +18,30 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
-
+from playground.engine.placing import told_at
 from playground.engine.plan import make_plan
+from playground.engine.plan_warnings import kernel_warnings, source_warnings
+from playground.engine.stage import free_name, stage, with_pictures
 from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
-from playground.images.files import write_values
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.assign import values_of
 from playground.sketch.load import is_technique, load
-from playground.sketch.model import Graph, Input, Kernel, Output, PassSpec, Sketch, Technique, kernels_of
-from playground.sketch.places import TEXTS, root_of
-from playground.sketch.source import Line, SourceText, read_text
-from playground.sketch.techniques import nothing_to_run, read_kernel, read_technique
+from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.places import TEXTS, canonical_of, is_variant, root_of
+from playground.sketch.shadowed import shadowed_by_files
+from playground.sketch.source import read_text
+from playground.sketch.techniques import lonely_variant, nothing_to_run, read_kernel, read_technique
 from playground.sketch.unpack import ENDING, is_pack, unpacked
-from playground.sketch.wiring import input_names
+from playground.sketch.variants import (
+    any_variants,
+    is_verified,
+    left_out,
+    trusted,
+    why_not,
+    without_variants,
+)
+from playground.sketch.warnings import warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
@@ -48,14 +56,18 @@ class FileReport:
     ok: bool
     skipped: tuple[str, ...] = ()  # drivers that this machine does not have
     errors: tuple[Diagnostic, ...] = ()
+    warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
+    notes: tuple[str, ...] = ()  # sentences: fast variants that do not run
     seconds: float = 0.0  # in the trial child
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
-        errors = [
-            {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in self.errors
-        ]
-        return {"path": self.path, "ok": self.ok, "skipped": list(self.skipped), "errors": errors}
+        errors, warnings = (
+            [{"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in some]
+            for some in (self.errors, self.warnings)
+        )
+        found = {"path": self.path, "ok": self.ok, "skipped": list(self.skipped)}
+        return found | {"errors": errors, "warnings": warnings, "notes": list(self.notes)}
 
 
 def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
@@ -83,6 +95,8 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 wanted = ", ".join((*TEXTS, ENDING))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
+        elif path.exists():
+            raise DataError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
         else:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             hint = nearest(path.name, near)
@@ -95,38 +109,46 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
     return list(found.items())
 
 
-def check_file(path: Path, trial: Trial, root: Path | None = None) -> FileReport:
-    """Check one file and return what is wrong with it; ``root`` is the folder it may include from."""
+def check_file(path: Path, trial: Trial, root: Path | None = None, *, plain: bool = False) -> FileReport:
+    """Check one file and return what is wrong with it; ``root`` is the folder it may include from.
+
+    ``plain``: no fast variant is drawn.
+    """
     path = path.resolve()
     with TemporaryDirectory(prefix="playground-check-") as folder:
-        report = _Check(trial, path, root_of(path) if root is None else root, Path(folder)).run()
+        report = _Check(trial, path, root_of(path) if root is None else root, Path(folder), plain).run()
     return report
 
 
 class _Check:
     """One file being checked."""
 
-    def __init__(self, trial: Trial, path: Path, root: Path, scratch: Path) -> None:
+    def __init__(self, trial: Trial, path: Path, root: Path, scratch: Path, plain: bool) -> None:
+        self.plain = plain
+        self.notes: tuple[str, ...] = ()
         self.trial = trial
         self.path = path
         self.root = GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root
         self.scratch = scratch  # where the stand-in picture is written
         self.skipped: dict[str, None] = {}
         self.errors: dict[Diagnostic, None] = {}
+        self.warnings: dict[Diagnostic, None] = {}
         self.seconds = 0.0
 
     def run(self) -> FileReport:
         check: Callable[[], None] = self.shader
-        if self.path.suffix == ".toml":
+        if is_variant(self.path) and canonical_of(self.path) is not None:
+            check = self.variant
+        elif self.path.suffix == ".toml":
             check = self.technique if is_technique(self.path) else self.sketch
-        elif self.path.suffix == ".comp" and _owner(self.path) is not None:
-            check = self.companion
         try:
             check()
         except PlaygroundError as error:
             self.failed(error)
         wrong = tuple(self.errors)
-        return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, self.seconds)
+        mild = () if wrong else tuple(self.warnings)  # a misspelt name would be one that nothing reads
+        skipped, notes = tuple(self.skipped), self.notes
+        return FileReport(shown(self.path), not wrong, skipped, wrong, mild, notes, self.seconds)
 
     # ── the kinds of file ────────────────────────────────────────────────────
 
@@ -134,46 +156,60 @@ class _Check:
         kernel = read_kernel(self.path, self.root)
         if kernel is None and self.path.suffix != ".glsl":
             raise nothing_to_run(self.path)
+        if kernel is not None:
+            self.warnings |= dict.fromkeys(warnings_of_kernel(kernel))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root)))
         elif kernel.kind.startswith("plain"):
             view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
             graph = Graph(kernel.name, str(self.path), (view,))
             sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
+            sketch = with_pictures(sketch, self.picture)
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
-            raise SketchError(
-                f"a companion runs in place of {self.path.stem}.glsl, which is missing", file=shown(self.path)
-            )
+            raise lonely_variant(self.path)
         else:
             self.on_stage(kernel)
 
-    def companion(self) -> None:
-        owner = _owner(self.path)
+    def variant(self) -> None:
+        """Try a fast variant, verified or not."""
+        owner = canonical_of(self.path)
         assert owner is not None
-        self.attempt(self.request(self.read(owner), (COMPUTE,)))
+        technique = self.read(owner)
+        own = next(v for v in technique.variants if Path(v.path) == self.path)
+        if not is_verified(technique, own):
+            self.notes = (f"it does not run, the plain form does: {why_not(technique, own)}",)
+        if not self.plain:
+            alone = trusted(replace(without_variants(technique), variants=(own,)))
+            self.attempt(self.request(alone, (COMPUTE,) if own.kind == "compute" else BOTH))
 
     def technique(self) -> None:
+        if is_variant(self.path):
+            raise lonely_variant(self.path)
         self.on_stage(self.read(self.path))
 
     def sketch(self) -> None:
-        sketch = load(self.path)
+        sketch = load(self.path).plainly(self.plain)
+        self.notes = left_out(sketch)
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        make_plan(sketch, frame_size=_FRAME)
+        plan = make_plan(sketch, frame_size=_FRAME)
+        self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
+        self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
             make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+            with told_at(sketch, shot):
+                make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
         self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any"))
 
     # ── trying ───────────────────────────────────────────────────────────────
 
     def on_stage(self, technique: Technique) -> None:
-        """Try a technique: what it says by both drivers, then what stands for it where there is compute."""
-        plain = _without_companions(technique)
-        self.attempt(self.request(plain, BOTH))
-        if plain != technique and not self.errors:
-            self.attempt(self.request(technique, (COMPUTE,)))
+        """Try a technique: what it says by both drivers, then its fast variants, verified or not."""
+        self.notes = () if self.plain else left_out(self.stage(technique))
+        self.attempt(self.request(without_variants(technique), BOTH))
+        if any_variants(technique) and not self.plain and not self.errors:
+            self.attempt(self.request(trusted(technique), (COMPUTE,)))
 
     def attempt(self, request: Request) -> None:
         report: TrialReport = self.trial.run(request)
@@ -200,26 +236,14 @@ class _Check:
 
     def stage(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to stand-ins."""
-        wanted = technique.needs_inputs if isinstance(technique, Kernel) else input_names(technique)
-        names = list(wanted)
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
-        while subject in (*names, "view"):
-            subject += "_"
-        line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
-        passes = [PassSpec(name, "a stand-in", _STAND_IN) for name in names]
-        passes.append(PassSpec(subject, self.path.stem, technique, file=shown(self.path), line=line))
-        passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
-        graph = Graph(subject, str(self.path), tuple(passes))
-        sketch = Sketch(self.path.stem, str(self.path), str(self.root), graph)
-        return sketch.with_values({path: str(self.picture()) for path in _unnamed_files(sketch)})
+        found = stage(technique, free_name(subject, technique), self.root, self.picture)
+        return replace(found, name=self.path.stem, file=str(self.path))
 
+    @property
     def picture(self) -> Path:
-        """Return a picture, and an elevation file, for parameters that name none."""
-        path = self.scratch / "stand-in.png"
-        if not path.exists():
-            ramp = np.linspace(0.0, 1.0, 33, dtype=np.float32)
-            write_values(path, np.sqrt(np.outer(ramp, ramp)))
-        return path
+        """The file that stands in for those that nothing names."""
+        return self.scratch / "stand-in.png"
 
 
 def _inside(folder: Path) -> Iterator[Path]:
@@ -241,57 +265,7 @@ def _is_ours(path: Path) -> bool:
     return "pass" in table or "format" in table or "view" in table
 
 
-def _owner(companion: Path) -> Path | None:
-    """Return the kernel or technique that a .comp stands for, if it lies beside it."""
-    beside = (companion.with_suffix(".glsl"), companion.with_suffix(".toml"))
-    return next((path for path in beside if path.is_file()), None)
-
-
 def _drivers(sketch: Sketch) -> tuple[str, ...]:
     """Return the drivers that a sketch can be drawn by: a plain compute shader has one only."""
     only_compute = any(kernel.kind == "plain_compute" for _, kernel in kernels_of(sketch.graph))
     return (COMPUTE,) if only_compute else BOTH
-
-
-def _without_companions(technique: Technique) -> Technique:
-    if isinstance(technique, Kernel):
-        return replace(technique, companion=None) if technique.companion is not None else technique
-    passes = tuple(replace(spec, technique=_without_companions(spec.technique)) for spec in technique.passes)
-    return replace(technique, passes=passes, companion=None)
-
-
-def _unnamed_files(sketch: Sketch) -> list[str]:
-    values = values_of(sketch)
-    return [
-        f"{path}.{parameter.name}"
-        for path, kernel in kernels_of(sketch.graph)
-        for parameter in kernel.parameters
-        if parameter.widget.kind == "file" and not values[f"{path}.{parameter.name}"]
-    ]
-
-
-def _text(*code: str) -> SourceText:
-    return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(code, 1)))
-
-
-_STAND_IN = Kernel(
-    "a stand-in",
-    "kernel",
-    _text(
-        "vec4 kernel(ivec2 texel) {",
-        "    vec2 place = vec2(texel) / vec2(size);",
-        "    return vec4(0.25 + 0.5 * place.x * place.y + 0.2 * sin(9.0 * place.x) * sin(7.0 * place.y));",
-        "}",
-    ),
-    (Output("value", "rgba32f"),),
-)
-_COPY = Kernel(
-    "a copy",
-    "kernel",
-    _text(
-        "uniform sampler2D shown;",
-        "vec4 kernel(ivec2 texel) { return texelFetch(shown, min(texel, textureSize(shown, 0) - 1), 0); }",
-    ),
-    (Output("frame", "rgba16f"),),
-    inputs=(Input("shown"),),
-)

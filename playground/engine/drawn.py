@@ -11,22 +11,16 @@ a number, a size, a wire, the driver's form and a byte of an image do.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from playground.engine.keys import Form, KeyMaker
 from playground.engine.plan import Plan, Step
+from playground.sketch.canonical import compiled_text
 from playground.sketch.flatten import Ref
 from playground.sketch.model import Kernel
 
 _DIGITS = 9
-_TOKEN = re.compile(
-    r"[A-Za-z_]\w*"
-    r"|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*"
-    r"|<<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|[-+*/%&|^]="
-    r"|\S"
-)
 
 
 class Drawn:
@@ -49,20 +43,6 @@ class Drawn:
             return {name: rounded(value) for name, value in given(kernel, step).items()}
 
         return self._keys.keys_of(plan, form, smoothed, continued).steps[ref.path]
-
-
-def compiled_text(code: str) -> str:
-    """Return a text without comments as a compiler takes it: tokens, one space between each two.
-
-    A line of the preprocessor stays a line, with its spaces: they can mean something there.
-    """
-    found: list[str] = []
-    for line in code.split("\n"):
-        if line.lstrip().startswith("#"):
-            found.append(f"\n{' '.join(line.split())}\n")
-        else:
-            found += _TOKEN.findall(line)
-    return " ".join(found)
 
 
 def rounded(value: Any) -> Any:

@@ -8,9 +8,8 @@ them; here is what a program calls.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
-from dataclasses import replace
 from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +23,10 @@ from playground.engine.execution import Execution, would_run
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.keys import Form, KeyMaker, Keys
+from playground.engine.painted import PaintedFiles
+from playground.engine.plain_forms import PlainForms, warn
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -36,7 +38,6 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flatten import Ref
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Kernel, Sketch
-from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
@@ -51,8 +52,9 @@ class Engine:
     """Runs sketches on one context; keeps textures between frames.
 
     The context is the caller's, unless ``owns_context``. ``driver`` is "fragment",
-    "compute", or "auto": compute for what gains by it (visits and companions) where
-    there is compute, fragment for the rest.
+    "compute", or "auto": compute for what gains by it (visits) where there is compute,
+    fragment for the rest. Fast variants that need compute run unless it is "fragment".
+    ``notice`` is told, once each, why a fast variant does not run.
     """
 
     def __init__(
@@ -62,6 +64,7 @@ class Engine:
         driver: str = "auto",
         cache_bytes: int = CACHE_BYTES,
         owns_context: bool = False,
+        notice: Callable[[str], None] = warn,
     ) -> None:
         if driver not in DRIVERS:
             raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
@@ -77,10 +80,13 @@ class Engine:
         self.times: dict[str, float] = {}  # [ms] of each pass that ran in the last frame, while profiling
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
-        self.runner = Runner(ctx, self.info, self.pool)
+        self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
+        self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
-        self._keys = KeyMaker()
+        self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
+        self._keys = KeyMaker(content=self.painted.content)
         self._drawn = Drawn()
         self._finite = FiniteCheck(self)
         self._timer: Timer | None = None
@@ -136,17 +142,18 @@ class Engine:
         steps: Mapping[str, int] | None = None,
         wanted: str = "",
         largest: int = LARGEST_SIDE,
+        interpolated: bool | None = None,
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
         self._refuse_released()
-        compute = self.info.compute and self.driver != FRAGMENT
         return make_plan(
             opened(sketch),
             frame_size=size,
             time=time,
-            compute=compute,
+            variants=self.plain_forms.kinds,
             steps=steps,
             wanted=wanted,
+            interpolated=interpolated,
             largest=largest,
         )
 
@@ -157,14 +164,17 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> Frame:
         """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
-        many turns, by path. Raises ``PlaygroundError`` for any mistake in the sketch.
+        many turns, by path. What a stopped pass has not reached yet is interpolated where its
+        header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
+        Raises ``PlaygroundError`` for any mistake in the sketch.
         """
         found = opened(sketch)
-        texture = self.draw(found, size=size, time=time, steps=steps)
+        texture = self.draw(found, size=size, time=time, steps=steps, interpolated=interpolated)
         return Frame(read_picture(texture), found.name, time)
 
     def draw(
@@ -174,9 +184,10 @@ class Engine:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> moderngl.Texture:
-        """Draw the sketch's picture and return its texture, which lives until the next frame."""
-        plan = self.plan_for(sketch, size, time, steps)
+        """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
+        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
         view = plan.flat.outputs["view"]
         return self._texture(plan, next(iter(view.values())))
 
@@ -218,12 +229,13 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = False,
     ) -> moderngl.Texture:
         """Return the texture of ``pass[.inner…][:output]``; it lives until the next frame.
 
-        Runs only what it needs.
+        Runs only what it needs. What a stopped pass has not reached is 0, unless ``interpolated``.
         """
-        plan = self.plan_for(sketch, size, time, steps, ref)
+        plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
         return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
 
     def read(
@@ -234,13 +246,16 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = False,
     ) -> NDArray[np.float32]:
         """Return the values of ``pass[.inner…][:output]``.
 
         float32, (ny, nx) or (ny, nx, components), row 0 in the south; heights are 0..1
-        (times ``relief`` for metres), colours and light linear.
+        (times ``relief`` for metres), colours and light linear. What a stopped pass has not
+        reached is 0, unless ``interpolated``.
         """
-        return read_texture(self.texture(sketch, ref, size=size, time=time, steps=steps))
+        texture = self.texture(sketch, ref, size=size, time=time, steps=steps, interpolated=interpolated)
+        return read_texture(texture)
 
     def steps(
         self,
@@ -257,7 +272,7 @@ class Engine:
         found = opened(sketch)
         repeated = repeated_in(found, path)
         node = self.plan_for(found, size, time, {repeated: 0}).node(repeated)
-        assert node is not None  # steps keep companions from standing for it
+        assert node is not None  # steps keep fast variants from standing in for it
         for turn in range(node.whole + 1):
             yield turn, self.read(found, repeated, size=size, time=time, steps={repeated: turn})
 
@@ -324,9 +339,10 @@ class Engine:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
+        interpolated: bool = True,
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
-        plan = self.plan_for(sketch, size, time, steps)
+        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
         keys, shown = self.keys_of(plan), next(iter(plan.flat.outputs["view"].values()))
         nodes = needed(plan.nodes, shown)
         if self.keeping is not None:
@@ -356,6 +372,7 @@ class Engine:
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
+        self.plain_forms.tell(plan.sketch, plan.lacking)
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0
@@ -380,6 +397,7 @@ class Engine:
             execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
+        self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
     @contextmanager
@@ -402,14 +420,13 @@ class Engine:
         start: Result | None,
         keeps_surface: bool,
     ) -> Result:
-        kernel, driver = self.form_of(step)
-        chosen = step if kernel is step.kernel else replace(step, kernel=kernel)
+        _, driver = self.form_of(step)
         first = start.turn if start else 0
         fresh = self._objects()
         timed = self._timer_of().measure(self.times, step.path) if self.profiling else nullcontext()
         with timed:
             result = self.runner.run(
-                chosen, driver, inputs, turn=turn, start=start, keeps_surface=keeps_surface
+                step, driver, inputs, turn=turn, start=start, keeps_surface=keeps_surface
             )
         if fresh != self._objects():
             # What has run without a fault before will do so again, and asking waits for the driver.
@@ -426,7 +443,7 @@ class Engine:
         return self.pool.made, self.runner.programs.compiled
 
     def form_of(self, step: Step) -> Form:
-        """Choose which form of a kernel runs, and by which driver."""
+        """Return the kernel of a step, and choose by which driver it runs."""
         kernel = step.kernel
         if kernel.kind in ("compute", "plain_compute"):
             if not self.info.compute:
@@ -435,18 +452,9 @@ class Engine:
             return kernel, COMPUTE
         if kernel.kind != "kernel" or not self.info.compute or self.driver == FRAGMENT:
             return kernel, FRAGMENT
-        if kernel.companion is not None and self._may_stand_in(step):
-            return kernel.companion, COMPUTE
         if self.driver == COMPUTE or kernel.visits:
             return kernel, COMPUTE
         return kernel, FRAGMENT
-
-    def _may_stand_in(self, step: Step) -> bool:
-        """Say whether a companion gives what is asked: all turns, and from nothing."""
-        if step.repeat != step.whole or (self._plan is not None and step.path in self._plan.steps):
-            return False
-        initial = initial_names(step.kernel)
-        return all(source is None for name, source in step.inputs if name in initial)
 
     def _given_for(self, kernel: Kernel, step: Step) -> dict[str, object]:
         given = self.runner.given_for(kernel, step)

@@ -89,8 +89,20 @@ class Execution:
         return Result(step.size, step.kernel.outputs, textures, surface=start.result.surface)
 
     def _kept(self, step: Step) -> Result:
-        """Return a step's result from the cache, made if it is stale."""
-        key, unfinished = self.keys.steps[step.path], self.keys.unfinished[step.path]
+        """Return a step's result as it is shown, from the cache or made if it is stale."""
+        key = self.keys.steps[step.path]
+        if step.between is None:
+            return self._raw(step, key)
+        kept = self.cache.get(key)
+        if kept is None:
+            raw = self._raw(step, self.keys.raw[step.path])
+            kept = Kept({step.path: self.runner.filled(raw, step.between)})
+            self.cache.put(key, kept)
+        return next(iter(kept.results.values()))
+
+    def _raw(self, step: Step, key: str) -> Result:
+        """Return what a step has computed, from the cache or made if it is stale."""
+        unfinished = self.keys.unfinished[step.path]
         kept = self.cache.get(key)
         if kept is None:
             goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)

@@ -8,7 +8,7 @@ Passes that write bytes themselves (nearly every view does, and weights of textu
 theirs: such a pass is run once more into textures of floating point, and what it writes there
 is looked at. It need be done only for one that has run anew; of land that stays, and is lit
 anew, only the light is looked at again. Left as they are: passes inside a loop, kernels that
-repeat, companions (whose kernels give the same), and draws that go on from another one's samples.
+repeat, compute variants (whose kernels give the same), and draws that go on from another one's samples.
 
 A hole in the land counts too: no shipped source leaves one (`no_data` refuses or fills them),
 and the kernels that bear with one do so to show it, not to want it.

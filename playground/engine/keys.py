@@ -34,6 +34,7 @@ class Keys:
     """The keys of one plan."""
 
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
+    raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
     unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the count of turns
     loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, whatever the count of turns
     step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
@@ -47,11 +48,16 @@ class Keys:
 class KeyMaker:
     """Makes the keys of plans; remembers what kernels' texts say.
 
-    ``text`` gives what counts of a kernel's text.
+    ``text`` gives what counts of a kernel's text, ``content`` what tells a file's contents from others.
     """
 
-    def __init__(self, text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical) -> None:
+    def __init__(
+        self,
+        text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical,
+        content: Callable[[Path], str] = content_hash,
+    ) -> None:
         self._text = text
+        self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
 
     def keys_of(
@@ -66,7 +72,7 @@ class KeyMaker:
         ``form`` chooses what runs, ``given`` says what the engine gives a kernel beside its
         parameters, ``continued`` are the paths of draws that a later draw goes on from.
         """
-        made = _Made(self.text_of, form, given, continued)
+        made = _Made(self.text_of, self._content, form, given, continued)
         for node in plan.nodes:
             made.add(node, "", {}, {})
         return made.keys
@@ -94,7 +100,7 @@ class _Text:
 def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
-        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a companion's is not
+        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
     header += [
         kernel.samples,
@@ -123,6 +129,7 @@ class _Made:
     def __init__(
         self,
         text_of: Callable[[Kernel], _Text],
+        content: Callable[[Path], str],
         form: Callable[[Step], Form],
         given: Callable[[Kernel, Step], Mapping[str, Any]],
         continued: frozenset[str],
@@ -132,6 +139,7 @@ class _Made:
             str, frozenset[str]
         ] = {}  # loops that a step changes with, as its next reader sees it
         self.text_of = text_of
+        self.content = content
         self.form = form
         self.given = given
         self.continued = continued
@@ -150,7 +158,7 @@ class _Made:
             value = node.values[parameter.name]
             if parameter.widget.kind == "file":
                 path = Path(str(value))
-                parts.append((parameter.name, parameter.sampling, path.suffix, content_hash(path)))
+                parts.append((parameter.name, parameter.sampling, path.suffix, self.content(path)))
             elif parameter.name in text.used:
                 parts.append((parameter.name, value))
         parts += [(name, self._source(source, fed)) for name, source in node.inputs]
@@ -160,7 +168,9 @@ class _Made:
         if node.path in self.continued:
             parts.append("continued")
         self.keys.unfinished[node.path] = _digest([node.path, parts])
-        self.keys.steps[node.path] = _digest([node.repeat, parts])
+        self.keys.raw[node.path] = self.keys.steps[node.path] = _digest([node.repeat, parts])
+        if node.between is not None:
+            self.keys.steps[node.path] = _digest([self.keys.raw[node.path], *node.between])
         varies = frozenset[str]().union(*(self._varies(source, varying) for _, source in node.inputs))
         if loop and kernel.repeat == "1" and kernel.reads("iteration"):
             varies |= {loop}

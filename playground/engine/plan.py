@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 
+from playground.engine.between import Between, between_of
 from playground.engine.files import find_file
+from playground.engine.placing import placed
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
@@ -58,6 +61,7 @@ class Step:
     whole: int  # turns in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
+    between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
 
     @property
     def whole_size(self) -> tuple[int, int]:
@@ -92,6 +96,8 @@ class Plan:
     frame_size: tuple[int, int]
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
+    interpolated: bool = False  # what stopped passes have not reached is filled
+    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without compute shaders
 
     def walk(self) -> Iterator[Step]:
         """Yield every step, those inside loops included."""
@@ -158,23 +164,29 @@ def make_plan(
     *,
     frame_size: tuple[int, int],
     time: float = 0.0,
-    compute: bool = False,
+    variants: Collection[str] = (),
     steps: Mapping[str, int] | None = None,
     wanted: str = "",
+    interpolated: bool | None = None,
     largest: int = LARGEST_SIDE,
 ) -> Plan:
     """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
 
-    ``compute`` lets companions stand for whole techniques, but not for those around the
-    pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of
-    a technique will do where one pass inside it repeats). Raises ``SketchError`` or
-    ``DataError`` at the pass that is wrong, ``ShaderError`` at a kernel's header.
+    ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
+    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+    path (that of a technique will do where one pass inside it repeats), and no later than they
+    end unless their number grows with time. What a stopped pass has not reached is
+    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
+    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
+    kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
-    flat = flatten(sketch, compute=compute, opened=(*stopped, *filter(None, [wanted])))
-    return _Planner(sketch, flat, size, seconds, stopped).plan()
+    opened = (wanted,) if wanted else ()
+    flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
+    fills = not wanted if interpolated is None else interpolated
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute="compute" in variants).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -182,7 +194,7 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
-    nodes = flatten(sketch, compute=False).nodes
+    nodes = flatten(sketch).nodes
     found = repeated_path(str(path), nodes)
     if found is None:
         hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
@@ -197,21 +209,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
         if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
-
-
-def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
-    """Return an error of a data file at the pass that names it, the file in the sentence.
-
-    Where a file was set for the pass from outside, the sketch's text is not at fault, and
-    the error stays as it is.
-    """
-    by_hand = any(
-        path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
-    )
-    if by_hand or not spec.file:
-        return error
-    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
-    return DataError(found, file=spec.file, line=spec.line)
 
 
 def _pixels(size: object, largest: int) -> tuple[int, int]:
@@ -238,7 +235,7 @@ def _turns(path: str, count: object) -> int:
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
     """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
 
@@ -252,13 +249,24 @@ def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
 
 class _Planner:
     def __init__(
-        self, sketch: Sketch, flat: Flat, frame_size: tuple[int, int], time: float, steps: dict[str, int]
+        self,
+        sketch: Sketch,
+        flat: Flat,
+        frame_size: tuple[int, int],
+        time: float,
+        steps: dict[str, int],
+        *,
+        fills: bool,
+        compute: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
         self.frame_size = frame_size
         self.time = time
         self.steps = steps
+        self.fills = fills
+        self.compute = compute
+        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
@@ -269,13 +277,19 @@ class _Planner:
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, self.frame_size, self.time, self.steps)
+        seen = self.frame_size, self.time, self.steps, self.fills
+        lacking = tuple(
+            f"{path or 'the sketch'} does without compute shaders, which are not here: "
+            f"see {shown(self.flat.graphs[path].path)}"
+            for path in self.lacking
+        )
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen, lacking)
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
             whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
-            count = min(whole, self.steps.get(node.path, whole))
+            count = self._stopped(node.path, whole, node.repeat)
             return Turns(
                 node.path, count, whole, tuple(self._node(n) for n in node.body), node.feedback, node.spec
             )
@@ -288,8 +302,16 @@ class _Planner:
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         whole = self._count(kernel.repeat, node.path, kernel, names)
         # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
-        repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
-        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec)
+        repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
+        between = between_of(node, repeat, whole, names) if self.fills else None
+        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec, between=between)
+
+    def _stopped(self, path: str, whole: int, repeat: str) -> int:
+        """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
+        asked = self.steps.get(path, whole)
+        if asked > whole and "time" not in expressions.names_in(repeat):
+            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
+        return min(asked, whole)
 
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
@@ -360,7 +382,7 @@ class _Planner:
         return values
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        """Return a leaf's size; a companion's is that of the pass whose output it gives."""
+        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
         path = leaf.path
         technique: Technique = self.flat.graphs.get(path, leaf.kernel)
         while isinstance(technique, Graph):
@@ -431,7 +453,11 @@ class Names:
         try:
             target = resolve(graph, name)[0].path
         except PlaygroundError:
-            raise KeyError(name) from None
+            if name != "compute":
+                raise KeyError(name) from None
+            if not planner.compute:
+                planner.lacking[self.prefix] = None
+            return int(planner.compute)
         value = planner.flat.values[f"{self.prefix}.{target}" if self.prefix else target]
         if not isinstance(value, int | float):
             raise KeyError(name)

@@ -36,6 +36,7 @@ from playground.gpu.build import build_of
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import bytes_of
 from playground.images.files import replacing
+from playground.json_text import read_json
 
 LIMIT = 2**30  # [bytes] unless the environment says another
 VARIABLE = "PLAYGROUND_CACHE"
@@ -281,14 +282,14 @@ def _head(file: IO[bytes]) -> tuple[bytes, Kept, str]:
         raise ValueError("not a header")
     header = file.read(length)
     try:
-        table: dict[str, Any] = json.loads(header)
+        table: dict[str, Any] = read_json(header)
         width, height = (int(side) for side in table["size"])
         outputs = tuple((str(name), str(form)) for name, form in table["outputs"])
         kept = Kept((width, height), outputs, float(table["cost"]), str(table["made_for"]))
         if min(width, height) < 1 or kept.bytes < 1:
             raise ValueError("no texels")
         return start + header, kept, str(table["key"])
-    except (TypeError, KeyError, ArithmeticError, RecursionError) as error:
+    except (TypeError, KeyError, ArithmeticError) as error:
         raise ValueError(f"not a header: {error}") from None
 
 

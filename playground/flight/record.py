@@ -18,6 +18,7 @@ from typing import IO, Any
 
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
+from playground.json_text import read_json
 
 FORMAT, VERSION = "playground flight", 1
 LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] seen: nearer, the end of the land would show
@@ -197,19 +198,20 @@ def read_record(path: str | Path) -> Record:
 
 def _is_json(row: str) -> bool:
     try:
-        json.loads(row)
-    except (ValueError, RecursionError):
+        read_json(row)
+    except ValueError:
         return False
     return True
 
 
 def _json(row: str, path: str | Path, number: int) -> Any:
     try:
-        return json.loads(row)
-    except (ValueError, RecursionError):
+        return read_json(row)
+    except ValueError as error:
         if number == 1:
             raise _no_record(path) from None
-        raise DataError(f"{row.strip()[:60]}: is no JSON", file=str(path), line=number) from None
+        why = "is no JSON" if isinstance(error, json.JSONDecodeError) else str(error)
+        raise DataError(f"{row.strip()[:60]}: {why}", file=str(path), line=number) from None
 
 
 def _no_record(path: str | Path) -> DataError:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-PICTURE_ENDINGS = (".png",)
-"""What a picture is written as."""
+PICTURE_ENDINGS = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
+"""What a picture is written as; one that is drawn in parts as the first."""
 
 VALUE_ENDINGS: dict[str, str] = {
     ".npy": "float32, south row first",

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import io
 import re
-import secrets
 import struct
 import warnings
 import zlib
@@ -34,7 +33,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
+from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.images.endings import VALUE_ENDINGS
+from playground.partial import partial_file
 from playground.paths import shown
 
 if TYPE_CHECKING:
@@ -42,8 +43,6 @@ if TYPE_CHECKING:
     from PIL.PngImagePlugin import PngInfo
 
     _Picture = PIL.Image.Image
-
-MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
 
 PNG_START = b"\x89PNG\r\n\x1a\n"
 _PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
@@ -199,16 +198,25 @@ def _png_header(handle: BinaryIO) -> tuple[int, int]:
 def _open(handle: BinaryIO, path: Path) -> _Picture:
     import PIL.Image
 
+    depth = _png_header(handle)[0]
+    size = webp_size(handle.read(30))
+    handle.seek(0)
+    if size is not None:
+        _judge(path, size, 8)
     try:
         picture: _Picture = PIL.Image.open(handle, formats=("PNG", "JPEG", "WEBP"))
     except PIL.Image.DecompressionBombError as error:
         raise DataError(f"too large a picture to open: {reason(error)}", file=path) from error
     except PIL.UnidentifiedImageError as error:
         raise DataError("not a picture that can be read; expected PNG, JPEG or WebP", file=path) from error
-    width, height = picture.size
-    if width * height > MAX_TEXELS:
-        raise DataError(f"{width} x {height} pixels are too many; the limit is 2**28", file=path)
+    _judge(path, picture.size, depth)
     return picture
+
+
+def _judge(path: Path, size: tuple[int, int], depth: int) -> None:
+    """Raise ``DataError`` for a picture that takes too much memory, four channels of it."""
+    refuse_too_many(path, *size)
+    refuse_bomb(path, size[0] * size[1] * (16 if depth == 16 else 4), path.stat().st_size)
 
 
 def _eight_bit(picture: _Picture) -> NDArray[np.uint8]:
@@ -465,12 +473,8 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
             raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
         if path.is_dir():
             raise DataError("is a folder; expected the name of a file to write", file=path)
-        temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(6)}.part")
-        try:
-            with temporary.open("xb") as handle:
-                yield handle
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with partial_file(path) as partial:
+            yield partial.handle
+            partial.rename(path)
     except OSError as error:
         raise DataError(f"cannot be written: {reason(error)}", file=path) from error

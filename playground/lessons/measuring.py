@@ -97,7 +97,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         width, height = texture.size
         bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
         return float(width * height * texture.components * bytes_a_channel)
-    # By fragment shaders, whatever the engine would take: a companion's turns are no turns of the kernel.
+    # Of the plain form: what a fast variant does is no step of the text that the lesson shows.
     plan = make_plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=steps, wanted=measure.of)
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
     if measure.what == "turns":

@@ -12,6 +12,7 @@ from playground.live.capturing import Capturing
 from playground.live.editors import Opener
 from playground.live.edits import Edits
 from playground.live.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
+from playground.live.interface_size import InterfaceSize
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.problems import Problems
@@ -49,7 +50,10 @@ class Actions:
     saved: Path | None = None  # the last picture
     history: History = field(default_factory=History)
     keymap_shown: bool = False
+    interface: InterfaceSize = field(default_factory=InterfaceSize)
+    sign_held: Callable[[], str] = lambda: ""  # "+" or "-" where this keyboard's key for it is down
     full_screen: Callable[[], None] = lambda: None  # fills the screen, or no longer
+    fills_screen: Callable[[], bool] = lambda: False
     dropped: list[Path] = field(default_factory=list)  # images that wait to be put somewhere
     searching: bool = False  # the panel is asked for its search
     offer: str = ""  # why the sketch cannot be saved: the panel offers a copy
@@ -61,8 +65,11 @@ class Actions:
     editing: list[Editing] = field(default_factory=list)  # files open in windows of our own
     copy_of: Callable[[Path], Editing | None] = lambda path: None  # what is drawn in place of a file
     leaving: bool = False  # the window is to close, and something is not saved: it is asked what to do
+    awaits_field: int = 0  # turns in which a field is still about to take the keys: see ``field``
+    typed_ahead: str = ""  # what was typed for it meanwhile
     reveal: str = ""  # the pass that the panel is to bring into sight
     toggle_lessons: Callable[[], None] = lambda: None  # shows the lessons, or no longer
+    lesson_shown: Callable[[], bool] = lambda: False
     turn_page: Callable[[int], None] = lambda pages: None  # goes so many pages of a lesson on
 
     def __post_init__(self) -> None:
@@ -126,14 +133,15 @@ class Actions:
         """Show what every key does, or no longer."""
         self.keymap_shown = not self.keymap_shown
 
-    def escape(self) -> None:
-        """Put the key map or the capture's window away, or quit."""
-        if self.keymap_shown:
-            self.keymap_shown = False
-        elif self.capture.shown:
-            self.capture.shown = False
+    def resize(self, by: int) -> None:
+        """Draw text and panels larger, smaller, or with 0 as large as the screen says."""
+        if by:
+            self.interface.step(by)
         else:
-            self.quit()
+            self.interface.choose(1.0)
+        what = "text and panels at"
+        self.notices = [notice for notice in self.notices if not notice.text.startswith(what)]
+        self.say(f"{what} {self.interface.size:.0%}")
 
     def rewind(self) -> None:
         """Go back to time 0."""

@@ -2,17 +2,17 @@
 
 One turn: sleep until something happens, take in saved files, draw the panel, draw the
 sketch if anything of it changed, put the panel over it. While nothing happens, nothing
-is drawn.
+is drawn. Each part of a turn has a guard: one that fails is left out, and the window stays.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from datetime import datetime
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from imgui_bundle import imgui
 
@@ -31,29 +31,36 @@ from playground.live.editors import Opener
 from playground.live.errors_list import draw_errors
 from playground.live.finite import FiniteWatch, draw_not_finite
 from playground.live.follow import Follower
+from playground.live.guard import Guard
 from playground.live.hand import Hand
+from playground.live.interface_size import remembered_size
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
-from playground.live.overlay import Area, draw_notices, draw_waiting
+from playground.live.overlay import Area, draw_notices, draw_trial, draw_waiting, trial_text
 from playground.live.panel import Panel
+from playground.live.part_labels import draw_part_labels
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
-from playground.live.see.ab import drag_line, paint_both
+from playground.live.see.ab import below_bar, drag_line, paint_both
 from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.storing import Storing
+from playground.live.terminal_errors import TerminalErrors, to_log
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
 from playground.sketch.places import TEXTS
+
+if TYPE_CHECKING:
+    import moderngl
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between turns while nothing happens
@@ -68,6 +75,7 @@ def run(
     size: tuple[int, int] | None = None,
     software: bool = False,
     driver: str = "auto",
+    plain: bool = False,
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
     lesson: str = "",
@@ -75,6 +83,7 @@ def run(
     beside: bool = False,
     keeps: int = 0,
     time_limit: float | None = None,
+    tell: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -83,6 +92,7 @@ def run(
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. Expensive land is kept on disk, in at most
     ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``tell`` is told of each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -108,17 +118,17 @@ def run(
             edits=found.edits,
             in_file=dict(found.in_file),
             camera_in_file=found.camera_in_file,
+            plain=plain,
             trial=trial,
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
-        density = window.scale * window.density
-        live.lessons.begin(lesson, language, window.pixels, density, beside=beside)
+        live.lessons.begin(lesson, language, beside=beside)
         stack.callback(live.release)
         stack.callback(live.actions.capture.close)
         stack.callback(rememberer.close)
@@ -160,7 +170,13 @@ class Live:
     """The window, the session and the watcher, turn by turn."""
 
     def __init__(
-        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+        self,
+        window: Window,
+        session: Session,
+        watcher: Watcher,
+        rememberer: Rememberer,
+        storing: Storing,
+        tell: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
@@ -170,7 +186,12 @@ class Live:
         self.panel = Panel()
         self.place = Place(lambda: window.handle)
         self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
+        self.actions.fills_screen = lambda: self.place.full
         self.actions.opener = Opener(wake)
+        self.actions.interface = remembered_size()
+        self.actions.sign_held = lambda: window.sign_held
+        self.guard = Guard(self.actions.say)
+        self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
@@ -185,7 +206,7 @@ class Live:
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
-        self.follower.follow()
+        self.guard.run("watching the files", self.follower.follow, None)
         while self._stays():
             now = self.actions.now()
             patience = min(
@@ -197,12 +218,16 @@ class Live:
                     return
                 patience = min(patience, left)
             self._sleep(patience)
-            self.follower.take(self.actions.painting.files)
+            self.guard.run("reading what was saved", self._take_saved, None)
             if self.window.pixels != (0, 0):
                 self._turn()
             if self.window.lost:
                 self.recover()
-            self.follower.follow()
+            self.guard.run("watching the files", self.follower.follow, None)
+
+    def _take_saved(self) -> None:
+        if self.follower.take(self.actions.painting.files):
+            self._settling = _SETTLES  # an error grows to its size
 
     def _stays(self) -> bool:
         """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""
@@ -268,56 +293,96 @@ class Live:
         self._last = now
 
     def _turn(self) -> None:
-        window, session, actions = self.window, self.session, self.actions
-        window.call(title_of(session.path))
-        take_dropped(actions, self.place.dropped())
+        """Draw the window once; a part of it that fails is left out, and a notice says so."""
+        window, actions, guard = self.window, self.actions, self.guard
+        look = window.theme
+        window.call(title_of(self.session.path))
+        guard.run("taking in what was dropped", lambda: take_dropped(actions, self.place.dropped()), None)
+        window.zoom = actions.interface.size
         window.begin()
         actions.see.begin()
-        left = self.lessons.draw(window.theme)
-        left += self.panel.draw(actions, window.theme, left) if actions.panel_shown else 0.0
+        left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
+        if actions.panel_shown:
+            left += guard.draw("the panel", lambda: self.panel.draw(actions, look, left), 0.0)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
-        draw_code(actions, window.theme, area)
-        act_on_keys(actions)
-        if not drag_line(actions.see.compare, area):
-            self.hand.act(area, window.density)
-        actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        guard.draw("the editor", lambda: draw_code(actions, look, area), None)
+        guard.draw("what a key asks for", lambda: act_on_keys(actions), None)
+        guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
+        picture = guard.run("the picture", lambda: self._picture((wide - skipped, high)), None)
+        guard.run("taking in the picture", self._take_in, None)
+        self._draw_over(picture, area)
+        room_left = (skipped, 0, wide - skipped, high)
+        guard.run("showing the picture", lambda: self._show(picture, room_left), None)
+        window.end()
+        guard.run("what follows a picture", self._follow_up, None)
+
+    def _act(self, area: Area) -> None:
+        if not drag_line(self.actions.see.compare, area):
+            self.hand.act(area, self.window.density)
+        self.actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+
+    def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
+        session = self.session
         draws, error = session.draws, session.error
-        self.lessons.reading.stage.room = (wide - skipped, high)
-        picture = session.frame((wide - skipped, high))
+        picture = session.frame(size)
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
+        return picture
+
+    def _take_in(self) -> None:
+        """Take in what the picture, or the error in its place, has brought."""
+        actions, session = self.actions, self.session
         self.finite.turn(actions, imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
-        above = (*area[:3], area[3] - height_of_timeline(actions, window.theme))
-        draw_not_finite(self.finite, actions, window.theme, above)
-        draw_errors(actions, window.theme, above)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
+        self.terminal.take(actions.problems.errors)
+
+    def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
+        """Draw what stands over the picture, each with a guard of its own."""
+        actions, session, look, draw = self.actions, self.session, self.window.theme, self.guard.draw
+        taken = draw("the bar of time", lambda: height_of_timeline(actions, look), 0.0)
+        above = (*area[:3], area[3] - taken)
+        found = self.finite
+        draw("what is not finite", lambda: draw_not_finite(found, actions, look, above), None)
+        draw("the list of errors", lambda: draw_errors(actions, look, above), None)
         if picture is None and session.error is None:
-            draw_waiting("trying the sketch …", window.theme, area)
-        draw_see(actions, picture, window.theme, area, window.density)
-        draw_notices(actions, window.theme, area)
-        draw_drops(actions, window.theme)
-        draw_keymap(actions, window.theme)
+            subject, seconds = session.trying or (session.path.name, 0.0)
+            draw_waiting(trial_text(subject, seconds), look, area)
+        else:
+            draw_trial(session, look, area)
+        if picture is not None and session.sketch is not None and session.map is None:
+            parted, free = session.sketch, below_bar(actions, look, area)
+            draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
+        view = actions, picture, look, area, self.window.density
+        draw("what is shown beside the picture", lambda: draw_see(*view), None)
+        draw("the notices", lambda: draw_notices(actions, look, area), None)
+        draw("what was dropped", lambda: draw_drops(actions, look), None)
+        draw("the key map", lambda: draw_keymap(actions, look), None)
         actions.capture.look(actions)
-        draw_capture(actions.capture, actions, window.theme)
+        draw("the capture's window", lambda: draw_capture(actions.capture, actions, look), None)
+
+    def _show(self, picture: moderngl.Texture | None, area: tuple[int, int, int, int]) -> None:
+        """Put the picture on the screen, under all that was drawn."""
+        window = self.window
         window.screen.use()
-        window.screen.viewport = (0, 0, wide, high)
+        window.screen.viewport = (0, 0, *window.pixels)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)
-        if picture is not None:
-            room_left = (skipped, 0, wide - skipped, high)
-            if not paint_both(actions.see.compare, picture, window.screen, room_left, actions.now()):
-                self.painter.paint(picture, window.screen, room_left)
-        window.end()
-        if not session.testing and self._settling == 0:
+        compare = self.actions.see.compare
+        if picture is not None and not paint_both(compare, picture, window.screen, area, self.actions.now()):
+            self.painter.paint(picture, window.screen, area)
+
+    def _follow_up(self) -> None:
+        """Do what waits for a moment without anything else to do."""
+        rests = self._settling == 0 and not self.session.testing
+        if rests:
             self.warnings.look()
-        self.status.write(actions, self.finite.found)
-        rests = self._settling == 0 and not session.testing and not imgui.is_mouse_down(0)
-        self.lessons.turn(idle=rests)
+        self.status.write(self.actions, self.finite.found)
+        self.lessons.turn(idle=rests and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:
         stands = self.place.geometry()

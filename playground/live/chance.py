@@ -11,10 +11,10 @@ import math
 from collections.abc import Iterable, Mapping
 from random import Random
 
-from playground.live.numbers import snapped, tidied
+from playground.live.numbers import snapped
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole
+from playground.sketch.values import is_whole, tidied
 
 HEIGHTS = (5.0, 85.0)
 """[degrees] above the horizon that a direction by chance lies: at the ends there is little to see."""

@@ -75,6 +75,23 @@ def _ask_to_leave(actions: Actions) -> None:
         imgui.end_popup()
 
 
+def ask_to_close(editing: Editing, actions: Actions) -> None:
+    """Close an open file; one with changes that are not saved is asked about first."""
+    view = _view_of(editing)
+    if view.changed and editing.text.kept:
+        view.closing = True
+    else:
+        actions.editing.remove(editing)
+
+
+def stay(actions: Actions) -> None:
+    """Answer every question about what is not saved by leaving all as it is."""
+    actions.leaving = False
+    for editing in actions.editing:
+        view = _view_of(editing)
+        view.clash, view.closing = "", False
+
+
 def unsaved(actions: Actions) -> list[str]:
     """Return the names of open files with changes that are not saved."""
     return [e.text.path.name for e in actions.editing if e.text.kept and _view_of(e).changed]

@@ -18,6 +18,7 @@ from playground.live.see import plots
 from playground.live.see.record import Record
 from playground.live.theme import Theme
 from playground.sketch.model import Sketch
+from playground.sketch.variants import any_variants
 
 _MOST = 6  # passes with a line of their own
 _HIGH = 110.0  # of a plot
@@ -40,6 +41,11 @@ def draw_costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
     if record.pictures:
         _plots(record, look)
     paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
+    if any_variants(sketch.graph):
+        changed, plain = imgui.checkbox("Plain form", session.plain)
+        imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
+        if changed:
+            session.run_plain(plain)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     if imgui.begin_table("costs", 3, flags):
         for path in paths:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,16 +21,21 @@ from playground.live.begin import first_draft
 from playground.live.clock import Clock
 from playground.live.edits import Draft, Edits, reload_draft, taken
 from playground.live.files import watched
-from playground.live.stages import Stage, Tester, explained
+from playground.live.stages import Stage, Tester, explained, gone
 from playground.live.sunlight import suns_of, turned
 from playground.live.words import Said, said_by_files
+from playground.sketch.assign import LAND
 from playground.sketch.find import find
 from playground.sketch.kept import KeptTechniques
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
-from playground.sketch.stand_ins import stand_ins
+from playground.sketch.shadowed import newly_shadowed
+from playground.sketch.values import shortest
+from playground.sketch.variants import left_out
+
+_NAMED = 2  # files that are named of those saved at once
 
 
 class Drafts(ABC):
@@ -41,7 +46,8 @@ class Drafts(ABC):
         path: str | Path,
         *,
         driver: str,
-        companions: bool = False,
+        variants: Collection[str] = (),
+        plain: bool = False,
         values: Mapping[str, Value] | None = None,
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
@@ -49,7 +55,7 @@ class Drafts(ABC):
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self.path = find(path) if path else find("")
+        self.path = find(path or "").absolute()  # the current folder may be deleted meanwhile
         self.clock = Clock()
         self.shown: Draft | None = None
         self.coming: Draft | None = None
@@ -66,12 +72,16 @@ class Drafts(ABC):
         self._camera_in_file = camera_in_file
         self._another = False  # what is coming is another sketch than the one that is shown
         self._driver = driver
-        self._companions = companions  # whether what only compute can do stands in for kernels
+        self.plain = plain  # every technique in its canonical form
+        self._variants = tuple(variants)  # kinds of fast variants that can run
         self._techniques = KeptTechniques()
         self._trial = trial
         self._now = now
         self._started = 0.0  # when what is coming began to be read
+        self._subject = self.path.name  # what it is read, or tried, for
         self._trial_seconds = 0.0
+        self._file_by_hand = False  # what is coming has a file that was chosen by hand
+        self._own_files: set[Path] = set()  # written by this process itself, and so known to be good
         self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
         self._coming_notes: list[str] = []
         self._file_error: PlaygroundError | None = None  # of what is coming
@@ -96,6 +106,11 @@ class Drafts(ABC):
         return self.stage is Stage.TRIAL
 
     @property
+    def trying(self) -> tuple[str, float] | None:
+        """What is tried just now, a file or a technique, and for how long [s]; None while nothing is."""
+        return (self._subject, self._now() - self._started) if self.testing else None
+
+    @property
     def leaves(self) -> bool:
         """Whether another sketch was opened, and the one before is still shown."""
         return self._another
@@ -113,13 +128,18 @@ class Drafts(ABC):
 
     # ── files ────────────────────────────────────────────────────────────────
 
-    def reload(self) -> None:
-        """Read the files again; what is new in them is shown once it has proved good."""
+    def reload(self, changed: Iterable[Path] = ()) -> None:
+        """Read the files again; what is new in them is shown once it has proved good.
+
+        ``changed``: the files that were saved, where that is known.
+        """
+        self._subject = _listed(changed) or self.path.name
         self.read_at = time.time()
         self._started = self._now()
         try:
             with noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
+            loaded = loaded.plainly(self.plain)
             old = None if self._another else self.shown or self.coming
             draft, notes = (
                 reload_draft(old, loaded)
@@ -128,16 +148,20 @@ class Drafts(ABC):
             )
         except Exception as error:
             self._drop_coming()
-            self._file_error = explained(error)
+            self._file_error = gone(self.path) or explained(error, self.path)
             return
         if self.shown is not None and loaded == self.shown.file and not self._another:
             self._drop_coming()
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
+            if self._trial is not None and self._reads_anew(self.shown.sketch):
+                self._propose(self.shown, [])
             return
-        if self._companions and self.shown is not None and not self._another:
-            notes = [*notes, *stand_ins(self.shown.file, loaded)]
-        self._propose(draft, notes)
+        if self.shown is not None and not self._another:
+            notes = [*notes, *map(str, newly_shadowed(self.shown.file, draft.sketch))]
+        known = () if old is None else left_out(old.base, self._variants)
+        plain_forms = [note for note in left_out(draft.base, self._variants) if note not in known]
+        self._propose(draft, [*notes, *plain_forms])
 
     def open(
         self,
@@ -155,7 +179,7 @@ class Drafts(ABC):
         by hand in the other; ``in_file`` and ``camera_in_file``: what its files said then; ``texts``:
         what stands in for some of them.
         """
-        self.path, self.texts = find(path), texts or {}
+        self.path, self.texts = find(path).absolute(), texts or {}
         if not keep:
             self._initial, self._in_file, self._another = edits or Edits(), dict(in_file or {}), True
             self._camera_in_file = camera_in_file
@@ -168,18 +192,24 @@ class Drafts(ABC):
             self.texts = dict(texts)
             self.reload()
 
+    def run_plain(self, plain: bool) -> None:
+        """Run every technique in its canonical form, or fast variants again where they are verified."""
+        if plain != self.plain:
+            self.plain = plain
+            self.reload()
+
     def choose(self, pass_name: str, use: str) -> None:
         """Fill a pass with another technique, once that has proved good."""
         if self.shown is None:
             return
-        self._started = self._now()
+        self._started, self._subject = self._now(), use
         try:
             self._propose(self.shown.choose(pass_name, use), [])
         except PlaygroundError as error:
-            self._file_error = error
+            self._file_error = explained(error, self.path)
 
     def _propose(self, draft: Draft, notes: list[str]) -> None:
-        self.coming, self._coming_notes = draft, notes
+        self.coming, self._coming_notes, self._file_by_hand = draft, notes, False
         self._file_error, self._trial_seconds = None, 0.0
         if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
@@ -210,6 +240,10 @@ class Drafts(ABC):
     @abstractmethod
     def _draws_anew(self, sketch: Sketch) -> bool:
         """Say whether the driver would be given anything that it has not drawn already."""
+
+    @abstractmethod
+    def _reads_anew(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with."""
 
     @abstractmethod
     def _forget_view(self) -> None:
@@ -252,6 +286,15 @@ class Drafts(ABC):
             others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
             self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
 
+    def tidy(self) -> None:
+        """Write what is set by hand in the fewest digits that a shader reads as the same numbers."""
+
+        def tidied(edits: Edits) -> Edits:
+            return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
+
+        if self.shown is not None and tidied(self.shown.edits) != self.shown.edits:
+            self._edit(tidied)
+
     def unset(self, *paths: str) -> None:
         """Give parameters back the file's values."""
         draft = self.shown
@@ -272,11 +315,11 @@ class Drafts(ABC):
         if edits.techniques == self.shown.edits.techniques:
             self._edit(lambda old: replace(edits, techniques=old.techniques))
             return
-        self._started = self._now()
+        self._started, self._subject = self._now(), self.path.name
         try:
             self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
         except PlaygroundError as error:
-            self._file_error = error
+            self._file_error = explained(error, self.path)
 
     def look(self, camera: Camera) -> None:
         """See the land from another camera."""
@@ -305,12 +348,42 @@ class Drafts(ABC):
             left = tuple(v for v in self.shown.edits.values if v[0] in locked)
             self.restore(replace(self.shown.edits, values=left, techniques=()))
 
+    def vouch_for(self, path: Path) -> None:
+        """Take a file that this process writes itself for good: it needs no trial."""
+        self._own_files.add(path)
+
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
         self._revision += 1
         if self.shown is not None:
-            self.shown = self.shown.with_edits(change(self.shown.edits))
+            edited = self.shown.with_edits(change(self.shown.edits))
+            if self._names_another(edited) and self._trial is not None:
+                self._drop_file_set_by_hand()
+                if self._reads_anew(edited.sketch):
+                    self._try_file_set_by_hand(change)
+                    return
+            self.shown = edited
         if self.coming is not None:
             self.coming = self.coming.with_edits(change(self.coming.edits))
+
+    def _names_another(self, edited: Draft) -> bool:
+        """Say whether an edit sets another text, as the name of a file is one."""
+        before = self.shown.edits.values if self.shown is not None else ()
+        return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before})
+
+    def _try_file_set_by_hand(self, change: Callable[[Edits], Edits]) -> None:
+        """Have a file that was chosen by hand tried first: what it does to a reader, nobody knows yet."""
+        draft = self.coming or self.shown
+        assert draft is not None
+        self._started, self._subject = self._now(), self.path.name
+        self._propose(draft.with_edits(change(draft.edits)), self._coming_notes)
+        self._file_by_hand = True
+
+    def _drop_file_set_by_hand(self) -> None:
+        """Forget a file that was chosen by hand and failed: another is chosen in its place."""
+        if self._file_by_hand and self.stage is Stage.FAILED:
+            self._drop_coming()
+            self._file_error = None
+        self._file_by_hand = False
 
     def _hear_trial(self) -> None:
         if self.stage is not Stage.TRIAL or self._trial is None:
@@ -324,4 +397,12 @@ class Drafts(ABC):
             self._trial_seconds = report.seconds
             return
         self.stage = Stage.FAILED
-        self._file_error = report.error or PlaygroundError("the trial failed without saying why")
+        error = report.error or PlaygroundError("the trial failed without saying why")
+        self._file_error = explained(error, self.path)
+
+
+def _listed(files: Iterable[Path]) -> str:
+    """Return the names of files in a few words: "land.glsl", "land.glsl, wave.glsl and 2 more"."""
+    names = sorted({path.name for path in files})
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more

@@ -2,7 +2,8 @@
 
 Asked in turn: ``$PLAYGROUND_EDITOR``, ``$VISUAL``, ``$EDITOR``, then the known editors that
 are installed. ``builtin`` names the editor in the window itself, which is also what is left
-where there is no other. No shell is ever asked: what runs is a list of words.
+where there is no other. What runs is a list of words: no shell reads a file's name, not even
+one that these words start (`playground.live.shell_words`).
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+from playground.live.shell_words import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
@@ -83,18 +86,18 @@ class Editor:
         return _stem(self.words[0])
 
     def command(self, file: Path, line: int = 0, column: int = 0) -> list[str]:
-        """Return the words that open a file at a line and a column, both from 1; 0 where unknown."""
+        """Return the words that open a file at a line and a column, both from 1; 0 where unknown.
+
+        Raises ``ValueError`` where its words cannot take a file's name safely.
+        """
         words, place = list(self.words), PLACES.get(self.name, ("{file}",))
-        if any("{file}" in word for word in words):
+        if any(MARK in word for word in words):
             words, place = [], tuple(self.words)
         if self.name == "emacsclient" and "-t" not in words and "-nw" not in words and "-n" not in words:
             words.append("-n")  # or it waits until the file is closed
-        known = {"{file}": str(file.absolute()), "{line}": str(max(line, 1)), "{column}": str(max(column, 1))}
-        for word in place:
-            for mark, text in known.items():
-                word = word.replace(mark, text) if mark != "{file}" else word
-            words.append(word.replace("{file}", known["{file}"]))
-        return [*self.terminal, *words]
+        row, place_in_row = str(max(line, 1)), str(max(column, 1))
+        words += [word.replace("{line}", row).replace("{column}", place_in_row) for word in place]
+        return [*self.terminal, *with_file(words, str(file.absolute()), _stem)]
 
 
 def find_editor(
@@ -191,7 +194,11 @@ class Opener:
 
     def open(self, editor: Editor, file: Path, line: int = 0, column: int = 0) -> bool:
         """Start an editor on a file; return whether it started. Does not wait for it."""
-        command = editor.command(file, line, column)
+        try:
+            command = editor.command(file, line, column)
+        except ValueError as error:
+            self.notes.append(f"{editor.name} was not started: {error}")
+            return False
         said = tempfile.TemporaryFile()
         try:
             process = subprocess.Popen(

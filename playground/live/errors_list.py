@@ -86,7 +86,7 @@ def _list(actions: Actions, look: Theme, area: Area) -> None:
             imgui.set_next_item_open(True)
         with look.font(look.bold):
             flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
-            opened = imgui.tree_node_ex(f"{title}   {_count(mine)}###{file}", flags)
+            opened = imgui.tree_node_ex(f"{title}   {_count(mine)}###file {file}", flags)
         previous = None
         for place, diagnostic in enumerate(mine[: MOST - number], number):
             if opened:

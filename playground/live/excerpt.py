@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from playground.paths import current_folder
 
 _BEFORE = 0.6  # share of the room that may lie before the column
 
@@ -43,7 +43,7 @@ def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -
 def short_place(place: str, folder: str) -> str:
     """Return "file:line:column" with the file named from a folder, if it lies in there."""
     name, colon, rest = place.partition(":") if not place[1:3] == ":\\" else (place, "", "")
-    path = Path.cwd() / name
+    path = current_folder() / name
     if folder and path.is_relative_to(folder):
         return path.relative_to(folder).as_posix() + colon + rest
     return place

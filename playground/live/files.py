@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playground.engine.files import find_file
 from playground.errors import DataError, PlaygroundError
-from playground.paths import GLSL
+from playground.paths import GLSL, current_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.places import Signature
@@ -18,7 +18,12 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
 
     A file that is missing is among them, where it is expected.
     """
-    found = {Path(name) for name in sketch.files}
+    return frozenset({Path(name) for name in sketch.files}) | data_files(sketch)
+
+
+def data_files(sketch: Sketch) -> frozenset[Path]:
+    """Return the images and elevation files that a sketch's parameters name, there or missing."""
+    found: set[Path] = set()
     values = values_of(sketch)
     for prefix, kernel in kernels_of(sketch.graph):
         for parameter in kernel.parameters:
@@ -63,5 +68,6 @@ def files_named_by(error: PlaygroundError) -> frozenset[Path]:
 
 def path_named(name: str) -> Path:
     """Return the file that a diagnostic names, as its user would, as an absolute path."""
-    path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else Path.cwd() / name
-    return path if path.is_file() else Path.cwd() / name
+    here = current_folder() / name
+    path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else here
+    return path if path.is_file() else here

@@ -25,7 +25,7 @@ class Follower:
         changed = self.watcher.take() - set(own)
         if not changed or not (self.session.error or changed & self.session.files):
             return False
-        self.session.reload()
+        self.session.reload(changed & self.session.files)
         return True
 
     def follow(self) -> None:

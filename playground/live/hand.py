@@ -8,7 +8,8 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.dividers import divider_at, moved
-from playground.live.gesture import Gesture, steered
+from playground.live.framing import moved as moved_by
+from playground.live.gesture import Gesture
 from playground.live.overlay import Area
 from playground.live.painting import Painting
 from playground.live.session import Session
@@ -52,8 +53,9 @@ class Hand:
         if gesture.acts and session.orbits:
             by_hand = session.shown is not None and session.shown.edits.camera is not None
             # Keyframes move the camera; a drag begins where it stood in the picture that is seen.
-            camera = session.sketch.camera if by_hand else session.plan.sketch.camera
-            session.look(steered(camera, session.plan.eye, gesture))
+            plan, sketch = session.plan, session.sketch
+            camera = sketch.camera if by_hand else sketch.at(plan.time).camera
+            session.look(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density

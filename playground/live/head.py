@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import counted
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.chance import at_random, mutated
+from playground.live.field import letters, with_typed_ahead
 from playground.live.history import in_words
 from playground.live.listing import Filter, Item, set_words
 from playground.live.panel_memory import Memory
-from playground.live.rows import fitting, row
+from playground.live.randomised import targets
+from playground.live.rows import fitting, fitting_choice, row
 from playground.live.saving import copy_toml, save_a_copy, save_as_preset, save_values
+from playground.live.sliders import slide
 from playground.live.theme import Theme
 from playground.paths import shown
-from playground.sketch.model import Parameter, Preset, Sketch
+from playground.sketch.model import Preset, Sketch
 from playground.sketch.values import spell, write
 
-_OWN_VIEW = "the sketch's own view"
+_OWN_VIEW = "its own view"
 _CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
@@ -80,7 +84,7 @@ def _buttons(memory: Memory, actions: Actions, look: Theme) -> None:
     imgui.pop_style_var(2)
 
 
-def draw_search(memory: Memory, look: Theme) -> None:
+def draw_search(memory: Memory, actions: Actions) -> None:
     """Draw the search, and the switch that leaves only what is changed."""
     style = imgui.get_style()
     only = "Changed"
@@ -90,7 +94,9 @@ def draw_search(memory: Memory, look: Theme) -> None:
         memory.focus_search = False
     imgui.set_next_item_width(-wide - style.item_spacing.x)
     flags = imgui.InputTextFlags_.escape_clears_all
+    typed = letters()
     _, text = imgui.input_text_with_hint("##search", "Search  /", memory.filter.search, flags)
+    text = with_typed_ahead(actions, text, memory.filter.search, typed)
     imgui.set_item_tooltip("By label, name, pass, group or description; Esc ends it")
     imgui.same_line()
     _, changed = imgui.checkbox(f"{only}##only", memory.filter.changed)
@@ -166,9 +172,16 @@ def _chance(memory: Memory, actions: Actions, look: Theme) -> None:
         return
     session, draft = actions.session, actions.session.shown
     _, memory.seed = imgui.input_int("Seed", memory.seed)
-    _, memory.strength = imgui.slider_float("Strength", memory.strength, 0.01, 0.5, "%.2f")
+    strength = slide("##strength", memory.strength, (0.01, 0.5), "%.2f")
+    memory.strength = memory.strength if strength is None else strength
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.text_unformatted("Strength")
     imgui.set_item_tooltip("Of a mutation: how far a value goes, in shares of its range")
-    drawn = targets(memory, actions)
+    imgui.begin_disabled(bool(memory.filter))
+    _, memory.everything = imgui.checkbox("Everything", memory.everything)
+    imgui.end_disabled()
+    imgui.set_item_tooltip("Also colours, light, the view and what reads files; else the shape alone")
+    drawn, what = targets(draft, memory.listing, memory.filter, everything=memory.everything)
     if draft is not None and session.sketch is not None:
         values = memory.listing.values(draft)
         if imgui.button("Random values"):
@@ -179,21 +192,8 @@ def _chance(memory: Memory, actions: Actions, look: Theme) -> None:
             near = mutated(drawn, values.of, memory.seed, memory.strength)
             actions.set_all(f"Mutation, seed {memory.seed}", near)
             memory.seed += 1
-    what = "those found by the search" if memory.filter else "every pass but the view"
-    imgui.text_disabled(f"{len(drawn)} parameters of {what}")
+    imgui.text_disabled(f"{counted(len(drawn), 'parameter')}: {what}")
     imgui.end_popup()
-
-
-def targets(memory: Memory, actions: Actions) -> list[tuple[str, Parameter]]:
-    """Return what chance may set: what a search has found, else what each pass but the view shows."""
-    draft = actions.session.shown
-    if draft is None:
-        return []
-    sections = memory.listing.filtered(draft, memory.filter).values()
-    items = [item for section in sections for item in section.items]
-    if not memory.filter:
-        items = [item for item in items if item.exported and not item.path.startswith("view.")]
-    return [(item.path, item.parameter) for item in items if item.path not in draft.edits.locked]
 
 
 # ── resets, copies ───────────────────────────────────────────────────────────
@@ -286,7 +286,7 @@ def _presets(sketch: Sketch, memory: Memory, actions: Actions) -> None:
         note += f"\nChanged since {last.name}: {', '.join(off)}"
     with row("Preset", note, edited=bool(off), fixed=True):
         text = held.name if held else f"{last.name}, changed" if last else "choose"
-        if imgui.begin_combo("##preset", text):
+        if imgui.begin_combo("##preset", fitting_choice(text)):
             for preset in sketch.presets:
                 if imgui.selectable(preset.name, preset is held)[0]:
                     memory.preset = preset.name
@@ -305,7 +305,9 @@ def _differing(sketch: Sketch, preset: Preset) -> list[str]:
 def _shown(actions: Actions) -> None:
     session = actions.session
     with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
-        if imgui.begin_combo("##shown", ref_name(session.map.ref) if session.map else _OWN_VIEW):
+        if imgui.begin_combo(
+            "##shown", fitting_choice(ref_name(session.map.ref) if session.map else _OWN_VIEW)
+        ):
             if imgui.selectable(_OWN_VIEW, session.map is None)[0]:
                 actions.show(None)
             for ref in session.refs:

@@ -7,7 +7,7 @@ draft: a panel is drawn many times a second.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby
 
@@ -27,6 +27,7 @@ class Item:
     exported: bool  # by its pass's technique, or the pass is a single kernel
     words: str  # in lower case: what a search looks in
     label: str  # imgui's, unique in the panel
+    title: str  # what stands beside it
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,7 @@ class Listing:
 
     _graph: Graph | None = None
     _sections: tuple[Section, ...] = ()
+    _main: tuple[tuple[str, ...], tuple[Item, ...]] = ((), ())  # paths, and what they stand for
     _draft: Draft | None = None
     _base: Sketch | None = None
     _in_file: dict[str, Value] = field(default_factory=dict)
@@ -94,7 +96,15 @@ class Listing:
         """Return the passes of a draft, in their order."""
         if self._graph is not draft.base.graph:
             self._graph, self._sections = draft.base.graph, tuple(_sections(draft.base))
+            self._main = (), ()
         return self._sections
+
+    def main(self, draft: Draft) -> tuple[Item, ...]:
+        """Return the parameters that a draft's sketch is about, in its order: see ``Sketch.main``."""
+        sections = self.sections(draft)
+        if self._main[0] != draft.base.main:
+            self._main = draft.base.main, tuple(_main(draft.base, sections))
+        return self._main[1]
 
     def values(self, draft: Draft) -> Values:
         """Return what its parameters are set to."""
@@ -165,7 +175,26 @@ def _item(sketch: Sketch, shown: Shown) -> Item:
     p = shown.parameter
     words = " ".join([p.title, shown.path, shown.path.replace("_", " "), p.group, p.tooltip]).lower()
     leaf = resolve(sketch.graph, shown.path)[0].path
-    return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}")
+    return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}", p.title)
+
+
+def _main(sketch: Sketch, sections: tuple[Section, ...]) -> Iterator[Item]:
+    """Yield the main parameters, the pass named where a title alone would not say which is meant."""
+    items = [item for section in sections for item in section.items]
+    named = {item.path: item for item in items}
+    by_leaf = {item.leaf: item for item in items}  # an inner path may stand in the list of an outer one
+    found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
+    titles = [item.title for item in found]
+    for item in found:
+        title = item.title
+        if titles.count(title) > 1:
+            title = f"{in_words(item.path.partition('.')[0])}: {title[0].lower()}{title[1:]}"
+        yield replace(item, label=f"##main {item.path}", title=title)
+
+
+def in_words(name: str) -> str:
+    """Return a pass's name as the panel writes it."""
+    return name.replace("_", " ").capitalize()
 
 
 def _groups(items: list[Item]) -> tuple[Group, ...]:

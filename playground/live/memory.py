@@ -18,6 +18,7 @@ from typing import IO, Any
 
 from playground.errors import DataError
 from playground.images.files import replacing
+from playground.json_text import read_json
 from playground.live.edits import Edits
 from playground.live.words import Said
 from playground.sketch.model import Camera, Value
@@ -78,7 +79,7 @@ class Memory:
                 return Remembered(), ""
             if self.path.stat().st_size > _LARGEST:
                 raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
-            return _read(json.loads(self.path.read_text(encoding="utf-8"))), ""
+            return _read(read_json(self.path.read_text(encoding="utf-8"))), ""
         except (
             OSError,
             ValueError,
@@ -86,7 +87,6 @@ class Memory:
             KeyError,
             AttributeError,
             ArithmeticError,
-            RecursionError,
         ) as error:
             aside = self.path.with_suffix(".unread.json")
             with contextlib.suppress(OSError):

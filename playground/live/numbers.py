@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from playground.sketch.model import Parameter
 from playground.sketch.values import is_whole
 from playground.sketch.widgets import WIDGETS
@@ -38,6 +36,7 @@ def format_of(parameter: Parameter) -> str:
 def unit_of(parameter: Parameter) -> str:
     """Return the unit as it follows a number: degrees close up, others after a space."""
     unit = parameter.unit or WIDGETS[parameter.widget.kind].unit
+    unit = "°" if unit == "degrees" else unit
     return unit if unit in ("", "°", "%") else f" {unit}"
 
 
@@ -51,13 +50,6 @@ def snapped(parameter: Parameter, value: float) -> float:
     if widget.low is not None and widget.high is not None:
         value = min(max(value, widget.low), widget.high)
     return value
-
-
-def tidied(value: float) -> float:
-    """Return the shortest decimal number that a shader cannot tell from it: 0.37 for 0.3700000048."""
-    with np.errstate(all="ignore"):
-        single = np.float32(value)
-    return float(str(single)) if np.isfinite(single) else value
 
 
 def _places(step: float) -> int:

@@ -6,9 +6,12 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.actions import Actions
+from playground.live.session import Session
 from playground.live.theme import Theme
 
 _FADE = 1.0  # [s]
+PATIENCE = 0.3
+"""[s] without a new picture after which the window says what is tried."""
 Area = tuple[float, float, float, float]  # x, y from above, width, height, in the window's units
 
 
@@ -18,6 +21,26 @@ def draw_waiting(text: str, look: Theme, area: Area) -> None:
     size = imgui.calc_text_size(text)
     place = ImVec2(x + (wide - size.x) / 2, y + (high - size.y) / 2)
     imgui.get_background_draw_list().add_text(place, theme.packed(theme.DIM), text)
+
+
+def draw_trial(session: Session, look: Theme, area: Area) -> None:
+    """Say that a trial is running, and for what, once it has taken so long that a person wonders."""
+    trying = session.trying
+    if trying is None or trying[1] < PATIENCE:
+        return
+    margin, padding = 14 * look.scale, 9 * look.scale
+    text = trial_text(*trying)
+    size = imgui.calc_text_size(text)
+    low = ImVec2(area[0] + margin, area[1] + margin)
+    high = ImVec2(low.x + size.x + 2 * padding, low.y + size.y + 2 * padding)
+    draw = imgui.get_foreground_draw_list()
+    draw.add_rect_filled(low, high, theme.packed(theme.GROUND, 0.92), 6 * look.scale)
+    draw.add_text(ImVec2(low.x + padding, low.y + padding), theme.packed(theme.WARM), text)
+
+
+def trial_text(subject: str, seconds: float) -> str:
+    """Return "trying land.glsl … 3 s"."""
+    return f"trying {subject} …" + (f" {int(seconds)} s" if seconds >= 1 else "")
 
 
 def draw_notices(actions: Actions, look: Theme, area: Area) -> None:

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from playground.live.brush import ERASER
 from playground.live.painting import NARROWEST, WIDEST, Painting
 from playground.live.rows import row
+from playground.live.sliders import slide
 
 _LAYERS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 
@@ -33,23 +34,17 @@ def draw_paintbox(painting: Painting) -> None:
             imgui.end_combo()
     side = painting.side
     with row("Radius", "The brush's, on the ground", fixed=True):
-        changed, radius = imgui.slider_float(
-            "##radius",
-            brush.radius,
-            NARROWEST * side,
-            WIDEST * side,
-            "%.0f m",
-            imgui.SliderFlags_.logarithmic,
-        )
-        if changed:
+        ends = NARROWEST * side, WIDEST * side
+        radius = slide("##radius", brush.radius, ends, "%.0f m", logarithmic=True)
+        if radius is not None:
             brush = replace(brush, radius=radius)
     with row("Strength", "How much of what was there one pass over a place covers", fixed=True):
-        changed, strength = imgui.slider_float("##strength", brush.strength, 0.01, 1.0, "%.2f")
-        if changed:
+        strength = slide("##strength", brush.strength, (0.01, 1.0), "%.2f")
+        if strength is not None:
             brush = replace(brush, strength=strength)
     with row("Softness", "The share of the radius over which the brush fades", fixed=True):
-        changed, softness = imgui.slider_float("##softness", brush.softness, 0.0, 1.0, "%.2f")
-        if changed:
+        softness = slide("##softness", brush.softness, (0.0, 1.0), "%.2f")
+        if softness is not None:
             brush = replace(brush, softness=softness)
     painting.brush = brush
     canvas = painting.canvas

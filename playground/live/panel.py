@@ -15,6 +15,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.live import theme
 from playground.live.actions import Actions
 from playground.live.costs import draw_costs
+from playground.live.field import await_field
 from playground.live.head import draw_head, draw_search
 from playground.live.keyframe_list import KeyframeList
 from playground.live.keys import KEYS
@@ -57,11 +58,12 @@ class Panel:
         imgui.begin("panel", None, flags)
         if actions.searching:
             actions.searching, self.memory.focus_search = False, True
+            await_field(actions)
         draw_head(self.memory, actions, look)
         sketch = actions.session.sketch
         if sketch is not None:
             draw_paintbox(actions.painting)
-            draw_search(self.memory, look)
+            draw_search(self.memory, actions)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
         imgui.begin_child("sections", ImVec2(0, -_footer_height()), 0, bar)
         if sketch is not None:

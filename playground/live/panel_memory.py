@@ -15,14 +15,15 @@ class Memory:
     listing: Listing = field(default_factory=Listing)
     filter: Filter = field(default_factory=Filter)
     focus_search: bool = False  # the keys go to the search from the next turn on
-    entry: str = ""  # the parameter whose value is typed
+    entry: str = ""  # the label of the parameter whose value is typed
     entry_text: str = ""
     entry_opens: bool = False  # its field has to take the keys
     held: tuple[str, bool, Value] = ("", False, 0)  # the widget last clicked on: path, by hand, value before
-    menu: str = ""  # the parameter whose menu is open
+    menu: str = ""  # the label of the parameter whose menu is open
     menu_opens: bool = False
     heights: dict[tuple[str, float], float] = field(default_factory=dict)  # of each row, by path and scale
     seed: int = 1  # of the next values by chance
     strength: float = 0.1  # of a mutation
+    everything: bool = False  # random values are for every parameter, not the shape's alone
     preset: str = ""  # the one last chosen
     preset_name: str = ""  # of one to be saved

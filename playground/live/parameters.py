@@ -9,6 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import ParameterError
 from playground.live import theme
 from playground.live.actions import Actions
+from playground.live.field import await_field, letters, with_typed_ahead
 from playground.live.listing import Item, Values
 from playground.live.panel_memory import Memory
 from playground.live.rows import cross, row, slot
@@ -32,8 +33,8 @@ def draw_parameter(
     value, changed = values.of[path], path in values.changed
     end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
     top = imgui.get_cursor_screen_pos()
-    with row(parameter.title, lambda: explanation(parameter, path), edited=changed):
-        if memory.entry == path:
+    with row(item.title, lambda: explanation(parameter, path), edited=changed):
+        if memory.entry == item.label:
             _entry(item, memory, actions)
         else:
             new = draw_value(parameter, value, Place(item.label, look.scale, folder))
@@ -54,11 +55,11 @@ def draw_parameter(
         if cross(f"{item.label}-reset", "Back to the file's value"):
             session.unset(path)
     if here and imgui.is_mouse_clicked(1):
-        memory.menu, memory.menu_opens = path, True
+        memory.menu, memory.menu_opens = item.label, True
 
 
 def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: Actions) -> None:
-    """Draw the menu of the parameter that was clicked on with the right button."""
+    """Draw the menu of the parameter that was clicked on with the right button; ``items`` by their labels."""
     if memory.menu_opens:
         memory.menu_opens = False
         imgui.open_popup(_MENU)
@@ -70,7 +71,7 @@ def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: A
         locked = path in values.locked
         imgui.text_disabled(path)
         if imgui.menu_item_simple("Type a value", "double click"):
-            open_entry(item, values, memory)
+            open_entry(item, values, memory, actions)
         if imgui.menu_item_simple("Reset", "", False, path in values.changed):
             session.unset(path)
         if imgui.menu_item_simple("Unlock" if locked else "Lock"):
@@ -82,9 +83,10 @@ def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: A
     imgui.end_popup()
 
 
-def open_entry(item: Item, values: Values, memory: Memory) -> None:
+def open_entry(item: Item, values: Values, memory: Memory, actions: Actions) -> None:
     """Begin to type a parameter's value."""
-    memory.entry, memory.entry_opens = item.path, True
+    await_field(actions)
+    memory.entry, memory.entry_opens = item.label, True
     memory.entry_text = write(item.parameter, values.of[item.path])
 
 
@@ -99,7 +101,7 @@ def _typing(item: Item, values: Values, memory: Memory, actions: Actions) -> boo
         memory.held = path, by_hand, values.of[path]
         return False
     held, by_hand, before = memory.held
-    open_entry(item, values, memory)
+    open_entry(item, values, memory, actions)
     if not imgui.get_io().key_ctrl and held == path:
         if by_hand:
             session.set(path, before)
@@ -115,7 +117,9 @@ def _entry(item: Item, memory: Memory, actions: Actions) -> None:
         imgui.set_keyboard_focus_here()
     flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
     imgui.set_next_item_width(imgui.calc_item_width())
-    entered, memory.entry_text = imgui.input_text(f"{item.label}-typed", memory.entry_text, flags)
+    typed = letters()
+    entered, text = imgui.input_text(f"{item.label}-typed", memory.entry_text, flags)
+    memory.entry_text = with_typed_ahead(actions, text, memory.entry_text, typed)
     opened, memory.entry_opens = memory.entry_opens, False
     if opened:
         return

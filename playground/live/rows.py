@@ -86,6 +86,12 @@ def fitting(text: str, width: float) -> str:
     return _fitted[key]
 
 
+def fitting_choice(text: str) -> str:
+    """Return the choice that a closed list shows, cut off so that it ends before the list's arrow."""
+    style = imgui.get_style()
+    return fitting(text, imgui.calc_item_width() - imgui.get_frame_height() - 2 * style.frame_padding.x)
+
+
 def _cut(text: str, width: float) -> str:
     if imgui.calc_text_size(text).x <= width:
         return text

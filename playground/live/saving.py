@@ -101,14 +101,15 @@ def rounded(camera: Camera) -> Camera:
 
 
 def _ready(actions: Actions) -> Draft | None:
-    """Return what is to be saved, its camera rounded as the file will have it; None, and a word, if none."""
+    """Return what is to be saved, its numbers as the file will have them; None, and a word, if none."""
     session = actions.session
     if session.shown is None:
         actions.say("there is no sketch to save yet")
         return None
+    session.tidy()
     if session.shown.edits.camera is not None:
         session.look(rounded(session.shown.edits.camera))
-        actions.look_back(True)  # as part of the step that moved it
+    actions.look_back(True)  # as part of the step that changed them
     return session.shown
 
 

@@ -10,10 +10,11 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import counted
 from playground.live import theme
 from playground.live.actions import Actions
-from playground.live.listing import Group, Item, Section, Values
+from playground.live.listing import Group, Item, Section, Values, in_words
 from playground.live.panel_memory import Memory
 from playground.live.parameters import draw_menu, draw_parameter
-from playground.live.rows import cross, row, slot
+from playground.live.rows import cross, fitting_choice, row, slot
+from playground.live.sliders import slide_whole
 from playground.live.sources import editor_name, open_source
 from playground.live.theme import Theme
 from playground.sketch.choose import choices
@@ -37,6 +38,9 @@ class Sections:
         if memory.filter and not found:
             imgui.text_disabled("no parameter is like that")
         drawing = _Drawing(Path(sketch.folder), values, memory, actions, look)
+        main = memory.listing.main(draft) if not memory.filter else ()
+        if main:
+            drawing.main(main)
         for spec in sketch.graph.passes:
             section = found.get(spec.name)
             if memory.filter and section is None:
@@ -49,7 +53,7 @@ class Sections:
                 imgui.set_scroll_here_y(0.0)
             if memory.filter or revealed:
                 imgui.set_next_item_open(True)
-            if drawing.header(spec, section):
+            if drawing.header(spec, section, opened=not sketch.main):
                 if not memory.filter:
                     self._technique(spec, actions)
                     _steps(spec, actions)
@@ -57,7 +61,8 @@ class Sections:
                     drawing.section(section)
             imgui.pop_id()
         if memory.menu:
-            items = {item.path: item for section in found.values() for item in section.items}
+            items = {item.label: item for section in found.values() for item in section.items}
+            items |= {item.label: item for item in main}
             draw_menu(items, values, memory, actions)
 
     def _technique(self, spec: PassSpec, actions: Actions) -> None:
@@ -93,15 +98,30 @@ class _Drawing:
     actions: Actions
     look: Theme
 
-    def header(self, spec: PassSpec, section: Section | None) -> bool:
-        """Draw a pass's bar: its name, how often it ran, and a reset where something is changed."""
+    def main(self, items: tuple[Item, ...]) -> None:
+        """Draw the parameters that the sketch is about, under a bar of their own."""
+        imgui.spacing()
+        flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
+        with self.look.font(self.look.bold):
+            opened = imgui.collapsing_header("Main parameters###main", flags)
+        imgui.set_item_tooltip("What this sketch is about, by its own list: main = [...] in its file")
+        self._reset("Main parameters", items)
+        if opened:
+            self._rows(Group("", items))
+
+    def header(self, spec: PassSpec, section: Section | None, *, opened: bool) -> bool:
+        """Draw a pass's bar: its name, how often it ran, and a reset where something is changed.
+
+        ``opened``: whether it is open as long as nobody has clicked on it.
+        """
         engine, look = self.actions.session.engine, self.look
         mine = [path for path in engine.runs if path == spec.name or path.startswith(f"{spec.name}.")]
         ran = any(path in mine for path in engine.ran)
-        flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
+        flags = imgui.TreeNodeFlags_.allow_overlap
+        if opened:
+            flags |= imgui.TreeNodeFlags_.default_open
         with look.font(look.bold):
-            title = spec.name.replace("_", " ").capitalize()
-            opened = imgui.collapsing_header(f"{title}###pass", flags)
+            unfolded = imgui.collapsing_header(f"{in_words(spec.name)}###pass", flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text = counted(sum(engine.runs[path] for path in mine), "run")
         times = self.actions.session.times
@@ -119,7 +139,7 @@ class _Drawing:
         _files(spec, self.actions)
         if section is not None:
             self._reset(spec.name, section.items)
-        return opened
+        return bool(unfolded)
 
     def section(self, section: Section) -> None:
         """Draw a pass's parameters, those inside its technique folded."""
@@ -210,15 +230,20 @@ def _steps(spec: PassSpec, actions: Actions) -> None:
         label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
         note = f"How many of its {counted(whole, 'turn')} {path} has taken; Ctrl+click to type a number"
         with row(label, note, edited=path in session.steps):
-            shape = "all %d" if turn == whole else "%d"
-            changed, chosen = imgui.slider_int(
-                f"##steps of {path}", turn, 0, whole, shape, imgui.SliderFlags_.always_clamp
-            )
-            if changed:
+
+            def words(now: int, last: int = whole) -> str:
+                return f"all {now}" if now == last else str(now)
+
+            chosen = slide_whole(f"##steps of {path}", turn, (0, whole), words)
+            if chosen is not None:
                 session.stop_at(path, chosen)
+    if any(path in session.steps for path in mine) and any(k.between for _, k in kernels_of(spec.technique)):
+        with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
+            changed, on = imgui.checkbox("##interpolated", session.interpolated)
+            if changed:
+                session.interpolate(on)
 
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    room = imgui.calc_item_width() - imgui.get_frame_height() - 2 * imgui.get_style().frame_padding.x
-    return use if imgui.calc_text_size(use).x <= room else use.rpartition("/")[2]
+    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])

@@ -14,19 +14,22 @@ from typing import TYPE_CHECKING
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan, repeats_of
 from playground.errors import ContextError, PlaygroundError
-from playground.gpu.wrap import FRAGMENT
 from playground.live.clock import is_animated, reads_mouse
 from playground.live.drafts import Drafts
 from playground.live.edits import Edits
+from playground.live.files import data_files
+from playground.live.framing import framed
 from playground.live.hasty import hastily
 from playground.live.maps import fitted, in_view, refs_of
 from playground.live.picture import Painter, Picture
 from playground.live.stages import Reload, Stage, Tester, explained
 from playground.live.words import Said
 from playground.sketch.maps import Map
-from playground.sketch.model import Camera, Sketch, Value, kernels_of
+from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch, Value, kernels_of
+from playground.sketch.places import Signature, signature
 
 if TYPE_CHECKING:
     import moderngl
@@ -54,6 +57,7 @@ class Session(Drafts):
         edits: Edits | None = None,
         in_file: Mapping[str, Said] | None = None,
         camera_in_file: Camera | None = None,
+        plain: bool = False,
         trial: Tester | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
@@ -61,7 +65,8 @@ class Session(Drafts):
         super().__init__(
             path,
             driver=engine.driver,
-            companions=engine.info.compute and engine.driver != FRAGMENT,
+            variants=engine.plain_forms.kinds,
+            plain=plain,
             values=values,
             edits=edits,
             in_file=in_file,
@@ -70,13 +75,16 @@ class Session(Drafts):
             now=now,
         )
         self.engine = engine
+        engine.plain_forms.notice = silent  # ``notes`` say it
         self.map: Map | None = None  # what is shown instead of the sketch's own view
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
+        self.interpolated = True  # what a stopped repeat has not reached is filled
         self._next_view: tuple[dict[str, int], Map | None] | None = None  # of a sketch that was opened
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
         self.draws = 0  # pictures drawn so far
+        self.framed_for = DEFAULT_PICTURE  # [pixels] the picture whose sides are seen in a narrower room too
         self.hasty = False  # the picture was drawn hastily, and will be drawn again in full
         self._is_lost = is_lost  # says whether the engine's context is lost
         self._lost_over: object = None  # what was shown when a context was lost last
@@ -86,6 +94,8 @@ class Session(Drafts):
         self._picture_size: tuple[int, int] | None = None  # asked for last
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
+        self._read: dict[Path, Signature | None] = {}  # images and elevation files that were drawn with
+        self._read_for: Sketch | None = None  # the sketch that these are the files of
         self.reload()
 
     @property
@@ -181,6 +191,11 @@ class Session(Drafts):
         if 0 <= turn < self.repeats.get(path, 0):
             self.steps[path] = turn
 
+    def interpolate(self, on: bool) -> None:
+        """Fill what stopped repeats have not reached, where their headers say how, or show it as it is."""
+        self._revision += 1
+        self.interpolated = on
+
     def fit_map(self) -> None:
         """Fit the map's channel and range to the texture's values."""
         if self.map is None or self.sketch is None:
@@ -191,11 +206,12 @@ class Session(Drafts):
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
         """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
-        if self.sketch is None:
+        if self.sketch is None or self._awaits_data(self.sketch):
             return None
         try:
             steps = self._steps_for(self.sketch)
-            return self.engine.read(self.sketch, ref, time=self.clock.time, steps=steps)
+            now, fills = self.clock.time, self.interpolated
+            return self.engine.read(self.sketch, ref, time=now, steps=steps, interpolated=fills)
         except PlaygroundError as error:
             self.notes.append(str(error))
             return None
@@ -211,7 +227,8 @@ class Session(Drafts):
         if self.stage is Stage.DRAW:
             self._draw_coming(size)
         if self.shown is not None and self._wanted(size) != self._drawn:
-            self._draw_shown(size)
+            if not self._awaits_data(self.shown.sketch):
+                self._draw_shown(size)
         elif self.hasty and self.shown is not None and self._now() - self._drawn_at >= REST:
             self._draw_shown(size, in_full=True)
         return self._picture.texture
@@ -228,6 +245,8 @@ class Session(Drafts):
         then it waits until something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.painted.update(self.engine.painted)
+        engine.plain_forms.notice = silent
         self.engine, self.plan, self.hasty = engine, None, False
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
@@ -235,7 +254,7 @@ class Session(Drafts):
         if self._lost_over == drawn and self._picture_size is not None:
             self._drawn = self._wanted(self._picture_size)
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
-            self._draw_error = ContextError(message)
+            self._draw_error = explained(ContextError(message), self.path)
         self._lost_over = drawn
         self.notes.append("the graphics driver was reset; everything was built anew")
 
@@ -255,14 +274,22 @@ class Session(Drafts):
         Other values do: they say how often a loop turns.
         """
         texture = self._picture.texture
-        if self.shown is None or texture is None:
+        if self.shown is None or texture is None or self._reads_anew(sketch):
             return True
-        chosen = hastily(sketch) if self.hasty else sketch
+        chosen = self._framed(hastily(sketch) if self.hasty else sketch, texture.size)
         try:
-            steps = self._steps_for(sketch)
-            return bool(self.engine.stale(chosen, size=texture.size, time=self.clock.time, steps=steps))
+            steps, fills = self._steps_for(sketch), self.interpolated
+            size, now = texture.size, self.clock.time
+            return bool(self.engine.stale(chosen, size=size, time=now, steps=steps, interpolated=fills))
         except PlaygroundError:
             return True
+
+    def _reads_anew(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with: the trial is to read them first."""
+        return any(
+            path not in self._own_files and self._read.get(path, ()) != signature(path)
+            for path in data_files(sketch)
+        )
 
     def _forget_view(self) -> None:
         self.map = self._next_view = None
@@ -281,8 +308,9 @@ class Session(Drafts):
                 raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             self.stage = Stage.FAILED
-            self._file_error = explained(error)
+            self._file_error = explained(error, self.path)
             return
+        self._note_read(self.coming.sketch)
         self.shown, self._another = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
@@ -303,19 +331,38 @@ class Session(Drafts):
             self._draw(self.map.of(sketch) if self.map else sketch, size, in_full=in_full)
             self._draw_error = None
         except Exception as error:
-            self._draw_error = explained(error)
+            self._draw_error = explained(error, self.path)
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
         """Draw; where the processor draws, hastily first: see ``live.hasty``."""
         chosen = hastily(sketch) if self.engine.info.software and not in_full else sketch
         self.engine.runner.frame = self.draws
-        texture = self.engine.draw(chosen, size=size, time=self.clock.time, steps=self._steps_for(sketch))
+        seen = self._framed(chosen, size)
+        steps, now = self._steps_for(sketch), self.clock.time
+        texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
+        if self._read_for is not sketch:
+            self._note_read(sketch)
         self.hasty = chosen is not sketch
         self._drawn_at = self._now()
         self._picture.keep(texture)
         self.draws += 1
         self.times |= self.engine.times
         self.plan = self.engine.plan
+
+    def _framed(self, sketch: Sketch, size: tuple[int, int]) -> Sketch:
+        """Return a sketch as it is seen in a picture of that size, in pixels: see ``live.framing``."""
+        if not is_seen_from_camera(sketch):
+            return sketch
+        return framed(sketch, self.clock.time, self.framed_for, size)
+
+    def _awaits_data(self, sketch: Sketch) -> bool:
+        """Say whether a file that a sketch reads is another by now, which the trial has not read yet."""
+        return self._trial is not None and self._reads_anew(sketch)
+
+    def _note_read(self, sketch: Sketch) -> None:
+        """Remember the data that a sketch was drawn with."""
+        self._read_for = sketch
+        self._read |= {path: signature(path) for path in data_files(sketch)}
 
     def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
         try:

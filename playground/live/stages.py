@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from pathlib import Path
 from typing import Protocol
 
 from playground.engine.trial import TrialReport, TrySketch
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, SketchError
+from playground.paths import shown
 
 log = logging.getLogger("playground.live")
 
@@ -40,9 +42,27 @@ class Reload:
     trial: float  # [s] of it in the trial child
 
 
-def explained(error: Exception) -> PlaygroundError:
-    """Return an error that a person can be shown; the session outlives its own faults as well."""
-    if isinstance(error, PlaygroundError):
+def explained(error: Exception, sketch: Path) -> PlaygroundError:
+    """Return an error that a person can be shown, each of its diagnostics with a file.
+
+    One that names no file gets the sketch's own. A bug of the playground itself is an error too,
+    and the session outlives it.
+    """
+    if not isinstance(error, PlaygroundError):
+        log.error("the playground itself failed", exc_info=error)
+        message = f"a bug of the playground itself, {type(error).__name__}: {error}"
+        return PlaygroundError(message, file=sketch)
+    if all(diagnostic.file for diagnostic in error.diagnostics):
         return error
-    log.exception("the playground itself failed")
-    return PlaygroundError(f"a fault of the playground itself, {type(error).__name__}: {error}")
+    file = shown(sketch)
+    placed = [d if d.file else replace(d, file=file) for d in error.diagnostics]
+    return type(error)(diagnostics=placed)
+
+
+def gone(sketch: Path) -> SketchError | None:
+    """Return what to say of a sketch whose file has vanished; None while it is there."""
+    if sketch.is_file():
+        return None
+    where = "from" if sketch.parent.is_dir() else "with its folder"
+    ways = "moved, renamed or deleted; put it back, or drop another sketch on the window"
+    return SketchError(f"the file is gone {where} {sketch.parent}: {ways}", file=sketch)

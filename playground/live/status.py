@@ -18,6 +18,8 @@ from imgui_bundle import imgui
 from playground.engine.finite import NotFinite
 from playground.live.actions import Actions
 from playground.live.code_window import typing, unsaved
+from playground.live.layers import open_layers
+from playground.live.overlay import PATIENCE
 
 VARIABLE = "PLAYGROUND_STATUS"
 
@@ -56,6 +58,9 @@ class Status:
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(found) for found in not_finite],
             "runs": dict(session.engine.runs),
+            "edited": dict(session.shown.edits.values) if session.shown else {},
+            "trying": session.trying[0] if session.trying and session.trying[1] >= PATIENCE else "",
+            "layers": open_layers(actions),
         }
         if now != self._last:
             self._last = now

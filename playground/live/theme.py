@@ -28,12 +28,13 @@ class Theme:
     """The fonts and the style of the current imgui context."""
 
     def __init__(self, fonts: Path) -> None:
-        atlas = imgui.get_io().fonts
-        self.text = atlas.add_font_from_file_ttf(str(fonts / "Roboto" / "Roboto-Regular.ttf"), TEXT_SIZE)
-        self.bold = atlas.add_font_from_file_ttf(str(fonts / "Roboto" / "Roboto-Bold.ttf"), TEXT_SIZE)
-        italic = fonts / "Roboto" / "Roboto-RegularItalic.ttf"
-        self.italic = atlas.add_font_from_file_ttf(str(italic), TEXT_SIZE)
-        self.code = atlas.add_font_from_file_ttf(str(fonts / "Inconsolata-Medium.ttf"), TEXT_SIZE)
+        regular, code = fonts / "Roboto" / "Roboto-Regular.ttf", fonts / "Inconsolata-Medium.ttf"
+        symbols = fonts / "latex" / "latinmodern-math.otf"
+        # What a font lacks is taken from the next: Roboto has no arrows, Inconsolata no Greek.
+        self.text = _font(regular, symbols, code)
+        self.bold = _font(fonts / "Roboto" / "Roboto-Bold.ttf", symbols, code)
+        self.italic = _font(fonts / "Roboto" / "Roboto-RegularItalic.ttf", symbols, code)
+        self.code = _font(code, regular, symbols)
         self.scale = 0.0  # of text and margins
         self.rescale(1.0)
 
@@ -51,6 +52,17 @@ class Theme:
             yield
         finally:
             imgui.pop_font()
+
+
+def _font(first: Path, *others: Path) -> imgui.ImFont:
+    """Load a font that has the glyphs of several files; sizes and line heights are the first one's."""
+    atlas = imgui.get_io().fonts
+    font = atlas.add_font_from_file_ttf(str(first), TEXT_SIZE)
+    merged = imgui.ImFontConfig()
+    merged.merge_mode = True
+    for other in others:
+        atlas.add_font_from_file_ttf(str(other), TEXT_SIZE, merged)
+    return font
 
 
 def colour(rgb: tuple[float, float, float], alpha: float = 1.0) -> ImVec4:

@@ -9,24 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import dome, theme
-from playground.live.numbers import format_of, snapped, tidied, unit_of
+from playground.live.numbers import unit_of
+from playground.live.rows import fitting_choice
+from playground.live.sliders import draw_numbers, part_names
 from playground.paths import shown
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import expected, is_whole, length_of, write
+from playground.sketch.values import expected, is_whole, length_of, tidied, write
 from playground.sketch.widgets import WIDGETS
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
-_LOGARITHMIC = imgui.SliderFlags_.logarithmic.value
-_PLAIN = imgui.SliderFlags_.no_input.value  # the panel has a field of its own, which reads expressions
 _PAD = 84.0
 IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
-_WHOLE = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -37,23 +35,6 @@ class Place:
     scale: float  # of the screen
     folder: Path  # the sketch's own: its files are offered
 
-
-# imgui's functions for one to four numbers, by how many.
-_Numbers = dict[int, Callable[..., tuple[bool, Any]]]
-_SLIDE: _Numbers = {
-    1: imgui.slider_float,
-    2: imgui.slider_float2,
-    3: imgui.slider_float3,
-    4: imgui.slider_float4,
-}
-_SLIDE_WHOLE: _Numbers = {
-    1: imgui.slider_int,
-    2: imgui.slider_int2,
-    3: imgui.slider_int3,
-    4: imgui.slider_int4,
-}
-_DRAG: _Numbers = {1: imgui.drag_float, 2: imgui.drag_float2, 3: imgui.drag_float3, 4: imgui.drag_float4}
-_DRAG_WHOLE: _Numbers = {2: imgui.drag_int2, 3: imgui.drag_int3, 4: imgui.drag_int4}
 
 Draw = Callable[[Parameter, Value, Place], "Value | None"]
 
@@ -72,6 +53,9 @@ def explanation(parameter: Parameter, path: str) -> str:
     lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
     if parameter.step:
         lines.append(f"In steps of {parameter.step:g}{unit}.")
+    if names := part_names(parameter):
+        if parameter.widget.kind in ("slider", "number"):
+            lines.append(f"Its parts: {', '.join(names)}.")
     declared = f"uniform {parameter.type} {parameter.name}"
     lines.append(f"{declared}, {shown(parameter.file)}:{parameter.line}" if parameter.file else declared)
     return "\n".join([*lines, path])
@@ -81,45 +65,8 @@ def explanation(parameter: Parameter, path: str) -> str:
 
 
 def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    widget = parameter.widget
-    if widget.low is None or widget.high is None:
-        return _number(parameter, value, place)
-    flags = _CLAMP | _PLAIN
-    if widget.kind == "log_slider":
-        flags |= _LOGARITHMIC
-    form = format_of(parameter)
-    if is_whole(parameter.type):
-        whole = [int(n) for n in _as_list(value)]
-        low, high = max(int(widget.low), -_WHOLE), min(int(widget.high), _WHOLE)
-        changed, raw = _SLIDE_WHOLE[len(whole)](place.label, _alone(whole), low, high, form, flags)
-    else:
-        numbers = _as_list(value)
-        low_high = widget.low, widget.high
-        changed, raw = _SLIDE[len(numbers)](place.label, _alone(numbers), *low_high, form, flags)
-    return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
-
-
-def _number(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    numbers = _as_list(value)
-    if len(numbers) == 1 and is_whole(parameter.type):
-        # A double holds every 32-bit number, signed or not.
-        step = parameter.step or 1.0
-        changed, typed = imgui.input_double(
-            place.label, numbers[0], step, 10 * step, f"%.0f{_unit_format(parameter)}"
-        )
-        low, high = (0, 2**32 - 1) if parameter.type == "uint" else (-(2**31), 2**31 - 1)
-        return int(min(max(round(typed), low), high)) if changed else None
-    largest = max(abs(n) for n in numbers)
-    speed = parameter.step or max(largest, 0.1) * 0.01
-    if is_whole(parameter.type):
-        whole = [int(n) for n in numbers]
-        form = format_of(parameter)
-        limits = -_WHOLE, _WHOLE
-        changed, raw = _DRAG_WHOLE[len(whole)](place.label, whole, max(speed, 0.2), *limits, form, _PLAIN)
-    else:
-        form = "%.6g" + _unit_format(parameter)
-        changed, raw = _DRAG[len(numbers)](place.label, _alone(numbers), speed, 0.0, 0.0, form, _PLAIN)
-    return _back(parameter, [snapped(parameter, n) for n in _as_list(raw)]) if changed else None
+    found = draw_numbers(parameter, _as_list(value), place.label)
+    return None if found is None else _back(parameter, found)
 
 
 def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
@@ -130,8 +77,15 @@ def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
 def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
     choices = parameter.widget.choices
     now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
-    changed, index = imgui.combo(place.label, now, list(choices))
-    return index if changed else None
+    chosen: int | None = None
+    if imgui.begin_combo(place.label, fitting_choice(choices[now])):
+        for index, choice in enumerate(choices):
+            if imgui.selectable(choice, index == now)[0]:
+                chosen = index
+            if index == now:
+                imgui.set_item_default_focus()
+        imgui.end_combo()
+    return chosen if chosen != now else None
 
 
 # ── places and colours ───────────────────────────────────────────────────────
@@ -177,16 +131,27 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
         result = (round(found[0], 1), round(found[1], 1))
     imgui.same_line()
     imgui.begin_group()
+    _name("azimuth")
     imgui.set_next_item_width(beside)
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
+    _name("elevation")
     imgui.set_next_item_width(beside)
     raised, elevation = imgui.drag_float(
-        f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f° up", _CLAMP
+        f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP
     )
     imgui.set_item_tooltip("Elevation above the horizon")
     imgui.end_group()
     return (tidied(azimuth), tidied(elevation)) if turned or raised else result
+
+
+def _name(text: str) -> None:
+    """Write what a field below it is, small, close to it."""
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0, 0))
+    imgui.push_font(None, theme.SMALL)
+    imgui.text_disabled(text)
+    imgui.pop_font()
+    imgui.pop_style_var()
 
 
 def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
@@ -263,11 +228,6 @@ def _files_in(folder: Path) -> list[str]:
 # ── between imgui's lists and parameters' values ─────────────────────────────
 
 
-def _alone(numbers: Sequence[float]) -> float | Sequence[float]:
-    """Return a single number out of its list."""
-    return numbers[0] if len(numbers) == 1 else numbers
-
-
 def _as_list(value: object) -> list[float]:
     if isinstance(value, bool):
         return [float(value)]
@@ -284,12 +244,8 @@ def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
     return found[0] if length_of(parameter.type) == 1 else found
 
 
-def _unit_format(parameter: Parameter) -> str:
-    return unit_of(parameter).replace("%", "%%")
-
-
 CONTROLS: dict[str, Draw] = {
-    "number": _number,
+    "number": _slider,
     "slider": _slider,
     "log_slider": _slider,
     "angle": _slider,

@@ -23,6 +23,7 @@ import glfw
 from playground.errors import ContextError
 from playground.gpu.context import abandon, adopt_context
 from playground.gpu.mend import mend
+from playground.live.clicks import Clicks
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
 _SMALLEST = (480, 320)
+_SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
+_SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
 _ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
 
 
@@ -41,8 +44,10 @@ class Window:
         if not glfw.init():
             raise _refused("glfw.init failed")
         self._title = title
+        self._clicks = Clicks()
         self._screen_size = (0, 0)
         self._screen: moderngl.Framebuffer | None = None
+        self.zoom = 1.0  # of text and margins, over the screen's own scale
         try:
             self._open(size)
             self.theme = self._start_imgui()
@@ -99,6 +104,16 @@ class Window:
             self._screen, self._screen_size = self.ctx.detect_framebuffer(0), self.pixels
         return self._screen
 
+    @property
+    def sign_held(self) -> str:
+        """What a key that is held down types, "+" or "-", wherever this keyboard has it; else nothing."""
+        for code in _SIGN_KEYS:
+            if glfw.get_key(self._handle, code) == glfw.PRESS:
+                name = glfw.get_key_name(code, 0) or ""
+                if name in _SIGNS:
+                    return _SIGNS[name]
+        return ""
+
     def call(self, title: str) -> None:
         """Give it another title."""
         if title != self._title:
@@ -115,17 +130,23 @@ class Window:
 
     def wait(self, seconds: float) -> None:
         """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
+        self._clicks.asks()
         if seconds <= 0:
             glfw.poll_events()
         else:
             glfw.wait_events_timeout(seconds)
+        self._clicks.asked()
 
     def begin(self) -> None:
         """Begin a turn of the interface."""
-        self.theme.rescale(self.scale)
+        self.theme.rescale(self.scale * self.zoom)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
+        io, longest = imgui.get_io(), self._clicks.longest()
+        io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
         imgui.new_frame()
+        if imgui.is_mouse_clicked(0):
+            self._clicks.taken()
 
     def end(self) -> None:
         """Draw the interface over what is on the screen, and show it."""
@@ -177,8 +198,14 @@ class Window:
     def _start_backends(self) -> None:
         address = ctypes.cast(self._handle, ctypes.c_void_p).value
         assert address is not None
+        pressed: Any = self._press
+        glfw.set_mouse_button_callback(self._handle, pressed)  # imgui's own callback hands on to it
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330 core")
+
+    def _press(self, _: object, button: int, action: int, __: int) -> None:
+        if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS:
+            self._clicks.press()
 
     def _start_imgui(self) -> Theme:
         imgui.create_context()

@@ -13,7 +13,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+from playground.reduce.variant import record_text
 from playground.sketch.model import Camera, Value
+from playground.sketch.variant_record import NAME
 
 SHOT = "reduced"
 """The one shot of a sketch that is written: its picture's size and time."""
@@ -30,7 +32,7 @@ class Pass:
 
     name: str
     text: str  # tidy; includes in place
-    companion: str = ""  # text of the compute shader that may run in its place
+    variant: str = ""  # text of the compute variant that runs in its place
     inputs: tuple[tuple[str, str], ...] = ()  # input → "pass:output"
     values: tuple[tuple[str, Value], ...] = ()  # parameter → value
     size: tuple[int, int] | None = None  # texels; None: the land's
@@ -94,7 +96,7 @@ class Case:
     @property
     def lines(self) -> int:
         """Lines of GLSL, blank ones apart."""
-        return sum(one.text.count("\n") + one.companion.count("\n") for one in self.live)
+        return sum(one.text.count("\n") + one.variant.count("\n") for one in self.live)
 
     @property
     def settings(self) -> int:
@@ -115,8 +117,11 @@ class Case:
         found: dict[str, str] = {}
         for one in self.live:
             found[f"{one.name}{one.suffix}"] = one.text
-            if one.companion:
-                found[f"{one.name}.comp"] = one.companion
+            if one.variant:
+                found[f"{one.name}.comp"] = one.variant
+        variants = {f"{one.name}.comp": (one.text, one.variant) for one in self.live if one.variant}
+        if variants:
+            found[NAME] = record_text(variants)
         if self.file == "sketch.toml":
             found["sketch.toml"] = self._toml()
         return found

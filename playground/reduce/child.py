@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
 from playground.engine.trial_process import receive, send
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.gpu.context import ContextInfo, context_info, open_context
@@ -88,7 +89,9 @@ def _look(ctx: moderngl.Context, engines: dict[str, Engine], library: Techniques
     try:
         engine = engines.get(task.driver)
         if engine is None:
-            engine = engines[task.driver] = Engine(ctx, driver=task.driver, cache_bytes=_CACHE_BYTES)
+            engine = engines[task.driver] = Engine(
+                ctx, driver=task.driver, cache_bytes=_CACHE_BYTES, notice=silent
+            )
         steps = dict(task.steps)
         if task.ref:
             values: NDArray[Any] = engine.read(sketch, task.ref, size=task.frame, time=task.time, steps=steps)

@@ -12,6 +12,7 @@ from playground.reduce.tokens import tidy
 from playground.sketch.flatten import Ref, Source
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.source import SourceText
+from playground.sketch.variants import standing
 from playground.sketch.words import MATCHES, WIRED
 
 _IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
@@ -87,8 +88,9 @@ class _Maker:
             feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
             firsts = {name: first for name, first, _ in node.feedback}
         assert isinstance(step, Step)
-        companion = step.kernel.companion
-        text, beside = written(step.kernel), written(companion) if companion else ""
+        variant = standing(step.kernel, ("compute",))
+        text = written(step.kernel)
+        beside = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
         inputs = []
         for name, source in step.inputs:
             first = firsts.get(name, source)

@@ -14,6 +14,7 @@ from playground.errors import DataError, counted
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import wrap
 from playground.images.files import replacing
+from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.case import SHOT, Case, copied
 from playground.reduce.child import Task
@@ -93,7 +94,7 @@ def _write(path: Path, text: str) -> None:
 def _earlier(folder: Path) -> list[str]:
     """Return the names of the files that an earlier run wrote, none that lead elsewhere."""
     try:
-        names = json.loads((folder / RECORD).read_text(encoding="utf-8"))["files"]
+        names = read_json((folder / RECORD).read_text(encoding="utf-8"))["files"]
         return [name for name in names if isinstance(name, str) and Path(name).name == name]
     except (OSError, ValueError, KeyError, TypeError):
         return []

@@ -158,7 +158,7 @@ class Search:
         for one in reversed(self.best.live[:-1]):
             if any(live.name == one.name for live in self.best.live):
                 for text in _plain_texts(one, "0.0" in self._probe.fault.literals):
-                    plain = replace(one, text=text, companion="", inputs=(), values=(), repeat=0, feedback=())
+                    plain = replace(one, text=text, variant="", inputs=(), values=(), repeat=0, feedback=())
                     if len(tokens_of(text)) >= len(tokens_of(one.text)):
                         break  # it is as plain already
                     if self.holds(self.best.with_pass(plain)):
@@ -168,9 +168,9 @@ class Search:
                 fewer = tuple(pair for pair in one.inputs if pair[0] != name)
                 if name.startswith("initial"):
                     self.holds(self.best.with_pass(replace(one, inputs=fewer)))
-            if one.companion:
+            if one.variant:
                 current = next(p for p in self.best.live if p.name == one.name)
-                self.holds(self.best.with_pass(replace(current, companion="")))
+                self.holds(self.best.with_pass(replace(current, variant="")))
 
     def _settings(self) -> None:
         """Take back what is set: all of it at once if that goes, then one after the other."""
@@ -200,7 +200,7 @@ class Search:
                 pass
 
     def _lines(self, name: str) -> None:
-        for kind in ("text", "companion"):
+        for kind in ("text", "variant"):
             if not getattr(self._pass(name), kind):
                 continue
             number = "0.0" if "0.0" in self._probe.fault.literals else "1.0"
@@ -213,11 +213,11 @@ class Search:
 
     def _expressions(self, name: str) -> None:
         literals = self._probe.fault.literals
-        again = bool(self._pass(name).companion)
+        again = bool(self._pass(name).variant)
         while again:
             one = self._pass(name)
-            pairs = edits.in_both(one.text, one.companion, literals)
-            both = (replace(one, text=text, companion=other) for text, other in pairs)
+            pairs = edits.in_both(one.text, one.variant, literals)
+            both = (replace(one, text=text, variant=other) for text, other in pairs)
             again = any(self.holds(self.best.with_pass(pair)) for pair in both if pair != one)
 
         def smaller(text: str) -> Iterable[str]:
@@ -227,8 +227,8 @@ class Search:
             yield from edits.expressions(text, literals)
 
         self._first_of(name, lambda one: smaller(one.text), between=True)
-        if self._pass(name).companion:
-            self._first_of(name, lambda one: smaller(one.companion), "companion")
+        if self._pass(name).variant:
+            self._first_of(name, lambda one: smaller(one.variant), "variant")
 
     def _first_of(
         self,
@@ -268,7 +268,7 @@ class Search:
 
 def _undefined(case: Case) -> frozenset[str]:
     """Return what GLSL leaves undefined in each text."""
-    texts = ((one.name, text) for one in case.live for text in (one.text, one.companion) if text)
+    texts = ((one.name, text) for one in case.live for text in (one.text, one.variant) if text)
     return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _undefined_in(text))
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn
 
@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.plain_forms import PlainForms, silent
 from playground.errors import (
     ContextError,
     DataError,
@@ -75,10 +76,12 @@ class Checker:
         self.expected: str = config.getoption("--shots-renderer")
         self.any_renderer: bool = config.getoption("--shots-any-renderer")
         self.updating: bool = config.getoption("--shots-update")
+        self.plain: bool = config.getoption("--shots-plain")
         software = ContextInfo(0, self.expected, "", "", 0).software
         renderer = "any" if not software else "either" if self.any_renderer else "software"
         self.studio = Studio(config.getoption("--shots-timeout"), renderer)
         self.recorder = Recorder(config)
+        self._plain_forms: PlainForms | None = None
         self._written: dict[Path, tuple[str, NDArray[np.uint8]]] = {}  # by whom, and what
 
     def close(self) -> None:
@@ -88,7 +91,9 @@ class Checker:
     def shot(self, node: pytest.Item, case: ShotCase) -> None:
         """Draw a shot and hold it to its reference."""
         start = time.perf_counter()
+        case = replace(case, sketch=case.sketch.plainly(self.plain))
         renderer = self.renderer(node, case)
+        self._say_plain_forms(node, case, renderer)
         taken: Taken | PlaygroundError
         try:
             taken = self.studio.take(case)
@@ -145,6 +150,13 @@ class Checker:
             self._without(node, case, f"OpenGL gave {renderer.renderer}")
         return renderer
 
+    def _say_plain_forms(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> None:
+        """Say, once in this process, which fast variants do not run."""
+        if self._plain_forms is None:
+            self._plain_forms = PlainForms(silent, renderer.compute)
+        self._plain_forms.notice = lambda sentence: node.user_properties.append((SAID, sentence))
+        self._plain_forms.tell(case.sketch)
+
     def show_what_was_printed(self, node: pytest.Item) -> None:
         """Add what the child printed to the test's report, where pytest shows it if the test fails."""
         said = self.studio.said()
@@ -153,7 +165,7 @@ class Checker:
 
     def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
         """Return the command that would accept the picture; "" where none would."""
-        if outcome.ok or outcome.word in NEVER_ACCEPTED:
+        if outcome.ok or self.plain or outcome.word in NEVER_ACCEPTED:
             return ""
         options = ["--shots-update"]
         if self.expected != REFERENCE_RENDERER:

@@ -78,6 +78,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "catches structural defects only",
     )
     group.addoption(
+        "--shots-plain",
+        action="store_true",
+        help="draw every technique in its plain form, no fast variant; references are compared, not written",
+    )
+    group.addoption(
         "--shots-timeout",
         metavar="SECONDS",
         type=_seconds,
@@ -104,6 +109,8 @@ def _seconds(text: str) -> float:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marker known, and add the sketches of the configuration to what is tested."""
+    if config.getoption("--shots-plain") and config.getoption("--shots-update"):
+        raise pytest.UsageError("--shots-plain compares with references; --shots-update would write others")
     config.addinivalue_line("markers", "shots: compares a picture with its reference")
     config.pluginmanager.register(Results(config), "shots-results")
     if config.args_source is config.ArgsSource.ARGS or not config.getini("shots"):

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.files import encode_png, replacing
+from playground.json_text import read_json
 from playground.shots.names import REPORT
 
 FORMAT = 1
@@ -121,7 +122,7 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
     that is not known is a mistake too.
     """
     try:
-        found = json.loads(text, parse_constant=_no_constant)
+        found = read_json(text, constant=_no_constant)
     except ValueError as error:
         raise DataError(f"not the record of a shot: no JSON ({error})", file=file) from error
     if not isinstance(found, dict) or "format" not in found:

@@ -10,6 +10,7 @@ same browser can send one. So:
   to lead here (DNS rebinding) is turned away, and so is a foreign ``Origin``;
 * only the few paths below are known, and no part of one becomes the name of a file: a
   picture is looked up among those that the records name;
+* all this is looked at before a request's body is read, and that is bounded;
 * the page's policy lets nothing run, and nothing be asked for, but its own.
 
 A request names the result it means by its stamp. Where the tests have run again since, or a
@@ -22,6 +23,7 @@ import hmac
 import json
 import os
 import secrets
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -32,6 +34,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from playground.errors import DataError, PlaygroundError
+from playground.json_text import read_json
 from playground.shots.page.document import policy_of
 from playground.shots.session import Session
 
@@ -123,7 +126,7 @@ class Review:
         if path != "act":
             return _refusal(404, "there is no such page")
         try:
-            asked: Any = json.loads(body)
+            asked: Any = read_json(body)
             action = asked["action"]
             shots = [(str(shot["name"]), str(shot["stamp"])) for shot in asked["shots"]]
             if action not in ("accept", "also", "undo"):
@@ -137,6 +140,11 @@ class _Server(ThreadingHTTPServer):
     daemon_threads = True
     # On Windows this would let another program take the port that is listened on.
     allow_reuse_address = os.name == "posix"
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a connection that broke: a browser's page was closed."""
+        if not isinstance(sys.exc_info()[1], ConnectionError | TimeoutError):
+            super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -154,14 +162,16 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Answer a request that changes something."""
-        length = self.headers.get("Content-Length", "")
-        if not length.isdecimal() or int(length) > LARGEST_REQUEST:
-            self.close_connection = True
-            self._answer(_refusal(413, "expected a request of at most 1 MiB, with its length"))
+        if refused := self._refused() or self._too_long() or self._foreign():
+            self.close_connection = True  # its body is not read
+            self._answer(refused)
             return
-        body = self.rfile.read(int(length))
-        refused = self._refused() or self._foreign()
-        self._answer(refused or self._tried(lambda path: self.served.post(path, body)))
+        length = int(self.headers["Content-Length"])
+        body = self.rfile.read(length)
+        if len(body) < length:  # whoever asked has gone
+            self.close_connection = True
+            return
+        self._answer(self._tried(lambda path: self.served.post(path, body)))
 
     def _refused(self) -> Answer | None:
         """Refuse a request with a foreign host, or without the token."""
@@ -180,6 +190,13 @@ class _Handler(BaseHTTPRequestHandler):
             return _refusal(403, "another page sent this")
         if not self._is_token(self.headers.get("X-Shots-Token", "")):
             return _refusal(403, "the request lacks its token")
+        return None
+
+    def _too_long(self) -> Answer | None:
+        """Refuse a request whose body has no length, or is larger than any that the page sends."""
+        length = self.headers.get("Content-Length", "")
+        if len(length) > 9 or not length.isdecimal() or int(length) > LARGEST_REQUEST:
+            return _refusal(413, "expected a request of at most 1 MiB, with its length")
         return None
 
     def _hosts(self) -> set[str]:
@@ -215,11 +232,13 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_header(name, value)
         if self.close_connection or answer.last:
             self.send_header("Connection", "close")
-        self.end_headers()
-        self.wfile.write(answer.body)
-        self.wfile.flush()
-        if answer.last:
-            self.served.end()
+        try:
+            self.end_headers()
+            self.wfile.write(answer.body)
+            self.wfile.flush()
+        finally:  # also where whoever asked has gone
+            if answer.last:
+                self.served.end()
 
     def log_message(self, format: str, *args: object) -> None:
         """Say nothing of each request: the token would be in it."""

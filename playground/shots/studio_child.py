@@ -18,6 +18,7 @@ import traceback
 from typing import TYPE_CHECKING, BinaryIO
 
 from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
 from playground.errors import ContextError, PlaygroundError
 from playground.gpu.context import context_info, open_context
 from playground.shots.suite import ShotCase, take
@@ -78,7 +79,7 @@ def main() -> None:
     except PlaygroundError as error:
         send(answers, error)
         return
-    with Engine(context, owns_context=True) as engine:
+    with Engine(context, owns_context=True, notice=silent) as engine:
         send(answers, context_info(context))
         while True:
             try:

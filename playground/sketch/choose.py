@@ -106,9 +106,18 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     own = [(path.removeprefix(prefix), value) for path, value in sketch.overrides if path.startswith(prefix)]
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
     overrides += [(prefix + path, value) for path, value in _kept(technique, own)]
-    result = replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=tuple(overrides))
-    flatten(result, compute=False)
+    graph = replace(sketch.graph, passes=passes)
+    main = tuple(path for path in sketch.main if _is_there(graph, path))
+    result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
+    flatten(result)
     return result
+
+
+def _is_there(technique: Technique, path: str) -> bool:
+    try:
+        return bool(resolve(technique, path))
+    except ParameterError:
+        return False
 
 
 def _kept(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:

@@ -6,21 +6,28 @@ caller wires through ``[inputs]``, else the latest earlier pass of its name, els
 latest earlier pass with an output of its name. What is wired to a path inside a technique
 wins over what is wired to the export that stands for it.
 
+Where a fast variant stands in for a technique (see ``variants``), its own kernel or passes are
+in the result; those of a ``.fast.toml`` are at ``pass.fast.inner``, which no path may name.
+
 The shape of the result depends on the graph alone, so it is worked out once for each; a
 slider only puts new values into it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any
 
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.follows import Rule, follow, rules_of
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.same import Same
+from playground.sketch.variant_check import INSIDE
+from playground.sketch.variants import standing
 from playground.sketch.wiring import (
     initial_names,
     inner,
@@ -117,24 +124,37 @@ class _Shape:
     outputs: dict[str, dict[str, Ref]]
     wires: dict[str, dict[str, Source | None]]
     paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
+    constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
+    copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
+    rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
 
 
-def flatten(sketch: Sketch, *, compute: bool, opened: tuple[str, ...] = ()) -> Flat:
-    """Flatten a sketch; ``compute`` lets companions stand for whole techniques.
+def flatten(
+    sketch: Sketch,
+    *,
+    variants: Collection[str] = (),
+    opened: tuple[str, ...] = (),
+    stopped: tuple[str, ...] = (),
+) -> Flat:
+    """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
 
-    A companion gives its technique's outputs only: it does not stand for a technique that
-    holds one of the paths ``opened``, or a pass inside that something is wired to.
+    A variant gives its technique's outputs only, and after the last step: it does not stand in for
+    a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
+    nor for one that is itself among the ``stopped`` or that starts from something wired.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
-    shape = _shape(Same(graph), compute, opened)
+    kinds = frozenset[str]() if sketch.plain else frozenset(variants)
+    shape = _shape(Same(graph), kinds, opened if kinds else (), stopped if kinds else ())
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
             shape.targets[path] = tuple(target.path for target in resolve(graph, path))
         for target in shape.targets[path]:
             values[target] = value
+    follow(shape.rules, values)
+    values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
     nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
     return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs, shape.wires)
 
@@ -171,10 +191,25 @@ def _loops_of(nodes: tuple[Node, ...]) -> Iterator[str]:
 
 
 @lru_cache(maxsize=32)
-def _shape(key: Same[Graph], compute: bool, opened: tuple[str, ...]) -> _Shape:
-    maker = _Flattener(key.object, compute, opened)
+def _shape(
+    key: Same[Graph], kinds: frozenset[str], opened: tuple[str, ...], stopped: tuple[str, ...]
+) -> _Shape:
+    maker = _Flattener(key.object, kinds, opened, stopped)
     nodes = tuple(maker.expand(key.object, "", {}))
-    return _Shape(nodes, maker.specs, maker.graphs, maker.outputs, maker.wires, maker.paths)
+    outputs = {
+        path: {name: maker.real(ref) for name, ref in found.items()}
+        for path, found in maker.outputs.items()
+        if f".{INSIDE}." not in path or not any(path.startswith(f"{p}.{INSIDE}.") for p in maker.inside)
+    }
+    wires = {
+        path: {name: maker.real(source) for name, source in found.items()}
+        for path, found in maker.wires.items()
+    }
+    inside = tuple(f"{path}.{INSIDE}." for path in maker.inside)  # there values are copied
+    rules = rules_of({path: g for path, g in maker.graphs.items() if not f"{path}.".startswith(inside)})
+    return _Shape(
+        nodes, maker.specs, maker.graphs, outputs, wires, maker.paths, maker.constants, maker.copied, rules
+    )
 
 
 def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str) -> Node:
@@ -186,21 +221,27 @@ def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str)
 
 
 class _Flattener:
-    def __init__(self, graph: Graph, compute: bool, opened: tuple[str, ...]) -> None:
-        self.compute = compute
+    def __init__(
+        self, graph: Graph, kinds: frozenset[str], opened: tuple[str, ...], stopped: tuple[str, ...]
+    ) -> None:
+        self.kinds = kinds
         self.specs: dict[str, PassSpec] = {}
         self.graphs: dict[str, Graph] = {}
         self.outputs: dict[str, dict[str, Ref]] = {}
         self.wires: dict[str, dict[str, Source | None]] = {}
         self.paths: dict[str, tuple[tuple[str, str], ...]] = {}
+        self.constants: dict[str, Value] = {}
+        self.copied: dict[str, str] = {}
+        self.inside: dict[str, dict[str, Ref]] = {}  # pass → what the passes of its fast variant give for it
         self.opened: set[str] = set()
-        if compute:
-            for path in opened:
+        if kinds:
+            for path in (*opened, *stopped):
                 self._open("", path)
+            self.opened |= set(stopped)
             self._open_wired(graph, "")
 
     def _open(self, prefix: str, path: str) -> None:
-        """Keep companions from standing for the techniques around a pass."""
+        """Keep fast variants from standing in for the techniques around a pass."""
         parts = path.partition(":")[0].split(".")
         self.opened |= {_join(prefix, ".".join(parts[:i])) for i in range(1, len(parts))}
 
@@ -218,11 +259,15 @@ class _Flattener:
             if isinstance(spec.technique, Graph):
                 self._open_wired(spec.technique, _join(prefix, spec.name))
 
-    def _companion(self, technique: Technique, path: str) -> Kernel | None:
-        """Return what stands for a whole technique, if anything does."""
-        if isinstance(technique, Graph) and self.compute and path not in self.opened:
-            return technique.companion
-        return None
+    def _standing(self, technique: Technique, path: str) -> Variant | None:
+        """Return the fast variant that may stand in for a technique, if any may."""
+        return standing(technique, self.kinds) if self.kinds and path not in self.opened else None
+
+    def real(self, source: Source | None) -> Any:
+        """Return what gives a texture: where a variant of several passes stands in, one of those."""
+        if isinstance(source, Ref) and source.path in self.inside:
+            return self.inside[source.path][source.output]
+        return source
 
     def expand(self, graph: Graph, prefix: str, wires: Mapping[str, Source | None]) -> list[Node]:
         """Return the nodes of a graph; ``wires`` maps inputs, as paths inside it, to what feeds them."""
@@ -243,12 +288,12 @@ class _Flattener:
             own = {k.partition(".")[2]: v for k, v in inside.items() if k.partition(".")[0] == spec.name}
             nodes += self._one(spec, prefix, own, earlier)
             earlier.append(spec)
-        return _ordered(nodes, graph)
+        return _ordered([self._rewired(node) for node in nodes], graph)
 
     def _outputs_of(self, technique: Technique, path: str) -> dict[str, Ref]:
         if isinstance(technique, Kernel):
             return {o.name: Ref(path, o.name) for o in technique.outputs}
-        if self._companion(technique, path):
+        if self._standing(technique, path):
             return {name: Ref(path, name) for name in output_names(technique)}
         found = {}
         for name in output_names(technique):
@@ -286,24 +331,55 @@ class _Flattener:
 
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
-        companion = self._companion(technique, path)
+        variant = self._standing(technique, path)
+        if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
+            variant = None  # what a repeat starts from is the canonical form's own affair
+        if variant and isinstance(variant.technique, Graph):
+            return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
             kernel = technique
+            if variant and isinstance(variant.technique, Kernel):
+                kernel = variant.technique
             self.paths[path] = tuple((p.name, _join(path, p.name)) for p in kernel.parameters)
-        elif companion:
-            kernel = companion
+        elif variant and isinstance(variant.technique, Kernel):
+            kernel = variant.technique
             self.wires[path] = dict(wires)
             self._know(technique, path)
-            self.paths[path] = tuple(
-                (p.name, _join(path, resolve(technique, p.name)[0].path)) for p in kernel.parameters
-            )
+            self.paths[path] = tuple((p.name, _own(technique, path, p.name)) for p in kernel.parameters)
         else:
             return self.expand(technique, path, wires)
         wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
         return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
 
+    def _passes(
+        self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]
+    ) -> list[Node]:
+        """Return the passes of a fast variant, which stand where its technique would."""
+        place = _join(path, INSIDE)
+        self.specs[place] = PassSpec(INSIDE, spec.use, variant, file=spec.file, line=spec.line)
+        if isinstance(spec.technique, Graph):
+            self.wires[path] = dict(wires)
+            self._know(spec.technique, path)
+        self.constants |= {_join(place, name): value for name, value in effective_values(variant).items()}
+        for export in variant.parameters:
+            for target in resolve(variant, export.name):
+                self.copied[_join(place, target.path)] = _own(spec.technique, path, export.name)
+        nodes = self.expand(variant, place, wires)
+        found = self._outputs_of(variant, place)
+        self.inside[path] = {name: found[name] for name in output_names(spec.technique)}
+        return nodes
+
+    def _rewired(self, node: Node) -> Node:
+        """Return a node that reads what variants of several passes give, where they stand in."""
+        if not self.inside:
+            return node
+        if isinstance(node, Loop):
+            feedback = tuple((name, self.real(first), self.real(ref)) for name, first, ref in node.feedback)
+            return replace(node, body=tuple(map(self._rewired, node.body)), feedback=feedback)
+        return replace(node, inputs=tuple((name, self.real(source)) for name, source in node.inputs))
+
     def _know(self, graph: Graph, prefix: str) -> None:
-        """Know the passes that a companion stands for: their sizes are still asked for."""
+        """Know the passes that a fast variant stands in for: their sizes are still asked for."""
         self.graphs[prefix] = graph
         for spec in graph.passes:
             self.specs[_join(prefix, spec.name)] = spec
@@ -358,6 +434,11 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
     return all(
         target in wires for export in technique.inputs if export.name == name for target in export.targets
     )
+
+
+def _own(technique: Technique, path: str, name: str) -> str:
+    """Return where the value of a technique's parameter is, by the parameter's name."""
+    return _join(path, name if isinstance(technique, Kernel) else resolve(technique, name)[0].path)
 
 
 def _join(prefix: str, name: str) -> str:

@@ -8,54 +8,47 @@ from dataclasses import replace
 
 from playground.errors import nearest
 from playground.sketch import expressions
+from playground.sketch.agreement import read_agreement
 from playground.sketch.annotation import arguments
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Buffer, Kernel, Output
 from playground.sketch.places import SHADERS
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import check_name, is_given, read_uniforms
-from playground.sketch.words import DRIVER_BOUND
+from playground.sketch.words import DRIVER_BOUND, PLAIN_UNIFORMS
 
 FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
 
 _PRAGMA = re.compile(r"#\s*pragma\s+(\w+)\s*(.*)", re.DOTALL)
 _OTHER_PRAGMA = re.compile(r"\s*#\s*pragma\s+(\w+)\s*\(")
 _DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
+_UNIFORM = re.compile(r"uniform\b[^;]*;$")
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
 _LONGEST_TITLE = 72
+_BETWEEN = ("squares", "triangles")
 _IMAGE = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 _KEYS = {
-    "kernel": ("output", "repeat", "accepts", "visits", "stride", "at_once"),
+    "kernel": ("output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
     "source": ("name", "output"),
     "draw": ("mesh", "count", "output", "blend", "depth", "samples", "repeat"),
-    "compute": ("groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
+    "compute": ("groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned", "agrees"),
 }
 _EXAMPLES = {
     "kernel": '(output = "height:r32f")',
     "source": '("elevation_file", output = "height:r32f")',
     "draw": '(mesh = "grid")',
-    "compute": '(groups = "size.y, 1")',
+    "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
 
-PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
-    "time": ("iTime", "iGlobalTime", "u_time", "time", "uTime"),
-    "resolution": ("iResolution", "u_resolution", "resolution", "uResolution"),
-    "mouse": ("iMouse", "u_mouse", "mouse", "uMouse"),
-    "frame": ("iFrame", "u_frame", "frame", "uFrame"),
-    "delta": ("iTimeDelta", "u_delta", "u_time_delta", "uDelta"),
-    "date": ("iDate", "u_date"),
-}
-"""What a plain shader is given, under the names that such shaders use."""
 
-
-def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None) -> Kernel | None:
+def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     """Return what a GLSL file declares; None for a library file, which declares nothing to run.
 
     Raises ``ShaderError`` naming file and line for each mistake in the header.
@@ -81,9 +74,9 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     options = _options(kind, match.group(2), line)
     _refuse_redefined(source)
     parameters, inputs = read_uniforms(source)
-    kernel = Kernel(name, kind, source, (), parameters, inputs, title=title_of(source), companion=companion)
+    kernel = Kernel(name, kind, source, (), parameters, inputs, title=title_of(source))
     if kind == "compute":
-        return _companion(kernel, options, line)
+        return _compute(kernel, options, line)
     text = options.get("output", "frame:rgba16f" if kind == "draw" else "")
     if not text:
         raise line.error(f'#pragma {kind} needs output = "name:format", as output = "height:r32f"')
@@ -95,6 +88,7 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     if kind == "source":
         if not options.get("name"):
             raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
+        _refuse_code(source)
         return replace(kernel, registry=options["name"])
     numbers = _numbers(kernel)
     repeat = options.get("repeat", "1")
@@ -102,7 +96,9 @@ def parse_kernel(name: str, source: SourceText, companion: Kernel | None = None)
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
-    texts = {key: options[key] for key in ("accepts", "visits", "stride", "at_once") if key in options}
+    texts = {
+        key: options[key] for key in ("accepts", "visits", "stride", "between", "at_once") if key in options
+    }
     kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
     _check_turns(kernel, numbers, line)
     if kernel.accepts:
@@ -122,6 +118,11 @@ def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
         _check("stride", kernel.stride, turn, line)
         if not kernel.visits:
             raise line.error("stride says how far apart the texels of visits lie; give the kernel visits")
+    if kernel.between:
+        if kernel.between not in _BETWEEN:
+            raise line.error(f"between = '{kernel.between}'{nearest(kernel.between, _BETWEEN)}")
+        if not kernel.stride:
+            raise line.error("between says how the texels of a stride are joined; give the kernel a stride")
     if kernel.at_once == "1":
         return
     _check("at_once", kernel.at_once, (*_SIZE, *numbers), line)
@@ -203,7 +204,7 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     return replace(kernel, samples=int(samples), repeat=options.get("repeat", "1"))
 
 
-def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
+def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if not options.get("groups"):
         raise line.error('#pragma compute needs groups, as groups = "size.y, 1"')
     names = (*_SIZE, *_numbers(kernel))
@@ -231,6 +232,10 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error(
             f'aligned = "{options["aligned"]}": expected 4 or 8, the bytes that rows are filled up to'
         )
+    try:
+        agrees = read_agreement(options["agrees"]) if "agrees" in options else ()
+    except ValueError as error:
+        raise line.error(f"agrees: {error}") from None
     _check("groups", options["groups"], (*names, "iteration"), line, count=2)
     _check("repeat", options.get("repeat", "1"), names, line)
     return replace(
@@ -242,6 +247,7 @@ def _companion(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         stages=tuple(int(part) for part in stages),
         aligned=int(options.get("aligned", "8")),
         overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
+        agrees=agrees,
     )
 
 
@@ -304,6 +310,15 @@ def _refuse_redefined(source: SourceText) -> None:
         match = _DEFINE.match(line.code)
         if match and is_given(match.group(1)):
             check_name(match.group(1), line, "macro")
+
+
+def _refuse_code(source: SourceText) -> None:
+    """Refuse code in a source's file: no driver is given it, so that a mistake in it would never show."""
+    for line in source.lines:
+        code = line.code.strip()
+        if code and not code.startswith("#") and not _UNIFORM.match(code):
+            message = "a source's file has parameters only, and nothing runs this code; take it out"
+            raise line.error(message, len(line.code) - len(line.code.lstrip()) + 1)
 
 
 def _refuse_driver_bound(source: SourceText) -> None:

@@ -11,13 +11,22 @@ from pathlib import Path
 
 from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
-from playground.sketch.assign import effective_values
+from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
-from playground.sketch.places import SHADERS, following_links_once, is_absolute, is_file, root_of
+from playground.sketch.places import (
+    SHADERS,
+    canonical_of,
+    following_links_once,
+    is_absolute,
+    is_file,
+    is_variant,
+    root_of,
+)
 from playground.sketch.techniques import (
     Techniques,
+    lonely_variant,
     nothing_to_run,
     read_kernel,
     read_technique,
@@ -47,10 +56,14 @@ def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
     if not isinstance(name, str | Path):
         raise SketchError(f"a sketch is loaded by its name or its path, not by {name!r}")
     path = find(name or DEFAULT_SKETCH).resolve()
+    if is_variant(path):
+        path = canonical_of(path) or path
     try:
         if path.suffix in SHADERS:
             return _shader_alone(path)
         file = TomlFile(path, path.parent)
+        if is_variant(path):
+            raise lonely_variant(path)
         if _holds_technique(file):
             return _staged(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
         sketch = read_sketch(file, techniques.read)
@@ -79,15 +92,11 @@ def _holds_technique(file: TomlFile) -> bool:
 
 def _shader_alone(path: Path) -> Sketch:
     """Return a sketch that shows one shader file."""
-    if path.suffix == ".comp" and is_file(path.with_suffix(".glsl")):
-        path = path.with_suffix(".glsl")
     kernel = read_kernel(path, root_of(path))
     if kernel is None:
         raise nothing_to_run(path)
     if kernel.kind == "compute":
-        raise SketchError(
-            f"a companion runs in place of {path.stem}.glsl, which is missing", file=shown(path)
-        )
+        raise lonely_variant(path)
     if kernel.kind.startswith("plain"):
         view = PassSpec("view", f"./{path.stem}", kernel, file=shown(path))
         graph = Graph(path.stem, str(path), (view,), title=kernel.title)
@@ -132,7 +141,10 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         keyframes=(),
         overrides=_stage_files(graph, stage),
     )
-    flatten(sketch, compute=False)
+    own = next(p.name for p in passes if p.technique is technique)
+    shown_first = (s.path for s in shown_parameters(sketch) if s.exported)
+    sketch = replace(sketch, main=tuple(path for path in shown_first if path.startswith(f"{own}.")))
+    flatten(sketch)
     return sketch
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from playground.errors import ParameterError, ShaderError, SketchError, nearest
+from playground.sketch.agreement import Bound
 from playground.sketch.source import Line, SourceText
 
 Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
@@ -22,6 +23,9 @@ DEFAULT_PICTURE = (1280, 720)
 
 DRIVERS = ("auto", "fragment", "compute")
 """What may run kernels; "auto" takes for each the one that it gains by."""
+
+VARIANTS = ("compute", "passes")
+"""The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,15 @@ class Sampling:
 
 
 @dataclass(frozen=True, slots=True)
+class Follows:
+    """An angle that takes a direction's azimuth while it has its default."""
+
+    direction: str  # a parameter of the same file
+    menu: str = ""  # likewise; "" where it always follows
+    choice: int = 0  # of the menu, while it follows
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A uniform with its ``//!`` annotation."""
 
@@ -58,6 +71,8 @@ class Parameter:
     tooltip: str = ""
     sampling: Sampling = Sampling()  # of a file
     painted: bool = False  # a file that may be painted on in the window
+    follows: Follows | None = None  # where its value comes from while nobody sets it
+    parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     file: str = ""
     line: int = 0
 
@@ -97,7 +112,7 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Buffer:
-    """A storage buffer of a compute companion."""
+    """A storage buffer of a compute variant."""
 
     name: str
     type: str  # GLSL scalar or vec4
@@ -106,7 +121,7 @@ class Buffer:
 
 @dataclass(frozen=True)
 class Kernel:
-    """One GLSL file that can be run: a kernel, a source, a draw, a compute companion or a plain shader."""
+    """One GLSL file that can be run: a kernel, a source, a draw, a compute variant or a plain shader."""
 
     name: str  # "generation/diamond_square"
     kind: str  # kernel | source | draw | compute | plain_fragment | plain_compute
@@ -118,20 +133,22 @@ class Kernel:
     accepts: str = ""
     visits: str = ""
     stride: str = ""  # after a turn, only texels at multiples of it are known
+    between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
     depth: str = "less"
     count: str = ""  # of a draw: elements of a mesh that has no size of its own
     samples: int = 0  # of a draw: samples a pixel; 0: the view's
-    groups: str = ""  # of a compute companion
+    groups: str = ""  # of a compute variant
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
-    stages: tuple[int, ...] = ()  # of a companion: what each of its turns does
-    overwrites: tuple[str, ...] = ()  # outputs and buffers of a companion that need not begin as zeros
+    stages: tuple[int, ...] = ()  # of a compute variant: what each of its turns does
+    overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
+    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
     title: str = ""  # the sentence that the file begins with
-    companion: Kernel | None = None  # the .comp beside it
+    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
 
     @property
     def path(self) -> str:
@@ -141,7 +158,7 @@ class Kernel:
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the kernel is made of."""
-        return self.source.files + (self.companion.files if self.companion else ())
+        return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
 
     @property
     def pragma(self) -> Line | None:
@@ -190,6 +207,7 @@ class PassSpec:
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     file: str = ""
     line: int = 0
+    set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
 
     def error(self, message: str) -> SketchError:
         """Return an error that points at this pass."""
@@ -207,7 +225,8 @@ class Graph:
     inputs: tuple[Export, ...] = ()
     outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
     title: str = ""
-    companion: Kernel | None = None
+    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique beside it
+    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
     line: int = 0  # of its outputs
 
     @property
@@ -216,8 +235,8 @@ class Graph:
         found = dict.fromkeys([self.path])
         for spec in self.passes:
             found |= dict.fromkeys(spec.technique.files)
-        if self.companion:
-            found |= dict.fromkeys(self.companion.files)
+        for variant in self.variants:
+            found |= dict.fromkeys(variant.files)
         return tuple(found)
 
     def find(self, name: str) -> PassSpec | None:
@@ -226,6 +245,30 @@ class Graph:
 
 
 Technique = Kernel | Graph
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A fast variant: another form of a technique, that gives the same within a stated bound."""
+
+    technique: Technique  # of a .comp its kernel, of a .fast.toml its passes
+    verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
+    record: str = ""  # absolute path of the file that says so; "" where there is none
+
+    @property
+    def kind(self) -> str:
+        """One of ``VARIANTS``."""
+        return "passes" if isinstance(self.technique, Graph) else "compute"
+
+    @property
+    def path(self) -> str:
+        """Absolute path of its file."""
+        return self.technique.path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file that it is made of."""
+        return (*self.technique.files, *filter(None, [self.record]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,6 +336,8 @@ class Sketch:
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
     keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by hand stands over them
+    plain: bool = False  # every technique in its canonical form: no fast variant runs
+    main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -322,6 +367,10 @@ class Sketch:
         """Return the sketch seen by another camera, whatever its keyframes say of theirs."""
         keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
         return replace(self, camera=camera, keyframes=keyframes)
+
+    def plainly(self, plain: bool = True) -> Sketch:
+        """Return the sketch with every technique in its canonical form, or with fast variants again."""
+        return replace(self, plain=plain)
 
     def at(self, time: float) -> Sketch:
         """Return the sketch as its keyframes make it at a time in seconds, and without them."""

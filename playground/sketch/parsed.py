@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.sketch.header import parse_kernel
-from playground.sketch.model import Kernel
+from playground.sketch.model import Kernel, Variant
 from playground.sketch.source import Origin, read_source_and_origin
 
 _MOST = 256
@@ -39,7 +39,7 @@ def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None
 
 def replaced(kernel: Kernel, **changes: Any) -> Kernel:
     """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
-    key = (id(kernel), *((name, id(v) if isinstance(v, Kernel) else v) for name, v in changes.items()))
+    key = (id(kernel), *((name, _identity(value)) for name, value in changes.items()))
     known = _replaced.get(key)
     if known is None:
         known = _replaced[key] = (kernel, changes, replace(kernel, **changes))
@@ -47,3 +47,10 @@ def replaced(kernel: Kernel, **changes: Any) -> Kernel:
             _replaced.popitem(last=False)
     _replaced.move_to_end(key)
     return known[2]
+
+
+def _identity(value: Any) -> Any:
+    """Return what a value is known by: techniques are large, so those of fast variants by which they are."""
+    if isinstance(value, tuple):
+        return tuple(_identity(one) for one in value)
+    return (id(value.technique), value.verified, value.record) if isinstance(value, Variant) else value

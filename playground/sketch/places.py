@@ -23,6 +23,9 @@ TECHNIQUES = (".toml", ".glsl", ".frag")
 TEXTS = (*SHADERS, ".toml")
 """Endings of the text files that a sketch may be made of."""
 
+FAST = (".comp", ".fast.toml")
+"""Endings of fast variants, beside the technique of their name; the fastest first."""
+
 _MOST_FOLDERS = 500
 
 Signature = tuple[int, int, int]
@@ -119,6 +122,26 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):
         return False
+
+
+def exists(path: Path) -> bool:
+    """Say whether anything is there, a file or not, also for names that nothing can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+def is_variant(path: Path) -> bool:
+    """Say whether a file is a fast variant by its name; a ``.comp`` with its own ``#version`` is none."""
+    return path.name.endswith(FAST)
+
+
+def canonical_of(path: Path) -> Path | None:
+    """Return the technique that a fast variant lies beside; None where there is none."""
+    name = next((path.name.removesuffix(ending) for ending in FAST if path.name.endswith(ending)), "")
+    beside = (path.with_name(f"{name}{ending}") for ending in (".glsl", ".toml"))
+    return next((found for found in beside if name and is_file(found)), None)
 
 
 def root_of(path: Path) -> Path:

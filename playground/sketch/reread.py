@@ -17,28 +17,26 @@ from playground.sketch.model import Graph, Kernel, Sketch, Technique
 from playground.sketch.source import read_source
 
 
-def with_texts(sketch: Sketch, texts: Mapping[str, str], same: bool = False) -> Sketch:
+def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
     """Return the sketch with texts, by absolute path, in place of those of its shaders' files.
 
-    Texts of files that the sketch does not use change nothing. A companion would run instead
-    of what was read again, by a text of its own that does not say what the new one says: it is
-    left out, unless the texts say the ``same`` as those before.
+    Texts of files that the sketch does not use change nothing. Where a text says something else
+    than its file, the fast variants of what is made of it no longer agree, and do not run.
 
     Raises ``DataError`` where a text leaves no kernel of its file, and ``ShaderError`` where
     a text's declarations or includes are wrong.
     """
     if not texts:
         return sketch
-    return replace(sketch, graph=_Reread(texts, Path(sketch.folder), same).technique(sketch.graph))
+    return replace(sketch, graph=_Reread(texts, Path(sketch.folder)).technique(sketch.graph))
 
 
 class _Reread:
     """Parses anew what is made of some texts."""
 
-    def __init__(self, texts: Mapping[str, str], folder: Path, same: bool) -> None:
+    def __init__(self, texts: Mapping[str, str], folder: Path) -> None:
         self.texts = texts
         self.folder = folder
-        self.same = same
         self.known: dict[int, Any] = {}  # one technique may stand in several passes
 
     def technique(self, technique: Any) -> Any:
@@ -46,14 +44,15 @@ class _Reread:
         if not any(file in self.texts for file in technique.files):
             return technique
         if id(technique) not in self.known:
-            companion = technique.companion if self.same else None
-            if isinstance(technique, Graph):
-                passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
-                found: Technique = replace(technique, passes=passes, companion=companion)
-            else:
-                found = replace(self.kernel(technique), companion=companion)
-            self.known[id(technique)] = found
+            self.known[id(technique)] = self._reread(technique)
         return self.known[id(technique)]
+
+    def _reread(self, technique: Technique) -> Technique:
+        variants = tuple(replace(v, technique=self.technique(v.technique)) for v in technique.variants)
+        if isinstance(technique, Graph):
+            passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
+            return replace(technique, passes=passes, variants=variants)
+        return replace(self.kernel(technique), variants=variants)
 
     def kernel(self, kernel: Kernel) -> Kernel:
         path = Path(kernel.path)
@@ -61,4 +60,6 @@ class _Reread:
         found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
         if found is None:
             raise DataError("no kernel is left of this text", file=shown(path))
+        if kernel.kind == "compute":  # a compute variant has these of its technique
+            return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
         return found

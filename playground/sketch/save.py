@@ -27,6 +27,7 @@ from playground.sketch.places import leads_outside
 from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_spans import append, drop, put, text_of
+from playground.sketch.values import shortest
 
 
 class ReadOnlySketch(DataError):
@@ -47,6 +48,8 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
         assert was is not None
         if spec.use != was.use:
             text = _with_technique(_view(text, file, spec.name), _table(file, spec.name), was, spec)
+    if wanted.main != file.main:  # what another technique lacks is gone from it
+        text = put(text, (), "main", f"[{', '.join(map(text_of, wanted.main))}]")
     for path, value in wanted.overrides:
         text = _with_value(text, file, wanted, path, value)
     if wanted.camera != file.camera:
@@ -84,7 +87,8 @@ def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
 
     def holds(found: Sketch) -> bool:
         preset = next((p for p in found.presets if p.name == name), None)
-        return preset is not None and {**dict(preset.values), **values} == dict(preset.values)
+        said = {path: shortest(value) for path, value in preset.values} if preset is not None else {}
+        return all(said.get(path) == shortest(value) for path, value in values.items())
 
     write_over(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
 
@@ -253,7 +257,7 @@ def says_same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
 
     def said(sketch: Sketch) -> object:
         files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
-        values = {path: value for path, value in values_of(sketch).items() if path not in files}
+        values = {path: shortest(value) for path, value in values_of(sketch).items() if path not in files}
         uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
         return values, uses, sketch.camera, [getattr(sketch, key) for key in LAND]
 

@@ -16,11 +16,12 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.keyframes import EASES
-from playground.sketch.model import Camera, Keyframe, Sketch
+from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import says_same_as, write_over
 from playground.sketch.save_values import said_so_far, written_number, written_value
 from playground.sketch.toml_lines import TOKEN, Place
 from playground.sketch.toml_spans import drop, newline_of, put, text_of
+from playground.sketch.values import shortest
 
 _LIST = re.compile(r"\[\[\s*[\"']?keyframe[\"']?\s*\]\]")
 _INSIDE = re.compile(r"\[\s*[\"']?keyframe[\"']?\s*\.")
@@ -168,10 +169,11 @@ def _content(keyframe: Keyframe) -> object:
 
 def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
     """Return keyframes by what they say, wherever and in whatever order it is written."""
-    return [
-        replace(k, line=0, camera=tuple(sorted(k.camera)), values=tuple(sorted(k.values, key=lambda v: v[0])))
-        for k in keyframes
-    ]
+
+    def values(keyframe: Keyframe) -> tuple[tuple[str, Value], ...]:
+        return tuple(sorted(((p, shortest(v)) for p, v in keyframe.values), key=lambda v: v[0]))
+
+    return [replace(k, line=0, camera=tuple(sorted(k.camera)), values=values(k)) for k in keyframes]
 
 
 def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe) -> str:

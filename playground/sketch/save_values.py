@@ -7,13 +7,17 @@ from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_spans import Spans, text_of
-from playground.sketch.values import is_whole
+from playground.sketch.values import is_whole, shortest
 
 
 def written_value(sketch: Sketch, path: str, value: Value, said: str) -> str:
-    """Return a value as TOML writes it; a direction in braces where ``said``, what stands there, has them."""
+    """Return a value as TOML writes it, in the fewest digits that a shader reads as the same number.
+
+    A direction stands in braces where ``said``, what stands there, has them.
+    """
     if path in LAND:
         return written_land(value)
+    value = shortest(value)
     parameter: Parameter = resolve(sketch.graph, path)[0].parameter
     kind = parameter.widget.kind
     if isinstance(value, bool):
@@ -24,7 +28,7 @@ def written_value(sketch: Sketch, path: str, value: Value, said: str) -> str:
         return text_of(parameter.widget.choices[value])
     if kind == "colour" and isinstance(value, tuple):
         seen = to_hex(value)
-        if (*parse_hex(seen), 1.0)[: len(value)] == value:
+        if shortest((*parse_hex(seen), 1.0)[: len(value)]) == value:
             return text_of(seen)
     if kind == "direction" and isinstance(value, tuple) and said.startswith("{"):
         return f"{{ azimuth = {written_number(value[0])}, elevation = {written_number(value[1])} }}"

@@ -1,4 +1,4 @@
-"""Read techniques: a GLSL file with its ``.comp`` companion, or a TOML of several passes."""
+"""Read techniques: a GLSL file or a TOML of several passes, each with the fast variants beside it."""
 
 from __future__ import annotations
 
@@ -8,12 +8,23 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.find import shipped_names
-from playground.sketch.model import Graph, Kernel, Output, Technique
+from playground.sketch.model import Graph, Kernel, Technique, Variant
 from playground.sketch.parsed import parsed_kernel, replaced
-from playground.sketch.places import TECHNIQUES, is_file, is_inside, leads_outside, names_below
+from playground.sketch.places import (
+    FAST,
+    TECHNIQUES,
+    is_file,
+    is_inside,
+    is_variant,
+    leads_outside,
+    names_below,
+)
 from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
+from playground.sketch.variant_check import check_compute, check_passes
+from playground.sketch.variant_record import verified
+from playground.sketch.variants import without_variants
 from playground.sketch.wiring import outputs_with_formats
 
 _MAX_NESTING = 16
@@ -21,21 +32,11 @@ _MAX_KERNELS = 1_000
 
 
 def read_kernel(path: Path, folder: Path) -> Kernel | None:
-    """Read one GLSL file with its ``.comp`` companion; None for a library file.
+    """Read one GLSL file with the fast variants beside it; None for a library file.
 
     ``folder`` is where its includes and its files may be, besides ``glsl/``.
     """
-    path = path.resolve()
-    name = path.relative_to(GLSL).with_suffix("").as_posix() if path.is_relative_to(GLSL) else path.stem
-    kernel = parsed_kernel(name, path, (folder,))
-    if kernel is None:
-        return None
-    _check_files(kernel, folder)
-    beside = path.with_suffix(".comp")
-    if path.suffix == ".glsl" and kernel.kind == "kernel" and is_file(beside):
-        companion = _read_companion(beside, folder, kernel, kernel.outputs)
-        kernel = replaced(kernel, companion=companion)
-    return kernel
+    return Techniques().kernel(path, folder)
 
 
 def read_technique(use: str, folder: Path, root: Path) -> Technique:
@@ -55,6 +56,14 @@ def nothing_to_run(path: Path) -> SketchError:
     if "mainImage" in read_text(path):
         message += "; ShaderToy's mainImage needs a #version before it and a main that calls it"
     return SketchError(message, file=shown(path))
+
+
+def lonely_variant(path: Path) -> SketchError:
+    """Return the error of a fast variant with no technique beside it."""
+    name = path.name.removesuffix(".comp").removesuffix(".fast.toml")
+    return SketchError(
+        f"a fast variant runs in place of {name}.glsl or {name}.toml, which is missing", file=shown(path)
+    )
 
 
 def shipped_techniques() -> list[str]:
@@ -95,13 +104,30 @@ class Techniques:
     def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
             return self.graph(path, use, limit)
-        kernel = read_kernel(path, limit)
+        kernel = self.kernel(path, limit)
         if kernel is None:
             raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
         return kernel
 
+    def kernel(self, path: Path, folder: Path) -> Kernel | None:
+        """Return the kernel of one GLSL file, as ``read_kernel`` does."""
+        path = path.resolve()
+        kernel = parsed_kernel(name_of(path), path, (folder,))
+        if kernel is None:
+            return None
+        _check_files(kernel, folder)
+        if path.suffix == ".glsl" and kernel.kind == "kernel":
+            variants = self._variants(path, kernel, folder)
+            return replaced(kernel, variants=variants) if variants else kernel
+        return kernel
+
     def graph(self, path: Path, name: str, root: Path) -> Graph:
-        """Return a technique of several passes, by the path of its TOML."""
+        """Return a technique of several passes, by the path of its TOML, with its fast variants."""
+        graph = self._graph(path, name, root)
+        variants = self._variants(path.resolve(), graph, root)
+        return replace(graph, variants=variants) if variants else graph
+
+    def _graph(self, path: Path, name: str, root: Path) -> Graph:
         path = path.resolve()
         if path in self.open:
             circle = [*self.open[self.open.index(path) :], path]
@@ -115,11 +141,32 @@ class Techniques:
             refuse_monster(graph)
         finally:
             self.open.pop()
-        beside = path.with_suffix(".comp")
-        if is_file(beside):
-            companion = _read_companion(beside, root, graph, outputs_with_formats(graph))
-            graph = replace(graph, companion=companion)
         return graph
+
+    def _variants(self, path: Path, of: Technique, root: Path) -> tuple[Variant, ...]:
+        """Return the fast variants of a technique in a file, the fastest first."""
+        return tuple(
+            self._variant(beside, of, root)
+            for ending in FAST
+            if is_file(beside := path.with_name(f"{path.stem}{ending}"))
+        )
+
+    def _variant(self, path: Path, of: Technique, root: Path) -> Variant:
+        if not is_inside(path, (root, GLSL)):
+            raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
+        found: Technique
+        if path.suffix == ".comp":
+            found = _compute_variant(path, root, of)
+        else:
+            passes = self._graph(path, name_of(path), root)
+            check_passes(passes, of)
+            found = without_variants(passes)
+        return Variant(found, *verified(path))
+
+
+def name_of(path: Path) -> str:
+    """Return a technique's name by its file: in ``glsl/`` what ``use`` takes, elsewhere the file's own."""
+    return path.relative_to(GLSL).with_suffix("").as_posix() if path.is_relative_to(GLSL) else path.stem
 
 
 class WithLibrary(Techniques):
@@ -161,6 +208,8 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
         raise SketchError(f"use = '{use}' lies outside {'the sketch’s own folder' if own else 'glsl/'}")
     present = [path for path in candidates if is_file(path)]
+    if present and is_variant(present[0]):
+        raise SketchError(f"use = '{use}' is a fast variant; use = '{use.removesuffix('.fast')}' runs it")
     if len(present) > 1:
         raise SketchError(f"use = '{use}' is both {shown(present[0])} and {shown(present[1])}; remove one")
     if present:
@@ -176,31 +225,14 @@ def _known_names(own: bool, folder: Path) -> list[str]:
     return [f"./{name.rpartition('.')[0]}" for name in files]
 
 
-def _read_companion(path: Path, folder: Path, of: Kernel | Graph, outputs: tuple[Output, ...]) -> Kernel:
-    if not is_inside(path, (folder, GLSL)):
-        raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
-    companion = parsed_kernel(path.stem, path, (folder,))
-    if companion is None or companion.kind != "compute":
-        raise SketchError(
-            'a .comp beside a kernel begins with #pragma compute(groups = "…")', file=shown(path)
-        )
-    parameters, inputs = {p.name for p in of.parameters}, {i.name for i in of.inputs}
-    items = [(p.name, p.line, parameters) for p in companion.parameters]
-    items += [(i.name, i.line, inputs) for i in companion.inputs]
-    for name, line, valid in items:
-        if name not in valid:
-            message = f"'{name}' is not among the parameters and inputs of {of.name}"
-            raise SketchError(message + nearest(name, valid), file=shown(companion.path), line=line)
-    written = [*(o.name for o in outputs), *(b.name for b in companion.buffers)]
-    for name in companion.overwrites:
-        if name not in written:
-            raise companion.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
-    floats = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}
-    for output in outputs:
-        held = next((b.type for b in companion.buffers if b.name == output.name), "")
-        if held and not (output.format.endswith("32f") and held in floats[output.components]):
-            raise companion.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
-    return replaced(companion, outputs=outputs, accepts=_accepts(of))
+def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
+    found = parsed_kernel(path.stem, path, (folder,))
+    if found is None or found.kind != "compute":
+        message = 'a .comp beside a kernel begins with #pragma compute(groups = "…", agrees = "…")'
+        raise SketchError(message, file=shown(path))
+    outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
+    check_compute(found, of, outputs)
+    return replaced(found, outputs=outputs, accepts=_accepts(of))
 
 
 def _accepts(technique: Kernel | Graph) -> str:

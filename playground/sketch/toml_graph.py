@@ -10,9 +10,10 @@ from typing import Any
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import wiring
+from playground.sketch.agreement import read_agreement
 from playground.sketch.assign import LAND, check_value, flat_values, resolve
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
-from playground.sketch.places import leads_outside
+from playground.sketch.places import is_variant, leads_outside
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
@@ -28,8 +29,14 @@ _PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
 
 def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
     """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
-    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS))
+    more = ("agrees",) if is_variant(file.path) else ()
+    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS, *more))
     file.version(required=False)
+    try:
+        stated = file.take(file.table, "agrees", str, "")
+        agrees = read_agreement(stated) if stated else ()
+    except ValueError as error:
+        raise file.error(f"agrees: {error}", "agrees") from None
     graph = Graph(
         name,
         str(file.path),
@@ -38,6 +45,7 @@ def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
         _exports(file, "inputs"),
         file.texts(file.table, "outputs"),
         file.take(file.table, "title", str, ""),
+        agrees,
         line=file.line("outputs"),
     )
     for key, names in (
@@ -107,17 +115,20 @@ def read_pass(
         if output not in wiring.output_names(technique):
             hint = nearest(output, wiring.output_names(technique))
             raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", *wanted.split("."))
+    values = _values(file, table, place, name, technique)
+    given = table.get("set", {})
     return PassSpec(
         name,
         use,
         technique,
         inputs,
-        _values(file, table, place, name, technique),
+        values,
         _size(file, table, place),
         repeat,
         feedback,
         shown(file.path),
         file.line(*place),
+        tuple((path, file.line(*_place_of_value(place, given, path))) for path, _ in values),
     )
 
 
@@ -140,8 +151,7 @@ def read_values(
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
     for path, raw in flat.items():
-        # A path may stand in quotes, as one key, or without, as several.
-        at = (*place, "set", *([path] if path in given else path.split(".")))
+        at = _place_of_value(place, given, path)
         try:
             value, parameter = read_value(path, raw)
         except ParameterError as error:
@@ -152,6 +162,11 @@ def read_values(
                 raise file.error(message, *at)
         found.append((path, value))
     return tuple(found)
+
+
+def _place_of_value(place: Place, given: Mapping[str, Any], path: str) -> Place:
+    """Return where a table's ``set`` has a path: in quotes, as one key, or without, as several."""
+    return (*place, "set", *([path] if path in given else path.split(".")))
 
 
 def read_set(

@@ -8,7 +8,7 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import LAND, check_value
+from playground.sketch.assign import LAND, check_value, resolve
 from playground.sketch.flatten import flatten, repeated_path, repeated_paths
 from playground.sketch.model import (
     LARGEST_SIDE,
@@ -27,7 +27,7 @@ from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 from playground.sketch.wiring import check_graph
 
-SKETCH_KEYS = frozenset({*LAND, "view", "shot", "preset", "keyframe"})
+SKETCH_KEYS = frozenset({*LAND, "main", "view", "shot", "preset", "keyframe"})
 """What a sketch's TOML may hold and a technique's may not."""
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
@@ -57,7 +57,8 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         **land,
     )
     check_graph(sketch.graph)
-    flatten(sketch, compute=False)
+    flatten(sketch)
+    sketch = replace(sketch, main=_main(file, sketch))
     sketch = replace(sketch, presets=_presets(file, sketch))
     sketch = replace(sketch, shots=_shots(file, sketch))
     return replace(sketch, keyframes=read_keyframes(file, sketch))
@@ -93,6 +94,22 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
     file.only(table, _VIEW, "view")
     spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
     return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
+
+
+def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
+    """Return the paths of the parameters that the sketch is about, checked."""
+    paths = file.take(file.table, "main", list, [])
+    for path in paths:
+        if not isinstance(path, str):
+            message = f'main: {spell(path)}: expected paths of parameters, as ["height.seed", "light.sun"]'
+            raise file.error(message, "main")
+        try:
+            resolve(sketch.graph, path)
+        except ParameterError as error:
+            raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
+        if paths.count(path) > 1:
+            raise file.error(f"main: '{path}' stands twice", "main")
+    return tuple(paths)
 
 
 def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
@@ -164,7 +181,7 @@ def read_steps(
     """Return what a table's ``steps`` says of repeated passes: turns by path; raise ``SketchError``."""
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
-        nodes = flatten(sketch, compute=False).nodes
+        nodes = flatten(sketch).nodes
         for path, _ in steps:
             if repeated_path(path, nodes) is None:
                 message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"

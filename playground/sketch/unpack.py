@@ -9,7 +9,6 @@ changed; a window opens a copy beside it, whose files may be edited.
 from __future__ import annotations
 
 import hashlib
-import json
 import re
 import secrets
 import shutil
@@ -22,6 +21,7 @@ from pathlib import Path, PurePosixPath
 from playground._version import __version__
 from playground.errors import DataError, counted
 from playground.folders import cache_folder
+from playground.json_text import read_json
 from playground.paths import GLSL
 
 ENDING = ".zip"
@@ -194,13 +194,13 @@ def _manifest(path: Path, archive: zipfile.ZipFile, files: dict[str, zipfile.Zip
     if files[MANIFEST].file_size > _MOST_MANIFEST:
         raise DataError(f"its {MANIFEST} is too large", file=path)
     try:
-        said = json.loads(archive.read(MANIFEST))
+        said = read_json(archive.read(MANIFEST))
         if said["format"] != FORMAT:
             raise DataError(
                 f"is of format {said['format']}; this playground ({__version__}) reads {FORMAT}", file=path
             )
         found_manifest = Manifest(str(said["sketch"]), str(said["version"]), tuple(map(str, said["shipped"])))
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}", file=path) from None
     if found_manifest.sketch not in files or found_manifest.sketch == MANIFEST:
         raise DataError(

@@ -6,18 +6,19 @@ import re
 from pathlib import Path
 
 from playground.errors import Diagnostic
-from playground.sketch.model import Kernel
+from playground.sketch.model import Kernel, kernels_of
 
 
 def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return a warning for each parameter and input of a kernel's own file that nothing reads.
 
-    What its companion, a pragma or a macro reads counts as read. Uniforms of included files are
+    What a fast variant, a pragma or a macro reads counts as read. Uniforms of included files are
     left alone, for a library serves many; so are sources and draws, whose uniforms the engine reads.
     """
     if kernel.kind in ("source", "draw"):
         return ()
-    texts = [kernel.source] + ([kernel.companion.source] if kernel.companion is not None else [])
+    variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
+    texts = [each.source for each in (kernel, *variants)]
     code = "\n".join([text.code for text in texts] + [line.pragma for text in texts for line in text.lines])
     found = []
     for name in [parameter.name for parameter in kernel.parameters] + [i.name for i in kernel.inputs]:

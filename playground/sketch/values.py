@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import reprlib
+import struct
 from collections.abc import Mapping, Sequence
 
 from playground.errors import DataError, ParameterError, nearest
@@ -116,6 +117,25 @@ def write(parameter: Parameter, value: Value) -> str:
     if isinstance(value, tuple):
         return ",".join(map(_digits, value))
     return value if isinstance(value, str) else _digits(value)
+
+
+def tidied(value: float) -> float:
+    """Return the shortest decimal number that a shader cannot tell from it: 0.37 for 0.3700000048."""
+    try:
+        (single,) = struct.unpack("f", struct.pack("f", value))
+    except OverflowError:  # no single-precision number is so large
+        return value
+    if not math.isfinite(single):
+        return value
+    decimals = (float(f"{single:.{digits}g}") for digits in range(1, 10))
+    return next((d for d in decimals if struct.unpack("f", struct.pack("f", d))[0] == single), single)
+
+
+def shortest(value: Value) -> Value:
+    """Return a value whose numbers with fractions are ``tidied``: what a file is to say of it."""
+    if isinstance(value, tuple):
+        return tuple(tidied(n) if isinstance(n, float) else n for n in value)
+    return tidied(value) if isinstance(value, float) else value
 
 
 def spell(value: object) -> str:

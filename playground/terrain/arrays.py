@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.images.bounds import refuse_bomb
 from playground.terrain.geodesy import spacing_from_degrees
 from playground.terrain.grid import Found, check_grid
 
@@ -70,7 +71,9 @@ class _Archive:
     def load(self, name: str) -> NDArray[Any]:
         member = self.members[name]
         with self.archive.open(member) as handle:
-            return _array_body(handle, _array_header(handle, self.path), member.file_size, self.path)
+            header = _array_header(handle, self.path)
+            refuse_bomb(self.path, math.prod(header.shape) * header.dtype.itemsize, member.compress_size)
+            return _array_body(handle, header, member.file_size, self.path)
 
     def grid(self) -> NDArray[Any]:
         name = "elevation"

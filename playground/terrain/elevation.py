@@ -109,7 +109,7 @@ def read_elevation(
     "south". In 16-bit signed files -32768 is no data.
 
     Raises:
-        DataError: a file that is missing, damaged, too large (over 2**28 texels),
+        DataError: a file that is missing, damaged, too large (`images.bounds`),
             not numbers, not a grid of at least 2 x 2, infinite somewhere or without
             any data; an unknown ending, packing or edge.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.images.files import MAX_TEXELS
+from playground.images.bounds import MAX_TEXELS
 from playground.terrain.geodesy import spacing_from_degrees
 from playground.terrain.grid import SIXTEEN_BIT, Found, check_grid
 

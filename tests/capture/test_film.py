@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import playground.capture.video as video_module
 from playground.capture.film import Film, film_of, frames, render_video, write_film
 from playground.capture.sequence import render_sequence, write_sequence
 from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
@@ -229,11 +230,57 @@ def test_nothing_is_left_of_a_video_that_fails(tmp_path: Path):
         video.add(ramps(1, (64, 36))[0])
         raise ZeroDivisionError
     with (
-        pytest.raises(DataError, match="wrote 1 pictures"),
+        pytest.raises(DataError, match="no picture was drawn, of 5"),
+        Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video,
+    ):
+        pass
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_video_of_too_few_pictures_is_kept_under_a_name_that_says_so(tmp_path: Path):
+    (tmp_path / "a.mp4").write_bytes(b"what was there")
+    with (
+        pytest.raises(DataError, match=r"wrote 1 pictures .* kept in a-first-1\.mp4"),
         Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video,
     ):
         video.add(ramps(1, (64, 36))[0])
-    assert not list(tmp_path.iterdir())
+    assert decoded(tmp_path / "a-first-1.mp4").shape == (1, 36, 64, 3)
+    assert (tmp_path / "a.mp4").read_bytes() == b"what was there"
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    "error", [AttributeError("no such thing"), ReferenceError("closed"), OSError(5, "bad")]
+)
+def test_a_film_that_cannot_be_read_back_is_kept(
+    any_engine: Engine, keyed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
+):
+    def fails(path: Path) -> tuple[int, Fraction]:
+        raise error
+
+    monkeypatch.setattr(video_module, "count_pictures", fails)
+    said: list[str] = []
+    path = write_film(
+        any_engine, Film(keyed, 3, Fraction(10), (64, 36)), tmp_path / "film.mp4", say=said.append
+    )
+    assert decoded(path).shape == (3, 36, 64, 3)
+    assert len(said) == 1 and "was written, but could not be checked" in said[0]
+    assert [path.name for path in tmp_path.glob("*film*")] == ["film.mp4"]
+    # Interrupted as well: then by the number of pictures that were handed over.
+    with pytest.raises(Stopped) as caught, Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:
+        video.add(ramps(1, (64, 36))[0])
+        raise KeyboardInterrupt
+    assert caught.value.path == tmp_path / "b-first-1.mp4" and caught.value.path.is_file()
+
+
+def test_ctrl_c_while_a_film_is_read_back_does_not_lose_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def interrupted(path: Path) -> tuple[int, Fraction]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(video_module, "count_pictures", interrupted)
+    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 1) as video:
+        video.add(ramps(1, (64, 36))[0])
+    assert caught.value.path == tmp_path / "a-first-1.mp4" and caught.value.path.is_file()
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from playground.capture.large import TILE, count_tiles, is_large, strips, tiles_of, write_large
 from playground.engine.engine import Engine
 from playground.engine.plan import Window
-from playground.errors import ParameterError, SketchError
+from playground.errors import DataError, ParameterError, SketchError
 from playground.gpu.textures import read_picture
 from playground.images.files import read_png
 from playground.sketch.load import load
@@ -222,3 +222,9 @@ def test_what_reads_its_neighbours_is_refused(any_engine: Engine, tmp_path: Path
     with pytest.raises(SketchError, match=r"pass 'view.last' cannot be drawn in parts") as caught:
         together(any_engine, sketch, (64, 64), (32, 32))
     assert said in str(caught.value) and caught.value.diagnostics[0].file.endswith("both.toml")
+
+
+def test_a_picture_drawn_in_parts_is_no_jpeg(any_engine: Engine, tmp_path: Path):
+    with pytest.raises(DataError, match=r"a\.jpg: a picture that is drawn in parts .* ending in \.png"):
+        write_large(any_engine, "white_noise_image", tmp_path / "a.jpg", (64, 36))
+    assert not list(tmp_path.iterdir())

@@ -248,7 +248,7 @@ def test_colours_may_have_sixteen_bits(any_engine: Engine, lop: Sketch, tmp_path
 
 def test_a_picture_that_its_format_cannot_take_is_a_sentence(monkeypatch: pytest.MonkeyPatch):
     wide = np.zeros((1, 16384), np.float32)
-    with pytest.raises(playground.DataError, match=r"16384 x 1 texels are too many for \.webp"):
+    with pytest.raises(playground.DataError, match=r"16384 x 1 pixels are too many for \.webp"):
         encode_picture(wide, ".webp")
     with PIL.Image.open(io.BytesIO(encode_picture(wide, ".jpg").data)) as picture:
         assert (picture.mode, picture.size) == ("L", (16384, 1))

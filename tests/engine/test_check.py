@@ -49,7 +49,7 @@ def test_a_header_that_is_wrong_is_told_at_its_line(folder, trial, what):
     assert found.excerpt.startswith("#pragma kernel")
 
 
-def test_a_companion_s_groups_are_told_at_its_own_line(folder, trial):
+def test_a_compute_variant_s_groups_are_told_at_its_own_line(folder, trial):
     if trial_has_no_compute(folder, trial):
         pytest.skip("this context has no compute shaders")
     folder.write(

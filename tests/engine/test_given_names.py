@@ -73,12 +73,13 @@ def test_whether_an_input_is_wired(any_engine, asked, folder):
     assert any_engine.read(asked, "asked")[0, 0, 3] == 0
 
 
-@pytest.mark.parametrize("form", ["kernel", "draw", "companion"])
-def test_kernels_draws_and_companions_are_told(each_engine, folder, form):
-    if form == "companion" and not each_engine.info.compute:
+@pytest.mark.usefixtures("trusted_variants")
+@pytest.mark.parametrize("form", ["kernel", "draw", "variant"])
+def test_kernels_draws_and_compute_variants_are_told(each_engine, folder, form):
+    if form == "variant" and not each_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     folder.write("asks.glsl", DRAWN if form == "draw" else ASKS)
-    if form == "companion":
+    if form == "variant":
         folder.write("asks.comp", SWEPT)
     folder.write("blows.glsl", WIND)
     alone = folder.sketch(PASS)

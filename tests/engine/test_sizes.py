@@ -1,4 +1,4 @@
-"""Sizes as a sketch writes them: of passes, of what feeds an input, and of what a companion stands for."""
+"""Sizes as a sketch writes them: of passes, of what feeds an input, and of fast variants."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ size = 1
 [inputs]
 height = "rows.height"
 """
-COMPANION = """// The same sum at once.
+VARIANT = """// The same sum at once.
 #pragma compute(groups = "1, 1", local = "1, 1")
 uniform sampler2D height; //! input
 void main() {
@@ -90,8 +90,9 @@ def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, fol
     assert float(found[0, 0]) == total(engine, folder)
 
 
-def test_a_companion_has_the_size_of_the_pass_it_stands_for(engine: Engine, folder: Path):
-    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+@pytest.mark.usefixtures("trusted_variants")
+def test_a_compute_variant_has_the_size_of_the_pass_it_stands_for(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     sketch = load(folder)
     found = engine.read(sketch, "sum")
     stood_in = engine.driver == "compute"
@@ -100,6 +101,26 @@ def test_a_companion_has_the_size_of_the_pass_it_stands_for(engine: Engine, fold
     assert float(found[0, 0]) == total(engine, folder)
 
 
-def test_a_pass_that_a_companion_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
-    (folder / "sum.comp").write_text(COMPANION, encoding="utf-8")
+@pytest.mark.usefixtures("trusted_variants")
+def test_a_pass_that_a_compute_variant_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
+    (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     assert engine.read(load(folder), "sum.rows").shape == (12, 1)
+
+
+def test_a_size_may_ask_for_compute_shaders(ctx, tmp_path: Path):
+    (tmp_path / "flat.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "sketch.toml").write_text(
+        'format = 1\n[[pass]]\nname = "height"\nuse = "./flat"\nsize = "17 if compute else 9"\n',
+        encoding="utf-8",
+    )
+    for driver in ("fragment", "auto"):
+        said: list[str] = []
+        with Engine(ctx, driver=driver, notice=said.append) as engine:
+            has = engine.info.compute and driver != "fragment"
+            for _ in range(2):
+                assert engine.read(load(tmp_path), "height").shape == ((17, 17) if has else (9, 9))
+        assert len(said) == (0 if has else 1)
+        assert has or said[0].startswith("the sketch does without compute shaders, which are not here: see ")

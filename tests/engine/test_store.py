@@ -524,7 +524,7 @@ def test_a_file_under_anothers_name_is_dropped(kept, worn):
 
 
 def test_a_texture_of_another_size_is_not_taken(kept, folder):
-    """Not even where the key agrees, as with a technique whose companion has other outputs."""
+    """Not even where the key agrees, as with a technique whose fast variant has other outputs."""
     engine = kept.engine()
     store = engine.keeping.store
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')

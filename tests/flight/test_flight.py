@@ -101,7 +101,9 @@ GOOD = Header("flight").line()
         (GOOD + '\n{"hour": 1e999}\n', "expected"),
         (GOOD + "\n[1, 0, 0,\n", "is no JSON"),
         (GOOD + "\n[86400, 0, 0, 0, 0]" * 251 + "\n", "longer than a hundred hours"),
-        (GOOD + "\n" + "[" * 100_000 + "\n", "is no JSON"),
+        (GOOD + "\n" + "[" * 100_000 + "\n", ":2: .*nested deeper than 64"),
+        (GOOD + "\n" + "[" * 500 + "]" * 500 + "\n", ":2: .*nested deeper than 64"),
+        (GOOD.replace('"values": {}', '"values": {"a": ' + "[" * 90 + "]" * 90 + "}"), "is no flight"),
     ],
 )
 def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, said):

@@ -1,12 +1,8 @@
 """One text, two drivers, the same bits: every kernel there is, under every choice of its menus.
 
-A kernel's inputs are wired to random textures. A compute companion is held against the
-kernel or technique beside it, to the bound that its header states; one that agrees on land
-but not on noise names the test that shows it.
+A kernel's inputs are wired to random textures. Fast variants are ``test_fast_variants``'s.
 """
 
-import re
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -36,7 +32,6 @@ def techniques():
 
 
 KERNELS = [n for n, t in techniques().items() if isinstance(t, Kernel) and t.kind == "kernel"]
-WITH_COMPANION = [n for n, t in techniques().items() if t.companion]
 
 
 @pytest.fixture
@@ -83,14 +78,6 @@ def variants(sketch, technique):
                 )
 
 
-def without_companions(sketch):
-    passes = tuple(
-        replace(p, technique=replace(p.technique, companion=None)) if p.technique.companion else p
-        for p in sketch.graph.passes
-    )
-    return replace(sketch, graph=replace(sketch.graph, passes=passes))
-
-
 def assert_same_bits(found, wanted, what):
     assert found.shape == wanted.shape, what
     nan = np.isnan(found) & np.isnan(wanted)
@@ -107,7 +94,7 @@ def outputs_of(technique):
 @pytest.mark.parametrize("name", KERNELS)
 def test_both_drivers_give_the_same_bits(engines, tmp_path, name):
     technique = techniques()[name]
-    sketch = without_companions(sketch_of(tmp_path, name))
+    sketch = sketch_of(tmp_path, name).plainly()
     fragment, compute = engines
     for what, variant in variants(sketch, technique):
         for output in outputs_of(technique):
@@ -117,28 +104,6 @@ def test_both_drivers_give_the_same_bits(engines, tmp_path, name):
             assert_same_bits(values[1], values[0], f"{name}:{output.name} with {what}")
 
 
-@pytest.mark.parametrize("name", WITH_COMPANION)
-def test_a_companion_agrees_within_its_bound(engines, tmp_path, name):
-    technique = techniques()[name]
-    text = (GLSL / f"{name}.comp").read_text(encoding="utf-8")
-    elsewhere = re.search(r"//   agrees +.*?(tests/\S+\.py)", text)
-    if elsewhere:
-        # What holds on land need not hold on noise: then a test of its own says by how much.
-        assert name in (GLSL.parent / elsewhere.group(1)).read_text(encoding="utf-8")
-        return
-    stated = re.search(r"//   agrees +(?:to the last bit|.*?within ([\d.e+-]*\d))", text)
-    assert stated, "its header says: agrees to the last bit, or: agrees within 1e-5, or which test says it"
-    sketch = sketch_of(tmp_path, name)
-    fragment, compute = engines
-    for what, variant in variants(sketch, technique):
-        for output in outputs_of(technique):
-            values = [engine.read(variant, f"under_test:{output.name}") for engine in (fragment, compute)]
-            if stated.group(1):
-                np.testing.assert_allclose(values[1], values[0], atol=float(stated.group(1)), err_msg=what)
-            else:
-                assert_same_bits(values[1], values[0], f"{name}:{output.name} with {what}")
-
-
 def test_nothing_is_left_out():
     texts = {
         p.relative_to(GLSL).with_suffix("").as_posix()
@@ -146,9 +111,3 @@ def test_nothing_is_left_out():
         if "#pragma kernel" in p.read_text()
     }
     assert {n for n in texts if not n.startswith("sketches/")} == set(KERNELS)
-    companions = {
-        p.relative_to(GLSL).with_suffix("").as_posix()
-        for p in GLSL.rglob("*.comp")
-        if "#pragma compute" in p.read_text()
-    }
-    assert companions == set(WITH_COMPANION)

@@ -434,19 +434,19 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
     assert np.median(found) == pytest.approx(1 + np.log10(np.sqrt(2)) / 4, abs=0.05)  # of two numbers a texel
 
 
-# ── the companion ────────────────────────────────────────────────────────────
+# ── the fast variant ────────────────────────────────────────────────────────────
 
 
-def test_a_companion_makes_the_land_where_there_is_compute(any_engine, sketch_of):
+def test_the_fast_variant_makes_the_land_where_there_is_compute(any_engine, sketch_of):
     sketch = sketch_of((64, 64))
     any_engine.read(sketch, "land")
     assert (any_engine.ran == ["land"]) == any_engine.info.compute
     any_engine.read(sketch, "land", steps={"land.spectrum": 3})
-    assert "land.spectrum" in any_engine.ran, "turns are not shown by the companion"
+    assert "land.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])
-def test_the_companion_is_the_passes_at_every_size(ctx, sketch_of, side):
+def test_the_fast_variant_is_the_passes_at_every_size(ctx, sketch_of, side):
     """Sides of every number of bits, beside one that is longer and one that is shorter."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
@@ -457,7 +457,7 @@ def test_the_companion_is_the_passes_at_every_size(ctx, sketch_of, side):
                 np.testing.assert_allclose(fast.read(sketch, "land"), slow.read(sketch, "land"), atol=3e-6)
 
 
-def test_sides_too_long_for_the_companion_are_refused(any_engine, sketch_of):
+def test_sides_too_long_for_the_fast_variant_are_refused(any_engine, sketch_of):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     with pytest.raises(PlaygroundError, match="MiB; 2048 at most"):

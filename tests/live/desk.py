@@ -10,7 +10,6 @@ import imgui_bundle
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
-from playground.live import widgets
 from playground.live.actions import Actions
 from playground.live.drops import draw_drops
 from playground.live.keymap import draw_keymap
@@ -54,15 +53,12 @@ class Bare:
             (imgui, "drag_float"),
             (imgui, "slider_float"),
             (imgui, "slider_int"),
-            (imgui, "combo"),
+            (imgui, "drag_int"),
+            (imgui, "input_double"),
             (imgui, "tree_node_ex"),
             (imgui, "collapsing_header"),
         ):
             self._watch(owner, name)
-        tables = widgets._SLIDE, widgets._SLIDE_WHOLE, widgets._DRAG, widgets._DRAG_WHOLE
-        self._tables = [(table, dict(table)) for table in tables]
-        for table in tables:
-            table.update({count: self._watched_form(draw) for count, draw in table.items()})
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.quits = False
@@ -167,8 +163,6 @@ class Bare:
         """End it; the engine is its owner's."""
         for owner, name, draw in self._watched:
             setattr(owner, name, draw)
-        for table, before in self._tables:
-            table.update(before)
         self.actions.see.release()
         self.session.release()
         imgui.destroy_context(self.context)

@@ -145,6 +145,67 @@ def test_what_was_started_is_waited_for_and_gets_the_words_as_they_are(
     assert started[0].returncode == 0, "it was waited for"
 
 
+ODD = [
+    "my hills.glsl",
+    "it's.glsl",
+    'say "land".glsl',
+    "$(touch owned).glsl",
+    "`touch owned`.glsl",
+    "a;touch owned;.glsl",
+    "two\nlines\ttab.glsl",
+    "back\\slash$HOME${PWD}*.glsl",
+    "-n {line} {file}.glsl",
+]
+TELLS = "import pathlib, sys; pathlib.Path('told.txt').write_text(sys.argv[1])"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs sh")
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize(
+    "script",
+    [
+        "python {mark}",
+        'python "{mark}"',
+        "python '{mark}'",
+        'true "it\'s" && python {mark} #',
+        "python \"$(printf %s '{mark}')\"",
+        'python "$(printf "%s" "{mark}")"',
+    ],
+)
+def test_a_script_never_reads_the_file_s_name(tmp_path: Path, script: str, name: str) -> None:
+    file = tmp_path / name
+    (tmp_path / "tells").write_text(TELLS)
+    whole = script.replace("python", f"{sys.executable} tells").replace("{mark}", "{file}")
+    ways = (("sh", "-c", whole), ("sh", "-ec", whole, "sh", "more"), ("env", "A=b c", "sh", "-c", whole))
+    for words in ways[: 3 if name == ODD[0] else 1]:
+        command = Editor(words).command(file, 3)
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, ""), command
+        assert (tmp_path / "told.txt").read_text() == str(file)
+        assert not (tmp_path / "owned").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs sh")
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("script", ["tells {file}", 'tells "{file}"', "tells '{file}'"])
+def test_a_command_in_one_word_has_the_name_quoted(tmp_path: Path, script: str, name: str) -> None:
+    """As of a terminal multiplexer, which hands the word to a shell itself."""
+    (tmp_path / "tells").write_text(TELLS)
+    word = Editor(("tmux", "new-window", script)).command(tmp_path / name)[2]
+    done = subprocess.run(["sh", "-c", f"{sys.executable} {word}"], cwd=tmp_path, timeout=60)
+    assert done.returncode == 0 and (tmp_path / "told.txt").read_text() == str(tmp_path / name)
+    assert not (tmp_path / "owned").exists()
+
+
+@pytest.mark.parametrize(
+    "script", ['bash -c "vim {file}"', "eval vim {file}", "true; su me -c 'vim {file}'", "/bin/sh -lc {file}"]
+)
+def test_a_script_in_a_script_is_refused(tmp_path: Path, script: str) -> None:
+    opener = Opener()
+    assert not opener.open(Editor(("sh", "-c", script)), tmp_path / "a.glsl")
+    assert "hands {file} to a second shell" in opener.notes.popleft()
+
+
 def test_an_editor_that_fails_is_a_sentence(tmp_path: Path) -> None:
     woken: list[int] = []
     opener = Opener(lambda: woken.append(1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Sl
 from playground.lessons.pictures import broken, draw
 from playground.lessons.read import read_lesson
 from playground.live.edits import Draft, Edits
+from playground.live.framing import framed
 from playground.live.lesson.faults import BROKEN, MENDED, TOLD
 from playground.live.lesson.reading import BOTH
 from playground.live.lesson.scene import edits_of, map_of, steps_of
@@ -72,10 +74,9 @@ def as_seen(desk: Desk) -> np.ndarray:
 
 
 def of_lesson(desk: Desk, scene: Scene) -> np.ndarray:
-    """Return a picture as a book has it, at the size of the view."""
-    from dataclasses import replace
-
-    return draw(desk.session.engine, replace(scene, pixels=(48, 32))).array
+    """Return a picture as a book has it, at the size of the view, its sides kept."""
+    seen = framed(scene.sketch, scene.time, scene.pixels, (48, 32))
+    return draw(desk.session.engine, replace(scene, sketch=seen, pixels=(48, 32))).array
 
 
 def scenes_of(lesson) -> list[Scene]:
@@ -101,25 +102,18 @@ def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path,
         assert made.with_values({}) == scene.sketch.with_values({}), scene
 
 
-def test_a_room_narrower_than_the_picture_opens_the_view_and_a_wider_one_leaves_it(tmp_path, monkeypatch):
-    shelved(monkeypatch, tmp_path)
+def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_picture(desk):
+    desk.open(show=False)
+    session = desk.actions.session
     scene = read_lesson("halving").named["land"].scene
-    file = load(Path(scene.sketch.file))
-    assert edits_of(scene, file, (1280, 720)).camera is None
-    assert edits_of(scene, file, (1600, 700)).camera is None
-    opened = edits_of(scene, file, (640, 720)).camera
-
-    def across(degrees: float, aspect: float) -> float:
-        return aspect * np.tan(np.radians(degrees) / 2)
-
-    assert across(opened.field_of_view, 640 / 720) == pytest.approx(
-        across(file.camera.field_of_view, 640 / 360), rel=1e-3
-    )
+    desk.reading.stage.show(replace(scene, pixels=(300, 300)), ("land", 0))
+    assert session.framed_for == (300, 300)
+    desk.reading.stage.go_back()
+    assert session.framed_for == (1280, 720)
 
 
 def test_every_picture_in_the_view_is_that_of_the_lesson(desk):
     desk.open(show=False)
-    desk.reading.stage.room = None
     for page in range(5):
         desk.reading.go(page)
         for each in desk.reading.section.blocks:

@@ -170,6 +170,17 @@ def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
     assert COUNT in bare.places and LEVEL not in bare.places
 
 
+def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare, folder: Path) -> None:
+    bare.session.set("height.level", 1 / 3)
+    bare.turn(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.turn(5)
+    assert "set = { level = 0.33333334 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert "new value" not in said(bare), "the file says what was set, so nothing gives way"
+    bare.actions.undo()
+    assert value(bare, "level") == 0.6
+
+
 def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, folder: Path) -> None:
     bare.click("##preset")
     bare.click("high")
@@ -252,6 +263,8 @@ def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) 
         bare.press(False)
         assert not bare.actions.keymap_shown
         bare.key(imgui.Key.escape)
+        assert not bare.quits and "Ctrl+Q" in said(bare)
+        bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
         assert bare.quits
         bare.close()
 

@@ -13,11 +13,10 @@ from playground.live.chance import at_random, mutated
 from playground.live.edits import Draft, Edits
 from playground.live.history import History, applied, edits_of, in_words, state_of
 from playground.live.listing import Filter, Listing, set_words
-from playground.live.numbers import tidied
 from playground.live.typed import read_typed
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Widget
-from playground.sketch.values import coerce
+from playground.sketch.values import coerce, tidied
 
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")

@@ -11,10 +11,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, SketchError, TrialTimeout
+from playground.images.files import write_png
 from playground.live.files import files_of
+from playground.live.framing import framed
 from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
-from playground.sketch.model import Camera
+from playground.sketch.model import DEFAULT_PICTURE, Camera
 
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope
@@ -222,7 +224,8 @@ def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_re
     assert session.hasty
     saved = session.read()
     assert saved is not None and session.sketch is not None
-    expected = any_engine.render(session.sketch, size=SIZE).array
+    seen = framed(session.sketch, 0.0, DEFAULT_PICTURE, SIZE)
+    expected = any_engine.render(seen, size=SIZE).array
     np.testing.assert_array_equal(saved.array[..., :3], expected[..., :3], "what is saved is drawn in full")
     session.release()
 
@@ -422,7 +425,7 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
         patch.setattr(bench.session.engine, "draw", fails)
         bench.session.set("height.level", 0.5)
         np.testing.assert_array_equal(bench.picture(), before)
-        assert "a fault of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
+        assert "a bug of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
     assert "the playground itself failed" in caplog.text
     bench.session.set("height.level", 0.6)
     bench.picture()
@@ -494,3 +497,24 @@ def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(benc
     np.testing.assert_array_equal(bench.picture(), at_eight)
     session.reset_values()
     np.testing.assert_array_equal(bench.picture(), whole)
+
+
+PLAIN = """#version 330
+uniform sampler2D tex;  //! file("x.png")
+out vec4 colour;
+void main() { colour = texelFetch(tex, ivec2(0), 0); }
+"""
+
+
+def test_the_image_of_a_plain_shader_is_watched_and_its_change_shows(any_engine: Engine, tmp_path: Path):
+    for level in (50, 200):
+        write_png(tmp_path / "x.png", np.full((2, 2, 4), level, np.uint8))
+        if level == 50:
+            (tmp_path / "look.frag").write_text(PLAIN)
+            session = Session(any_engine, tmp_path / "look.frag")
+            assert tmp_path / "x.png" in session.files
+        session.reload()
+        session.frame(SIZE)
+        frame = session.read()
+        assert frame is not None and frame.array[0, 0, 0] == level
+    session.release()

@@ -179,7 +179,7 @@ def test_the_mouse_and_the_keys(app: App) -> None:
     screen.do("key", "Tab")
     wide = app.wait(lambda now: now["picture"] != first)
     assert wide["draws"] > 0
-    screen.do("key", "Escape")
+    screen.do("key", "ctrl+q")
     assert app.ended() == 0, app.complaint()
 
 
@@ -250,7 +250,7 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         assert soon(lambda: np.array_equal(screen.pixels()[:50, :PANEL], panel[:50])), "and its texts"
         save_in_place(app.sketch / "land.glsl", LAND.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now: now["picture"] not in ("", nearer) and not now["error"])
-        screen.do("mousemove", PANEL + 200, 200, "key", "Escape")
+        screen.do("mousemove", PANEL + 200, 200, "key", "ctrl+q")
         assert app.ended() == 0, app.complaint()
     finally:
         app.close()
@@ -290,7 +290,7 @@ def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     used = cpu_seconds(app.process.pid)
     assert draws_nothing(2.0)
     assert cpu_seconds(app.process.pid) - used < 0.5
-    app.screen.do("key", "Escape")
+    app.screen.do("key", "ctrl+q")
     assert app.ended() == 0, app.complaint()
 
 

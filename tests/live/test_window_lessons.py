@@ -72,7 +72,7 @@ def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
         screen.do("key", "F2")
         window.wait(lambda _: not json.loads(kept.read_text())["shown"])
         assert json.loads(kept.read_text())["sections"] == {"halving": 1}
-        screen.do("key", "Escape")
+        screen.do("key", "ctrl+q")
         assert window.ended() == 0, window.complaint()
     finally:
         window.close()
@@ -94,7 +94,7 @@ def test_lessons_that_were_closed_stay_closed_and_leave_no_trace_in_sketches(
         screen.do("key", "F2", "sleep", 0.2, "key", "Prior")
         window.wait(lambda _: json.loads(kept.read_text())["sections"] == {"halving": 0})
         window.wait(lambda now: now["runs"].get("light"))  # the lesson's land
-        screen.do("key", "Escape")
+        screen.do("key", "ctrl+q")
         assert window.ended() == 0, window.complaint()
         memories = [json.loads(f.read_text())["sketch"] for f in kept.parent.rglob("sessions/*.json")]
         assert memories in ([], [str(folder / "sketch.toml")]), "none of the lesson's sketches"

@@ -88,7 +88,7 @@ def test_a_value_is_typed_undone_and_saved(screen: Screen, folder: Path) -> None
         program.wait(lambda now: now["picture"] == first)
         screen.do("key", "ctrl+s")
         program.wait(lambda now: file.read_text(encoding="utf-8") == SKETCH)
-        screen.do("key", "Escape")
+        screen.do("key", "ctrl+q")
         assert program.ended() == 0, program.complaint()
     finally:
         program.close()
@@ -108,7 +108,7 @@ def test_it_fills_the_screen_and_comes_back(screen: Screen, folder: Path) -> Non
             screen.do("mousemove", 600, 300, "key", "F11")
             program.wait(lambda now, old=before: now["picture"] != old)
             program.wait(lambda now, so=filled: full() == so)
-        screen.do("mousemove", 600, 300, "key", "Escape")
+        screen.do("mousemove", 600, 300, "key", "ctrl+q")
         assert program.ended() == 0, program.complaint()
     finally:
         program.close()

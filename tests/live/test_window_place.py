@@ -81,7 +81,7 @@ class Windows:
         return tuple(int(n) for n in re.findall(r"(?:X|Y|WIDTH|HEIGHT)=(-?\d+)", found))
 
     def end(self) -> None:
-        self.screen.do("key", "Escape")
+        self.screen.do("key", "ctrl+q")
         assert self.program.ended() == 0
         self.program.close()
 

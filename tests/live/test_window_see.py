@@ -124,5 +124,5 @@ def test_all_of_it_by_keys_and_by_mouse(screen: Screen, program: Program) -> Non
     late = program.wait(lambda found: found["picture"] != now)["picture"]
     screen.do("mousemove", 620, 300, "type", ",")
     program.wait(lambda found: found["picture"] != late)
-    screen.do("key", "Escape")
+    screen.do("key", "ctrl+q")
     assert program.ended() == 0, program.complaint()

@@ -21,10 +21,12 @@ from playground.reduce.faults import Differs, Fault, NotFinite, OffReference, Re
 from playground.reduce.lay import lay_flat
 from playground.reduce.probe import Probe
 from playground.reduce.search import Search
+from playground.reduce.variant import record_text
 from playground.reduce.worker import Worker
 from playground.shots.references import reference_path
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
+from playground.sketch.variant_record import NAME
 
 ROOT = Path(__file__).resolve().parents[2]
 HEIGHT = '#pragma kernel(output = "height:r32f")\n'
@@ -206,7 +208,7 @@ def test_another_message_is_another_failure():
 
 # ── two ways to draw ─────────────────────────────────────────────────────────
 
-COMPANION = """#pragma compute(groups = "(size.x + 7) // 8, (size.y + 7) // 8")
+VARIANT = """#pragma compute(groups = "(size.x + 7) // 8, (size.y + 7) // 8")
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (texel.x >= size.x || texel.y >= size.y) return;
@@ -218,16 +220,19 @@ void main() {
 
 
 @pytest.mark.slow
-def test_where_a_companion_disagrees_only_its_fault_stays(sketch, worker, tmp_path):
+def test_where_a_fast_variant_disagrees_only_its_fault_stays(sketch, worker, tmp_path):
     path = sketch(f"{HEIGHT}float kernel(ivec2 texel) {{ return sin(float(texel.x) * 0.7) * 0.25; }}\n")
-    (path.parent / "one.comp").write_text(COMPANION)
+    (path.parent / "one.comp").write_text(VARIANT)
+    (path.parent / NAME).write_text(
+        record_text({"one.comp": ((path.parent / "one.glsl").read_text(), VARIANT)})
+    )
     if not worker.info.compute:
         pytest.skip("no compute shaders here")
     fault = Differs((Side(driver="fragment"), Side(driver="compute")), ("fragment", "compute"))
     search = shrink(path, fault, worker, tmp_path / "scratch")
-    companion = search.best.live[-1].companion
-    assert "if (texel.x > 5) h" in companion
-    assert "sin" not in companion
+    variant = search.best.live[-1].variant
+    assert "if (texel.x > 5) h" in variant
+    assert "sin" not in variant
     assert "sin" not in text_of(search)
 
 
@@ -472,12 +477,12 @@ def test_ctrl_c_from_a_terminal_keeps_the_smallest(sketch, tmp_path):
     assert "sqrt" in (tmp_path / "land-reduced" / "height.glsl").read_text()
 
 
-WITH_COMPANIONS = ("soft_cone", "fault_formation", "splat")
+WITH_VARIANTS = ("soft_cone", "fault_formation", "splat")
 
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=[] if n in WITH_COMPANIONS else [pytest.mark.slow]) for n in shipped_sketches()],
+    [pytest.param(n, marks=[] if n in WITH_VARIANTS else [pytest.mark.slow]) for n in shipped_sketches()],
 )
 def test_a_shipped_sketch_laid_flat_is_a_sketch_with_the_same_passes(name, tmp_path):
     case = lay_flat(load(name), frame=(64, 36))

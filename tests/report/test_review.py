@@ -6,6 +6,7 @@ import http.client
 import json
 import re
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -242,6 +243,57 @@ def test_a_request_without_length_or_too_long_is_refused(client: Client) -> None
         assert answer.startswith(b"HTTP/1.1 413 "), "and the connection is closed"
 
 
+def test_json_nested_deeply_is_refused(client: Client) -> None:
+    body = ("[" * 100_000 + "]" * 100_000).encode()
+    connection = http.client.HTTPConnection("127.0.0.1", client.review.port, timeout=GENEROUS)
+    headers = {"X-Shots-Token": client.review.token}
+    connection.request("POST", f"/{client.review.token}/act", body, headers)
+    assert connection.getresponse().status == 400
+    connection.close()
+
+
+def sent(client: Client, text: str) -> bytes:
+    """Send a request as it is, without a body; return the answer up to its end."""
+    with socket.create_connection(("127.0.0.1", client.review.port), timeout=GENEROUS) as connection:
+        connection.sendall(text.encode())
+        answer = b""
+        while more := connection.recv(4096):
+            answer += more
+    return answer
+
+
+def test_who_asks_is_looked_at_before_the_body_is_waited_for(client: Client) -> None:
+    port, token = client.review.port, client.review.token
+    promised = "Content-Length: 100000\r\n\r\n"  # of which nothing comes
+    for path, host, more in (
+        ("/wrong/act", f"127.0.0.1:{port}", f"X-Shots-Token: {token}\r\n"),
+        (f"/{token}/act", "evil.example", f"X-Shots-Token: {token}\r\n"),
+        (f"/{token}/act", f"127.0.0.1:{port}", "X-Shots-Token: wrong\r\n"),
+        (f"/{token}/act", f"127.0.0.1:{port}", f"X-Shots-Token: {token}\r\nOrigin: http://evil.example\r\n"),
+    ):
+        head = f"POST {path} HTTP/1.1\r\nHost: {host}\r\n{more}{promised}"
+        assert sent(client, head).startswith(b"HTTP/1.1 403 ")
+    many = f"POST /{token}/act HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {'9' * 5000}\r\n\r\n"
+    assert sent(client, many).startswith(b"HTTP/1.1 413 ")
+
+
+def test_a_connection_that_breaks_says_nothing(client: Client, capfd: pytest.CaptureFixture[str]) -> None:
+    linger = struct.pack("ii", 1, 0)  # closing resets the connection
+    head = f"Host: 127.0.0.1:{client.review.port}\r\nX-Shots-Token: {client.review.token}\r\n"
+    for request in (
+        f"GET /{client.review.token}/ HTTP/1.1\r\n{head}\r\n",
+        f"POST /{client.review.token}/act HTTP/1.1\r\n{head}Content-Length: 500\r\n\r\n{{",
+        f"POST /{client.review.token}/act HTTP/1.1\r\n{head}",
+    ):
+        for _ in range(5):
+            with socket.create_connection(("127.0.0.1", client.review.port), timeout=GENEROUS) as connection:
+                connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
+                connection.sendall(request.encode())
+    before = files()
+    assert client.ask("GET", "")[0] == 200 and files() == before
+    assert capfd.readouterr().err == ""
+
+
 # What it does
 
 
@@ -358,6 +410,20 @@ def test_done_ends_it_once_it_is_answered(leave) -> None:
         serving.join(GENEROUS)
         assert not serving.is_alive()
         assert review.summary() == ["nothing was accepted"]
+
+
+def test_done_ends_it_also_where_nobody_waits_for_the_answer(leave, capfd) -> None:
+    leave(actual=picture(1))
+    with Review(RESULTS) as review:
+        serving = threading.Thread(target=review.serve)
+        serving.start()
+        with socket.create_connection(("127.0.0.1", review.port), timeout=GENEROUS) as connection:
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            head = f"POST /{review.token}/done HTTP/1.1\r\nHost: 127.0.0.1:{review.port}\r\n"
+            rest = f"X-Shots-Token: {review.token}\r\nContent-Length: 2\r\n\r\n{{}}"
+            connection.sendall((head + rest).encode())
+        serving.join(GENEROUS)
+        assert not serving.is_alive() and capfd.readouterr().err == ""
 
 
 def test_a_port_that_is_taken_is_told(leave) -> None:

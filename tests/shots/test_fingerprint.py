@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 
 from playground._version import __version__
-from playground.engine.drawn import compiled_text, rounded
+from playground.engine.drawn import rounded
 from playground.engine.engine import Engine
 from playground.gpu.build import processor_in
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
+from playground.sketch.canonical import compiled_text
 from playground.sketch.load import load
 
 from .conftest import OURS

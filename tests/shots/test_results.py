@@ -147,7 +147,13 @@ def test_what_is_no_record_is_refused_by_name(change: dict[str, object], said: s
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("", "no JSON"), ("[]", "expected an object"), ("{}", "expected an object with a 'format'")],
+    [
+        ("", "no JSON"),
+        ("[]", "expected an object"),
+        ("{}", "expected an object with a 'format'"),
+        ("[" * 100_000, "nested deeper than 64"),
+        ('{"format": 1, "sketch": ' + "[" * 900 + "]" * 900 + "}", "nested deeper than 64"),
+    ],
 )
 def test_what_is_no_json_is_refused(text: str, said: str) -> None:
     with pytest.raises(DataError, match=said):

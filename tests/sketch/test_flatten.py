@@ -12,6 +12,7 @@ from playground.sketch import flatten as module
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flatten import Fed, Leaf, Loop, Ref, flatten, leaves_of
+from playground.sketch.model import VARIANTS
 from playground.sketch.wiring import (
     initial_names,
     input_names,
@@ -61,10 +62,10 @@ def make(folder):
     return make_
 
 
-def wires(sketch, *, compute: bool = False, **options) -> dict[str, dict[str, str]]:
+def wires(sketch, *, variants=(), **options) -> dict[str, dict[str, str]]:
     """Return pass → input → what feeds it, as text, for every leaf."""
     found = {}
-    for leaf in leaves_of(flatten(sketch, compute=compute, **options).nodes):
+    for leaf in leaves_of(flatten(sketch, variants=variants, **options).nodes):
         found[leaf.path] = {
             name: str(s)
             if isinstance(s, Ref)
@@ -96,7 +97,7 @@ def test_a_wire_names_a_pass_and_perhaps_an_output(make):
 
 def test_later_passes_may_be_wired_and_then_run_first(make):
     sketch = make(passes("light light; inputs = { height = 'late' }", "late h"))
-    assert [n.path for n in flatten(sketch, compute=False).nodes] == ["late", "light", "view"]
+    assert [n.path for n in flatten(sketch).nodes] == ["late", "light", "view"]
 
 
 def test_a_missing_wire_lists_the_candidates(make):
@@ -136,7 +137,7 @@ def test_any_order_of_the_file_runs_each_pass_after_what_it_reads(make):
         chance.shuffle(order)
         specs = [f"p{i} water; inputs = {{ height = 'p{reads[i]}' }}" if i else "p0 h" for i in order]
         sketch = make(passes(*specs))
-        flat = flatten(sketch, compute=False)
+        flat = flatten(sketch)
         place = {node.path: k for k, node in enumerate(flat.nodes)}
         assert all(place[f"p{a}"] > place[f"p{b}"] for a, b in reads.items()) and len(place) == count + 1
 
@@ -177,7 +178,7 @@ def test_outputs_go_down_to_leaves_and_paths_go_inside(make):
         "height": "height.deep.core.high:height",
         "water": "height.deep.core.low:height",
     }
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     for text, wanted in (
         ("height", "height.deep.core.low:height"),
         ("height:water", "height.deep.core.high:water"),
@@ -206,7 +207,7 @@ def test_outputs_go_down_to_leaves_and_paths_go_inside(make):
 
 def test_a_path_s_own_name_is_its_output_before_the_first(make):
     make.folder.write("water2.glsl", kernel("height:r32f, water:r32f"))
-    flat = flatten(make(passes("a t"), t=passes("water water2")), compute=False)
+    flat = flatten(make(passes("a t"), t=passes("water water2")))
     assert str(flat.ref("a.water", "s")) == "a.water:water"
 
 
@@ -253,7 +254,7 @@ def test_a_loop_feeds_its_own_output_back(make):
         "h h", "e erode; repeat = '2 + 1'; feedback = { height = 'height' }; inputs = { height = 'h' }"
     )
     sketch = make(body, erode=ERODE)
-    loop = next(n for n in flatten(sketch, compute=False).nodes if isinstance(n, Loop))
+    loop = next(n for n in flatten(sketch).nodes if isinstance(n, Loop))
     assert (loop.path, loop.repeat) == ("e", "2 + 1")
     assert loop.feedback == (("height", Ref("h", "height"), Ref("e.flow", "height")),)
     assert [n.path for n in loop.body] == ["e.rain", "e.flow"]
@@ -270,7 +271,7 @@ def test_loops_nest_and_start_from_outside(make):
         "m middle; repeat = 3; feedback = { height = 'height' }; inputs = { height = 'late' }", "late h"
     )
     sketch = make(body, erode=ERODE, middle=middle)
-    nodes = flatten(sketch, compute=False).nodes
+    nodes = flatten(sketch).nodes
     assert [n.path for n in nodes] == ["late", "m", "view"]
     outer = nodes[1]
     inner = next(n for n in outer.body if isinstance(n, Loop))
@@ -309,12 +310,12 @@ def test_a_repeat_may_read_time_sizes_and_parameters(make):
         make(body, erode=ERODE)
 
 
-# Companions
+# Fast variants
 
 
 @pytest.fixture
-def doubled(make):
-    """A technique of two passes with a companion, and one around it."""
+def doubled(make, trusted_variants):
+    """A technique of two passes with a compute variant, and one around it."""
     make.folder.write(
         "fast.comp",
         '#pragma compute(groups = "1, 1")\nuniform float rise;\nuniform sampler2D height; //! input\n',
@@ -328,11 +329,11 @@ def doubled(make):
     return doubled_
 
 
-def test_a_companion_stands_for_its_technique_where_there_is_compute(doubled):
+def test_a_fast_variant_stands_in_for_its_technique_where_it_can_run(doubled):
     sketch = doubled(passes("h h", "t fast; set = { rise = 3 }", "l light"))
     assert set(wires(sketch)) == {"h", "t.a", "t.b", "l", "view"}
-    assert wires(sketch, compute=True)["t"] == {"height": "h:height"}
-    flat = flatten(sketch, compute=True)
+    assert wires(sketch, variants=VARIANTS)["t"] == {"height": "h:height"}
+    flat = flatten(sketch, variants=VARIANTS)
     leaf = next(leaf for leaf in leaves_of(flat.nodes) if leaf.path == "t")
     assert leaf.kernel.kind == "compute" and leaf.values == (("rise", 3.0),)
     assert str(flat.ref("t:water", "s")) == "t:water"
@@ -347,25 +348,26 @@ def test_a_companion_stands_for_its_technique_where_there_is_compute(doubled):
         passes("h h", "t around; inputs = { 'f.b.height' = 'h' }", "l light"),
     ],
 )
-def test_a_companion_steps_back_where_something_is_wired_to_what_is_inside(doubled, body):
+def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(doubled, body):
     sketch = doubled(body)
-    found = wires(sketch, compute=True)
+    found = wires(sketch, variants=VARIANTS)
     assert found == wires(sketch)
     known = set(found)
     assert all(s == "nothing" or s.partition(":")[0] in known for w in found.values() for s in w.values())
 
 
-def test_a_companion_steps_back_for_a_path_that_is_asked_for(doubled):
+def test_a_fast_variant_steps_back_for_a_path_that_is_asked_for(doubled):
     sketch = doubled(passes("h h", "t around", "l light"))
-    assert "t.f" in wires(sketch, compute=True) and "t.f.a" not in wires(sketch, compute=True)
-    assert wires(sketch, compute=True, opened=("t.f.a",)) == wires(sketch)
+    assert "t.f" in wires(sketch, variants=VARIANTS) and "t.f.a" not in wires(sketch, variants=VARIANTS)
+    assert wires(sketch, variants=VARIANTS, opened=("t.f.a",)) == wires(sketch)
     assert (
-        str(flatten(sketch, compute=True, opened=("t.f.b:water",)).ref("t.f.b:water", "s")) == "t.f.b:water"
+        str(flatten(sketch, variants=VARIANTS, opened=("t.f.b:water",)).ref("t.f.b:water", "s"))
+        == "t.f.b:water"
     )
-    assert "t.f" in wires(sketch, compute=True, opened=("t.f", "h", "nothing.there"))
+    assert "t.f" in wires(sketch, variants=VARIANTS, opened=("t.f", "h", "nothing.there"))
 
 
-def test_a_companion_with_a_parameter_of_its_own_is_refused(make, doubled):
+def test_a_fast_variant_with_a_parameter_of_its_own_is_refused(make, doubled):
     path = make.folder.write("fast.comp", '#pragma compute(groups = "1, 1")\nuniform float rize;\n')
     fast = passes("h h", "t fast")
     doubled_text = "[[pass]]\nname='a'\nuse='./h'\n[parameters]\nrise='a.rise'\n"
@@ -385,7 +387,7 @@ def test_leaves_have_the_values_of_their_paths(make):
     sketch = make(passes("height outer", "light light"), **NESTED).with_values(
         {"height.deep.rise": 7, "height.deep.top.rain": 2}
     )
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     assert flat.values == values_of(sketch)
     for leaf in leaves_of(flat.nodes):
         assert leaf.folder == sketch.folder
@@ -396,8 +398,8 @@ def test_leaves_have_the_values_of_their_paths(make):
 
 def test_a_slider_changes_values_and_nothing_else(make):
     sketch = make(passes("height outer", "light light"), **NESTED)
-    before = flatten(sketch, compute=False)
-    after = flatten(sketch.with_values({"height.deep.rise": 1.25}), compute=False)
+    before = flatten(sketch)
+    after = flatten(sketch.with_values({"height.deep.rise": 1.25}))
     assert wires(sketch) == wires(sketch.with_values({"height.deep.rise": 1.25}))
     changed = [
         a.path
@@ -405,10 +407,8 @@ def test_a_slider_changes_values_and_nothing_else(make):
         if a.values != b.values
     ]
     assert changed == ["height.deep.core.low"]
-    assert flatten(sketch, compute=False).values == before.values
-    assert isinstance(before.nodes[0], Leaf) and hash(before.nodes) == hash(
-        flatten(sketch, compute=False).nodes
-    )
+    assert flatten(sketch).values == before.values
+    assert isinstance(before.nodes[0], Leaf) and hash(before.nodes) == hash(flatten(sketch).nodes)
 
 
 def test_an_edited_file_is_wired_anew(make):
@@ -417,10 +417,12 @@ def test_an_edited_file_is_wired_anew(make):
     assert (first["light"]["height"], second["light"]["height"]) == ("b:height", "a:height")
 
 
-@pytest.mark.parametrize(("name", "compute"), list(itertools.product(shipped_sketches(), [False, True])))
-def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, compute):
+@pytest.mark.parametrize(
+    ("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS]))
+)
+def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()
-    for node in flatten(load(name), compute=compute).nodes:
+    for node in flatten(load(name), variants=variants).nodes:
         inside = {leaf.path for leaf in leaves_of([node])}
         reads = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
         assert reads - inside <= done
@@ -430,7 +432,7 @@ def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, compute):
 def test_a_nested_sketch_is_flattened_in_passing():
     # The live window does this for each frame.
     sketch = load()
-    flatten(sketch, compute=True)
+    flatten(sketch, variants=VARIANTS)
     for i in range(20):
-        flatten(sketch.with_values({"relief": i}), compute=True)
+        flatten(sketch.with_values({"relief": i}), variants=VARIANTS)
     assert module._shape.cache_info().hits >= 20

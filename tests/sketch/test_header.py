@@ -158,6 +158,12 @@ def test_a_tooltip_begins_where_the_calls_end(parameter, note, kind, tooltip):
         assert found.unit == 'm (up), "z"'
 
 
+def test_the_parts_of_a_vector_have_names(parameter):
+    found = parameter('uniform vec4 a; //! slider(0, 1) parts("SW", "SE", "NW", "NE") Heights')
+    assert found.parts == ("SW", "SE", "NW", "NE") and found.tooltip == "Heights"
+    assert parameter("uniform vec4 a; //! slider(0, 1)").parts == ()
+
+
 def test_brackets_and_commas_in_a_menu_s_names(parameter):
     found = parameter('uniform int a = 0; //! menu("plain (thesis)", "a, b", "c) d") Which')
     assert found.widget.choices == ("plain (thesis)", "a, b", "c) d") and found.tooltip == "Which"
@@ -206,7 +212,7 @@ def test_a_title_is_the_file_s_first_sentence(parse, tmp_path, text, title):
     assert found.title == title
 
 
-def test_sources_draws_and_companions(parse):
+def test_sources_draws_and_compute_variants(parse):
     found = parse('#pragma source("elevation_file", output = "height:r32f")\n')
     assert (found.kind, found.registry, found.outputs[0].name) == ("source", "elevation_file", "height")
     found = parse(
@@ -339,6 +345,13 @@ def test_mistakes_in_a_pragma(refused, text, words):
         ("uniform float a = 0.2; //! angle slider(0, 2)", "two widgets: angle and slider"),
         ('uniform float a = 0.2; //! unit("m", "s")', "one text in quotes"),
         ("uniform float a = 0.2; //! unit()", "one text in quotes"),
+        ('uniform vec2 a; //! parts("x")', 'expected 2 different names, as parts("west", "east")'),
+        ('uniform vec2 a; //! parts("x", "x")', "2 different names"),
+        ('uniform float a; //! slider(0, 1) parts("x")', "parts of 'a', a float: expected a vector"),
+        (
+            'uniform vec2 a; //! direction parts("x", "y")',
+            "for a vector of numbers; 'a' is a direction",
+        ),
         ("uniform float a = 0.2; //! colour", "colour is for vec3 or vec4; 'a' is a float"),
         ("uniform vec3 a; //! direction", "direction is for vec2"),
         ("uniform bool a; //! slider(0, 1)", "slider is for numbers"),

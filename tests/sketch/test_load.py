@@ -255,13 +255,13 @@ def test_a_plain_shader_is_the_whole_picture(folder):
     assert [p.name for p in found.graph.passes] == ["view"] and found.samples == 1
 
 
-def test_a_library_file_and_a_lonely_companion_are_sentences(folder):
+def test_a_library_file_and_a_lonely_variant_are_sentences(folder):
     with pytest.raises(SketchError, match="a library file"):
         load(folder.write("lib.glsl", "float f;\n"))
-    with pytest.raises(SketchError, match=r"in place of only\.glsl, which is missing"):
+    with pytest.raises(SketchError, match=r"in place of only\.glsl or only\.toml, which is missing"):
         load(folder.write("only.comp", '#pragma compute(groups = "1, 1")\n'))
     folder.write("land.comp", '#pragma compute(groups = "1, 1")\nuniform float rise;\n')
-    assert load(folder.path / "land.comp").graph.find("height").technique.companion is not None
+    assert load(folder.path / "land.comp").graph.find("height").technique.variants[0].kind == "compute"
 
 
 # Mistakes
@@ -513,7 +513,7 @@ def test_a_technique_stays_in_the_folder_and_the_library(folder, tmp_path: Path,
     folder.refused("lies outside", 4, body=f'[[pass]]\nname = "height"\nuse = "{use}"\n')
 
 
-def test_a_companion_stays_there_too(folder, tmp_path: Path):
+def test_a_fast_variant_stays_there_too(folder, tmp_path: Path):
     (tmp_path / "land.comp").write_text('#pragma compute(groups = "1, 1")\n')
     (folder.path / "land.comp").symlink_to(tmp_path / "land.comp")
     with pytest.raises(SketchError, match="lies outside"):

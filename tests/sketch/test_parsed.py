@@ -71,19 +71,19 @@ def test_a_link_that_leads_elsewhere_is_seen_though_the_text_is_the_same(files):
     assert any(file.endswith("two.glsl") for file in read(files).source.files)
 
 
-COMPANION = """#pragma compute(groups = "(size.x + 7) / 8, (size.y + 7) / 8")
+VARIANT = """#pragma compute(groups = "(size.x + 7) / 8, (size.y + 7) / 8")
 void main() {}
 """
 
 
-def test_a_kernel_and_its_companion_stay_one_object_until_either_changes(files):
+def test_a_kernel_and_its_variant_stay_one_object_until_either_changes(files):
     path = files / "inner" / "k.glsl"
-    path.with_suffix(".comp").write_text(COMPANION)
+    path.with_suffix(".comp").write_text(VARIANT)
     first = read_kernel(path, files)
-    assert first.companion is not None and read_kernel(path, files) is first
-    path.with_suffix(".comp").write_text(COMPANION.replace("{}", "{ }"))
+    assert first.variants and read_kernel(path, files) is first
+    path.with_suffix(".comp").write_text(VARIANT.replace("{}", "{ }"))
     second = read_kernel(path, files)
-    assert second.companion.source.code != first.companion.source.code
+    assert second.variants[0].technique.source.code != first.variants[0].technique.source.code
     (files / "part.glsl").write_text(PART.replace("1.0", "2.0"))
     third = read_kernel(path, files)
-    assert third.companion == second.companion and "2.0" in third.source.code
+    assert third.variants == second.variants and "2.0" in third.source.code

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from playground.errors import DataError, ShaderError
-from playground.sketch.model import kernels_of
+from playground.sketch.model import VARIANTS, kernels_of
 from playground.sketch.reread import with_texts
+from playground.sketch.variants import standing, trusted
 
 from .conftest import LAND, VIEW
 
@@ -61,21 +64,20 @@ def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
     assert with_texts(sketch, {str(folder.path / "other.glsl"): "not GLSL"}) == sketch
 
 
-def test_a_companion_is_left_out_unless_the_texts_say_the_same(folder, tmp_path):
-    folder.write(
-        "land.comp",
-        """\
-        #pragma compute(groups = "size.x, size.y", local = "1, 1")
-        uniform float rise = 0.5;
-        layout(r32f) uniform writeonly image2D height;
-        void kernel() { }
-        """,
-    )
+def test_a_fast_variant_is_left_out_unless_the_texts_say_the_same(folder):
+    file = folder.write("land.comp", '#pragma compute(groups = "1, 1")\nuniform float rise = 0.5;\n')
     sketch = folder.sketch()
-    assert kernels(sketch)["land"].companion is not None
-    texts = {str(folder.path / "land.glsl"): LAND + "// the same\n"}
-    assert kernels(with_texts(sketch, texts))["land"].companion is None
-    assert kernels(with_texts(sketch, texts, same=True))["land"].companion is not None
+    sketch = replace(sketch, graph=trusted(sketch.graph))
+
+    def runs(texts):
+        kernel = kernels(with_texts(sketch, texts))["land"]
+        return standing(kernel, VARIANTS) is not None
+
+    land = str(folder.path / "land.glsl")
+    assert runs({land: LAND})
+    assert runs({land: LAND + "// the same\n"})
+    assert not runs({land: LAND.replace("0.5", "0.75")})
+    assert not runs({str(file): file.read_text() + "float more;\n"})
 
 
 def test_a_text_that_is_no_kernel_is_refused_in_a_sentence(folder):

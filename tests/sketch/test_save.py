@@ -255,6 +255,25 @@ def test_presets_are_saved_and_saved_over(folder: Path) -> None:
     assert dict(preset.values) == {"height.level": 0.5, "height.kind": 1, "height.on": False}
 
 
+@pytest.mark.parametrize(
+    ("given", "written"),
+    [
+        (float(np.float32(0.1)), "0.1"),
+        (1 / 3, "0.33333334"),
+        (0.7, "0.7"),
+        (float(np.float32(1e-7)), "1e-07"),
+    ],
+)
+def test_a_number_has_the_fewest_digits_that_read_back_as_the_same_float(
+    folder: Path, given: float, written: str
+) -> None:
+    save(load(folder), load(folder).with_values({"height.level": given}))
+    assert f"level = {written}" in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert np.float32(values_of(load(folder))["height.level"]) == np.float32(given)
+    save_preset(load(folder), "one", {"height.level": given})
+    assert f'"height.level" = {written}\n' in (folder / "sketch.toml").read_text(encoding="utf-8")
+
+
 def test_a_file_that_has_changed_meanwhile_is_left_alone(folder: Path) -> None:
     sketch = load(folder)
     path = folder / "sketch.toml"

@@ -35,7 +35,7 @@ float kernel(ivec2 texel) {
         uvec4 marks = uvec4(texelFetch(touching, ivec2(block * tiles.x + tile.x, tile.y), 0)) & asked;
         uint bits = marks.x;
         marks = uvec4(marks.yzw, 0u);
-        // One loop for the four channels, as in generation/fault_formation/raw.glsl.
+        // One loop for the four channels, as in generation/fault_formation/by_tiles.glsl.
         while ((bits | marks.x | marks.y | marks.z) != 0u) {
             if (bits == 0u) {
                 bits = marks.x;

@@ -22,6 +22,6 @@ uniform int method = 0;        //! menu("destruction and construction", "flips")
 uniform uint seed = 7u;        //! slider(0, 9999) Which land
 uniform int heights = 0;       //! menu("random", "displaced") The thesis's random height, or that of the triangle itself, displaced by a random amount
 uniform float roughness = 1.0; //! slider(0, 3) step(0.01) Displaced heights only: the amount is within k^roughness, k the square root of the triangle's share of the land
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) Heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") Heights of the corners: south-west, south-east, north-west, north-east
 uniform float proportion = 1.0; //! log_slider(0.125, 8) The land's length north over its length east, so that circles are round on it
 uniform int flips = -1;        //! slider(-1, 30) By flips only, to look at: the last insertion stops after so many; -1: it makes all

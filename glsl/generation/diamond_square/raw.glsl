@@ -20,12 +20,12 @@
 #include "generation/diamond_square/lattice.glsl"
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)")
+#pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", between = "squares")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) Roughness: height added per side of land. Above 0.5 it looks like rubble
 uniform uint seed = 7u;         //! slider(0, 9999) Which land
 uniform int sign_of_random = 0; //! menu("centred", "positive") label("Random") The thesis adds only positive numbers, which leaves creases
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) Heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") Heights of the corners: south-west, south-east, north-west, north-east
 
 ivec2 visit(ivec2 cell) {
     return texel_of_cell(cell, iteration, size.x - 1);

@@ -11,7 +11,7 @@
 #include "terrain/parts.glsl"
 #pragma kernel(output = "shape:r32f")
 
-uniform ivec2 part = ivec2(0);     //! Which part of the land, counted east and north
+uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the land, counted east and north
 uniform int apron = 0;             //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part
 uniform int hills = 256;           //! log_slider(2, 4096) unit("texels") Width of the widest hills
 uniform int layers = 3;            //! slider(1, 8) Layers of hills, each half as wide as the one before

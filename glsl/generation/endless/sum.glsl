@@ -15,7 +15,7 @@
 
 uniform sampler2D shape;           //! input
 uniform sampler2D detail;          //! input
-uniform ivec2 part = ivec2(0);     //! Which part of the land, counted east and north
+uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the land, counted east and north
 uniform int apron = 0;             //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part
 uniform float rough = 0.45;        //! slider(0, 1) step(0.01) Share of the detail in the highest land
 uniform float valleys = 0.15;      //! slider(0, 1) step(0.01) Of that share, what the lowest land has

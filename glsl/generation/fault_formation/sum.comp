@@ -5,7 +5,7 @@
 //   units    heights without unit
 //   source   made here: differences, and their prefix sum
 //   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
-//   agrees   to the last bit: sums of whole numbers are the same in any order
+//   agrees   exactly: sums of whole numbers are the same in any order
 //
 // A work group has a row. Its readers share the faults: a fault adds one number where the row
 // begins and one where the line crosses it. Then the numbers are summed along the row, each
@@ -13,7 +13,7 @@
 // heights. So a land costs faults times rows, and its texels, but not faults times texels.
 #include "generation/fault_formation/line.glsl"
 #include "maths/whole.glsl"
-#pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height")
+#pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height", agrees = "exact")
 
 uniform sampler2D lines;     //! input
 uniform int faults = 200;    //! slider(0, 1000) How many

@@ -14,7 +14,7 @@
 // displacement", and gives no value.
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1)", accepts = "2**n + 1", visits = "2**(iteration + 1) + 1, 2**(iteration + 1) + 1", stride = "(size.x - 1) // 2**(iteration + 1)")
+#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1)", accepts = "2**n + 1", visits = "2**(iteration + 1) + 1, 2**(iteration + 1) + 1", stride = "(size.x - 1) // 2**(iteration + 1)", between = "squares")
 
 uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each turn's random numbers, over those of the turn before
 uniform uint seed = 7u;         //! slider(0, 9999) Which land

@@ -5,13 +5,13 @@
 //   units    as the heights
 //   source   a moving sum; derived here
 //   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
-//   agrees   within 2e-6 for heights in 0..1: the sum gathers roundings as it slides
+//   agrees   for heights in 0..1: the sum gathers roundings as it slides
 //
 // Each thread walks a run of texels. It sums one whole window, then adds what comes in and
 // takes away what goes out. A run is as long as its first window, so that the window costs
 // no more than the walk; it begins anew at each run, so that roundings cannot gather for
 // long. Threads that lie beside each other walk beside each other.
-#pragma compute(groups = "((size.y if axis == 0 else size.x) + 31) // 32, ((size.x if axis == 0 else size.y) - 1) // max(64, 2 * radius + 1) + 1", local = "32, 1")
+#pragma compute(groups = "((size.y if axis == 0 else size.x) + 31) // 32, ((size.x if axis == 0 else size.y) - 1) // max(64, 2 * radius + 1) + 1", local = "32, 1", agrees = "2e-6")
 
 uniform sampler2D height; //! input
 uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of 11

@@ -20,12 +20,12 @@
 // main diagonal: the fault that the thesis tells of, kept here.
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration")
+#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2**iteration + 1, 2**iteration + 1", stride = "(size.x - 1) // 2**iteration", between = "triangles")
 
 uniform float r = 1.0;    //! slider(0, 3) step(0.05) How fast the random numbers fall with the length of an edge: the more, the smoother
 uniform uint seed = 7u;   //! slider(0, 9999) Which land
 uniform int corners_are = 0;  //! menu("random", "given") Corners at random in [-1, 1], or as given below
-uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) Given heights of the corners: south-west, south-east, north-west, north-east
+uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01) parts("SW", "SE", "NW", "NE") Given heights of the corners: south-west, south-east, north-west, north-east
 
 const uint SALT = 0xa289e770u;  // CRC-32 of "generation/triangle_subdivision"
 

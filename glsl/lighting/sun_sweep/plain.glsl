@@ -4,7 +4,7 @@
 //   needs    lighting/sun_sweep/band.glsl; the texture of heights comes as an argument
 //   units    as there
 //   source   as there
-//   tested   tests/glsl/test_drivers.py, against the companions of those who use it
+//   tested   tests/glsl/test_fast_variants.py, against the compute variants of those who use it
 #ifndef LIGHTING_SUN_SWEEP_PLAIN
 #define LIGHTING_SUN_SWEEP_PLAIN
 #include "lighting/sun_sweep/band.glsl"

@@ -5,15 +5,15 @@
 //   units    as the heights
 //   source   a tree reduction in shared memory, as in M. Harris 2007, "Optimizing Parallel
 //            Reduction in CUDA"
-//   tested   tests/glsl/test_drivers.py, against terrain/range/blocks.glsl
-//   agrees   to the last bit: the lowest of numbers is the same in any order
+//   tested   tests/glsl/test_fast_variants.py, against terrain/range/blocks.glsl
+//   agrees   exactly: the lowest of numbers is the same in any order
 //
 // The kernel beside it has one thread walk a whole block. Here a work group shares the block:
 // each reader takes every eighth texel of every eighth row, so that neighbours read
 // neighbours, then pairs of readers are joined until one is left.
 #include "maths/whole.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "size.x, size.y", local = "8, 8")
+#pragma compute(groups = "size.x, size.y", local = "8, 8", agrees = "exact")
 
 uniform sampler2D height; //! input
 uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest") With nothing, 0 and 1 are told without a look at the land

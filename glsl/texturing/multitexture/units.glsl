@@ -24,10 +24,10 @@ uniform int combine = 0;               //! menu("mix", "product", "sum") How the
 uniform float share = 0.35;            //! slider(0, 1) step(0.01) How much of the second: of the mixture, or of its effect
 uniform float first_repeats = 24.0;    //! slider(1, 256) step(1) group("First") How often it stands side by side
 uniform float first_turn = 0.0;        //! angle group("First") How far it is turned
-uniform vec2 first_shift = vec2(0.0);  //! slider(0, 1) step(0.01) group("First") How far it is moved, east and north
+uniform vec2 first_shift = vec2(0.0);  //! slider(0, 1) step(0.01) group("First") parts("east", "north") How far it is moved, east and north
 uniform float second_repeats = 5.0;    //! slider(1, 256) step(1) group("Second") How often it stands side by side
 uniform float second_turn = 30.0;      //! angle group("Second") How far it is turned
-uniform vec2 second_shift = vec2(0.0); //! slider(0, 1) step(0.01) group("Second") How far it is moved, east and north
+uniform vec2 second_shift = vec2(0.0); //! slider(0, 1) step(0.01) group("Second") parts("east", "north") How far it is moved, east and north
 uniform float shadows = 1.0;           //! slider(0, 1) step(0.01) group("Shadow map") How much of the shadow map is seen
 
 vec3 unit(sampler2D image, vec2 share_of_land, float repeats, float turn, vec2 shift) {

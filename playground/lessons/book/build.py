@@ -18,6 +18,7 @@ from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.gpu.context import context_info
 from playground.images.files import replacing
+from playground.json_text import read_json
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.gallery import gallery_html
 from playground.lessons.book.page import (
@@ -134,7 +135,7 @@ def _forget(folder: Path, written: list[str]) -> None:
     """Remove what an earlier build wrote and this one did not, and note what this one wrote."""
     manifest = folder / MANIFEST
     try:
-        before = [str(name) for name in json.loads(manifest.read_text(encoding="utf-8"))["files"]]
+        before = [str(name) for name in read_json(manifest.read_text(encoding="utf-8"))["files"]]
     except (ValueError, KeyError, TypeError):  # somebody has written into it
         before = []
     kept = set(written)

@@ -12,8 +12,6 @@ from playground.live.lesson.reading import Reading
 from playground.live.remember import Rememberer
 from playground.live.theme import Theme
 
-Size = tuple[int, int]
-
 
 class Lessons:
     """One window's; ``remember`` takes in what is shown, for the next start."""
@@ -25,18 +23,14 @@ class Lessons:
         self._rememberer = rememberer
         self._remember = remember
         actions.toggle_lessons, actions.turn_page = self.reading.toggle, self.reading.turn_page
+        actions.lesson_shown = lambda: self.reading.lesson is not None and self.reading.progress.shown
 
-    def begin(self, name: str, language: str, pixels: Size, density: float, *, beside: bool) -> None:
-        """Open a lesson by name; else, ``beside`` the sketch, the one read last, unless all were closed.
-
-        ``pixels``: of the window; ``density``: those in one unit of scale 1.
-        """
+    def begin(self, name: str, language: str, *, beside: bool) -> None:
+        """Open a lesson by name; else, ``beside`` the sketch, the one read last, unless all were closed."""
         reading = self.reading
         if language and not name:
             reading.progress.language = language
         if name:
-            taken = round(reading.progress.width * density)
-            reading.stage.room = max(pixels[0] - taken, 1), pixels[1]
             reading.open(name, language=language)
         elif beside and reading.progress.shown:
             reading.open(show=False)

@@ -15,6 +15,7 @@ from playground.live.lesson.scene import path_of
 from playground.live.lesson.stage import comparable
 from playground.live.listing import Item
 from playground.live.parameters import draw_menu, draw_parameter
+from playground.live.sliders import slide_whole
 from playground.sketch.assign import resolve
 from playground.sketch.values import write
 
@@ -36,9 +37,10 @@ def draw_steps(block: Steps, page: Page) -> None:
     with page.frame(block.name, _bar(page, block)):
         _player(block, page, at, last)
         imgui.set_next_item_width(-1)
-        form = page.say("turn", block.turns[at], block.turns[-1]).replace("%", "%%")
-        moved, chosen = imgui.slider_int("##turns", at, 0, last, form, imgui.SliderFlags_.always_clamp)
-        if moved:
+        chosen = slide_whole(
+            "##turns", at, (0, last), lambda n: page.say("turn", block.turns[n], block.turns[-1])
+        )
+        if chosen is not None:
             reading.playing = ""
             reading.move(block, chosen)
         if block.captions:
@@ -56,9 +58,8 @@ def draw_slider(block: Slider, page: Page) -> None:
             _parameters(block, (block.parameter,), page)
         else:
             imgui.set_next_item_width(-1)
-            form = _named(block, at).replace("%", "%%")
-            moved, chosen = imgui.slider_int("##values", at, 0, last, form, imgui.SliderFlags_.always_clamp)
-            if moved:
+            chosen = slide_whole("##values", at, (0, last), lambda n: _named(block, n))
+            if chosen is not None:
                 reading.move(block, chosen)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
@@ -139,7 +140,7 @@ def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> N
     if actions.session.shown is not draft:
         page.reading.playing = ""
     if page.memory.menu:
-        draw_menu({item.path: item for item in items.values()}, values, page.memory, actions)
+        draw_menu({item.label: item for item in items.values()}, values, page.memory, actions)
 
 
 def _item(path: str, items: dict[str, Item], page: Page) -> Item | None:

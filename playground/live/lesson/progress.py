@@ -14,6 +14,7 @@ from typing import Any
 from playground.errors import PlaygroundError
 from playground.folders import state_folder
 from playground.images.files import replacing
+from playground.json_text import read_json
 
 FORMAT = 1
 WIDTH = 420.0
@@ -44,8 +45,8 @@ def read_progress(path: Path) -> Progress:
     try:
         if path.stat().st_size > _LARGEST:
             return Progress()
-        return _read(json.loads(path.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return _read(read_json(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
         return Progress()
 
 

@@ -24,7 +24,7 @@ from playground.live.stages import Stage as Coming
 from playground.live.words import Said
 from playground.sketch.load import load
 from playground.sketch.maps import Map
-from playground.sketch.model import Camera
+from playground.sketch.model import DEFAULT_PICTURE, Camera
 
 Key = tuple[str, int]
 """A picture of a lesson: the name of its block, and which of the block's."""
@@ -53,7 +53,6 @@ class Stage:
         self.own: Own | None = None
         self.key: Key | None = None  # of the picture that is shown
         self.scene: Scene | None = None
-        self.room: tuple[int, int] | None = None  # [pixels] where pictures are seen
         self._begins = begins  # told before the first picture takes the stage
         self._path: Path | None = None
         self._set: tuple[Edits, Mapping[str, int]] = (Edits(), {})  # for the picture
@@ -85,7 +84,7 @@ class Stage:
         try:
             known = session.shown if session.path == path and not session.leaves else None
             file = known.file if known is not None else load(path)
-            edits, steps = edits_of(scene, file, self.room), steps_of(scene)
+            edits, steps = edits_of(scene, file), steps_of(scene)
         except PlaygroundError as error:
             actions.say(str(error))
             return
@@ -104,6 +103,7 @@ class Stage:
             session.read_as(texts)
             session.restore(edits)
         session.view(steps, map_of(scene))
+        session.framed_for = scene.pixels
         session.clock.time, session.clock.playing = scene.time, False
         self.scene, self.key, self._path, self._waits = scene, key, session.path, True
         self._set = edits, steps
@@ -153,6 +153,7 @@ class Stage:
         self._compared, self._first = own.compared, None
         self.actions.history = own.history
         session.view(own.steps, own.map)
+        session.framed_for = DEFAULT_PICTURE
         clock = session.clock
         clock.time, clock.playing, clock.loop = own.clock.time, own.clock.playing, own.clock.loop
         self._waits = False
@@ -187,12 +188,13 @@ class Stage:
         if first is not None and draft is not None:
             compare = self.actions.see.compare
             compare.mode = Mode.DIVIDER
-            compare.keep_other(draft.with_edits(edits_of(first, draft.file, self.room)), steps_of(first))
+            compare.keep_other(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
 
     def let_go(self) -> None:
         """Let the stage go: what it shows is the reader's own from here on."""
         self.own = self.scene = self.key = self._first = None
         self._waits = False
+        self.actions.session.framed_for = DEFAULT_PICTURE
 
 
 def comparable(first: Scene, second: Scene) -> bool:

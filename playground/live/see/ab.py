@@ -12,6 +12,7 @@ from playground.live.dividers import REACH, moved
 from playground.live.overlay import Area
 from playground.live.see.beside import Beside
 from playground.live.see.compare import PERIOD, Compare, Mode
+from playground.live.sliders import slide
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:
@@ -93,6 +94,12 @@ def draw_ab(actions: Actions, look: Theme, area: Area) -> None:
     imgui.pop_style_var()
 
 
+def below_bar(actions: Actions, look: Theme, area: Area) -> Area:
+    """Return what the bar leaves free of an area."""
+    taken = 52 * look.scale if actions.see.compare.on else 0.0
+    return area[0], area[1] + taken, area[2], max(area[3] - taken, 1.0)
+
+
 def _bar(actions: Actions, look: Theme) -> None:
     compare, now = actions.see.compare, actions.now()
     letters = {
@@ -113,8 +120,8 @@ def _bar(actions: Actions, look: Theme) -> None:
     if compare.mode is Mode.DIFFERENCE:
         imgui.same_line()
         imgui.set_next_item_width(90 * look.scale)
-        flags = imgui.SliderFlags_.logarithmic.value | imgui.SliderFlags_.always_clamp.value
-        _, compare.gain = imgui.slider_float("##gain", compare.gain, 1.0, 64.0, "x %.0f", flags)
+        gain = slide("##gain", compare.gain, (1.0, 64.0), "x %.0f", logarithmic=True)
+        compare.gain = compare.gain if gain is None else gain
     for label, note, act in (
         ("Swap", "Go on from A; what is shown now becomes A", compare.swap),
         ("Back to A", "Go on from A, which stays", compare.back),

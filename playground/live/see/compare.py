@@ -226,7 +226,8 @@ class Compare:
     def _wanted(self, kept: Kept, plan: Plan) -> object:
         shown = self.session.map
         time = plan.time if is_animated(kept.draft.sketch) else 0.0
-        return kept.draft, plan.frame_size, plan.sketch.camera, time, shown, self.session.engine
+        seen = plan.frame_size, plan.sketch.camera, plan.interpolated
+        return kept.draft, seen, time, shown, self.session.engine
 
     def _draw(self, kept: Kept, plan: Plan, *, hasty: bool) -> None:
         assert self._picture is not None
@@ -238,7 +239,7 @@ class Compare:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
             with as_before(engine, plan):
-                texture = engine.draw(chosen, size=plan.frame_size, time=plan.time, steps=kept.steps)
+                texture = _drawn(engine, chosen, plan, kept.steps)
                 self._picture.keep(texture)
         except Exception as error:
             if not self._told:
@@ -266,13 +267,19 @@ def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     finally:
         # All of it is kept, so that nothing runs; what was computed for the picture is current again.
         try:
-            engine.draw(plan.sketch, size=plan.frame_size, time=plan.time, steps=plan.steps)
+            _drawn(engine, plan.sketch, plan, plan.steps)
         finally:
             engine.profiling = profiling
             engine.ran, engine.texels, engine.times = ran, texels, times
             engine.runner.draws.drawn = triangles
             engine.runs.clear()
             engine.runs.update(runs)
+
+
+def _drawn(engine: Engine, sketch: Sketch, plan: Plan, steps: Mapping[str, int]) -> moderngl.Texture:
+    """Draw a sketch as a plan does its own."""
+    size, fills = plan.frame_size, plan.interpolated
+    return engine.draw(sketch, size=size, time=plan.time, steps=steps, interpolated=fills)
 
 
 def _files_of(plan: Plan) -> list[Path]:

@@ -29,7 +29,7 @@ class Wiring:
 
 def wiring_of(sketch: Sketch, *, inner: bool) -> Wiring:
     """Return the graph of a sketch's own passes, or of all passes that run, those inside techniques."""
-    flat = flatten(sketch, compute=False)
+    flat = flatten(sketch)
     refs: dict[str, str] = {}
     edges: dict[Edge, None] = {}
     for leaf in leaves_of(flat.nodes):

@@ -21,8 +21,9 @@ from playground.shots.mutants.redraw import Task
 from playground.shots.mutants.tiers import judged
 from playground.shots.suite import Taken
 from playground.sketch.assign import values_of
-from playground.sketch.model import Graph, Shot, Sketch, Technique, kernels_of
+from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.places import is_absolute, is_file
+from playground.sketch.variants import any_variants
 
 LIMIT = 600.0
 """[s] A process of a few drawings may take that long, on a slow machine with a cold shader cache."""
@@ -81,18 +82,12 @@ def again(
 def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
     """Return the drivers whose pictures must be the same.
 
-    Other renderers than the processor's may round differently in the two; a companion may
-    differ from its kernels within the bound that it states.
+    Other renderers than the processor's may round differently in the two; a fast variant may
+    differ from the canonical form within the bound that it states.
     """
-    if not renderer.software or _has_companion(sketch.graph):
+    if not renderer.software or any_variants(sketch.graph):
         return ("auto",)
     return ("auto", "fragment", "compute") if renderer.compute else ("auto", "fragment")
-
-
-def _has_companion(technique: Technique) -> bool:
-    if technique.companion is not None:
-        return True
-    return isinstance(technique, Graph) and any(_has_companion(spec.technique) for spec in technique.passes)
 
 
 def _drawn_by(

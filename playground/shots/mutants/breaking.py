@@ -15,11 +15,11 @@ from playground.errors import DataError, ParameterError
 from playground.paths import GLSL, shown
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.reread import with_texts
 from playground.sketch.source import read_text
 from playground.sketch.wiring import input_names
+from playground.sketch.words import PLAIN_UNIFORMS
 
 _CAMERA = "camera."
 
@@ -109,11 +109,7 @@ def _with_turns(graph: Graph, more: int) -> Graph:
 def _turned(technique: Technique, more: int) -> Technique:
     if isinstance(technique, Kernel):
         repeats = technique.kind == "kernel" and technique.repeat != "1"
-        return (
-            replace(technique, repeat=f"({technique.repeat}) + {more}", companion=None)
-            if repeats
-            else technique
-        )
+        return replace(technique, repeat=f"({technique.repeat}) + {more}") if repeats else technique
     passes = tuple(
         replace(
             spec,
@@ -122,7 +118,7 @@ def _turned(technique: Technique, more: int) -> Technique:
         )
         for spec in technique.passes
     )
-    return technique if passes == technique.passes else replace(technique, passes=passes, companion=None)
+    return technique if passes == technique.passes else replace(technique, passes=passes)
 
 
 def _changed(sketch: Sketch, path: str, factor: float = 1.0, more: object = 0.0) -> Sketch:

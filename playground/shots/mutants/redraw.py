@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.engine.engine import CACHE_BYTES, Engine
+from playground.engine.plain_forms import silent
 from playground.errors import PlaygroundError
 from playground.gpu.context import open_context
 from playground.shots.mutants.breaking import broken
@@ -60,6 +61,7 @@ class _Painter:
                 driver="auto" if no_compute else drawing.driver,
                 cache_bytes=drawing.cache_bytes or CACHE_BYTES,
                 owns_context=True,
+                notice=silent,
             )
             self.driver = drawing.driver
         for sketch, shot in self._before(drawing.before):
@@ -102,7 +104,7 @@ def commented(sketch: Sketch) -> Sketch:
     """Return the sketch with comments and blank lines put into all of its shaders."""
     files = {file for spec in sketch.graph.passes for file in spec.technique.files}
     shaders = sorted(file for file in files if not file.endswith(".toml"))
-    return with_texts(sketch, {file: _commented(read_text(Path(file))) for file in shaders}, same=True)
+    return with_texts(sketch, {file: _commented(read_text(Path(file))) for file in shaders})
 
 
 def _commented(text: str) -> str:

@@ -12,7 +12,7 @@ uniform sampler2D places;      //! input
 uniform sampler2D last;        //! input
 uniform int points = 1000;     //! slider(0, 10000) No more points than this are drawn
 uniform int marked = 0;        //! menu("nothing", "an edge", "a flip", "the last insertion") What is marked
-uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") The part of the picture that it takes: its lower left, its upper right
+uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") parts("left", "lower", "right", "upper") The part of the picture that it takes: its lower left, its upper right
 uniform float margin = 0.1;    //! slider(0, 0.45) step(0.01) group("Picture") Room around the land, over the window
 uniform float dot_radius = 3.0; //! slider(0, 20) step(0.1) group("Picture") label("Points") Radius of the points
 uniform vec4 ink = vec4(0.05, 0.05, 0.06, 1.0);    //! colour group("Colours") Edges and points

@@ -15,7 +15,7 @@ uniform sampler2D last;        //! input
 uniform int points = 1000;     //! slider(0, 10000) No more points than this are drawn
 uniform int marked = 0;        //! menu("nothing", "an edge", "a flip", "the last insertion") What is marked
 uniform int number = 0;        //! slider(0, 60000) Which edge, three to each triangle, or which flip of the last insertion
-uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") The part of the picture that it takes: its lower left, its upper right
+uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") parts("left", "lower", "right", "upper") The part of the picture that it takes: its lower left, its upper right
 uniform float margin = 0.1;    //! slider(0, 0.45) step(0.01) group("Picture") Room around the land, over the window
 uniform vec4 face = vec4(0.95, 0.62, 0.28, 0.4);  //! colour group("Colours") Marked triangles
 

@@ -1,6 +1,6 @@
-"""Run companions: compute shaders that write their images and buffers themselves.
+"""Run compute variants: compute shaders that write their images and buffers themselves.
 
-What a companion writes begins as zeros, but for what its header says it overwrites. Buffers
+What one writes begins as zeros, but for what its header says it overwrites. Buffers
 are kept for the next run: fresh memory of such a size costs more than filling it. A buffer
 that bears an output's name is that output, and is copied to its texture after the last turn:
 llvmpipe takes five times as long to store texels in an image one by one.
@@ -25,8 +25,8 @@ _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 1
 _MAX_BUFFER = 2**31 - 1
 
 
-class Companions:
-    """Runs companions on one context."""
+class ComputeVariants:
+    """Runs compute variants on one context."""
 
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
@@ -40,7 +40,7 @@ class Companions:
         self._spare.clear()
 
     def run(self, job: Job) -> Result:
-        """Run a companion; the result is the caller's."""
+        """Run a compute variant; the result is the caller's."""
         step, kernel = job.step, job.step.kernel
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []

@@ -1,4 +1,7 @@
-"""A ``.comp`` beside a kernel or a technique gives the same answer, where there is compute."""
+"""A ``.comp`` beside a kernel or a technique gives the same answer, where there is compute.
+
+Which of them may run, ``test_fast_variants`` says.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
+
+pytestmark = pytest.mark.usefixtures("trusted_variants")
 
 SUMS = """#pragma kernel(output = "sums:r32f", repeat = "log2(size.x)")
 uniform sampler2D values; //! input
@@ -96,7 +101,7 @@ def test_its_turns_are_shown_by_the_kernel(any_engine, sums, ran):
     assert len(list(any_engine.steps(sums, "sums"))) == 5
 
 
-def test_a_changed_companion_is_stale_and_so_is_a_removed_one(any_engine, folder, sums):
+def test_a_changed_variant_is_stale_and_so_is_a_removed_one(any_engine, folder, sums):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     any_engine.texture(sums, "sums")
@@ -209,7 +214,7 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 
 
 def test_a_kept_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
-    """The buffer of the run before is used again, so a companion that adds to it shows what it began with."""
+    """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
         folder.write("fill.glsl", PLAIN_FILL)
         again = "uniform float again = 0.0; //! slider(0, 9)\n"
@@ -220,7 +225,7 @@ def test_a_kept_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
         assert (any_engine.read(sketch, "a") == 1.0).all()
         assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
-        any_engine.runner.companions.release()
+        any_engine.runner.compute_variants.release()
 
 
 def test_overwrites_names_an_output_or_a_buffer(folder):

@@ -1,0 +1,151 @@
+"""Fast variants: list them, verify them against the canonical form, renew the record of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands.arguments import (
+    FAILED,
+    DeviceOption,
+    JsonOption,
+    Renderer,
+    SoftwareOption,
+    help_text,
+)
+from playground.errors import counted
+from playground.terminal import print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from playground.engine.verify import Verdict
+    from playground.engine.verify_what import Subject
+
+HELP = help_text(
+    "Fast variants: other forms of a technique, that give the same and exist only for speed.\n\n"
+    "A technique is its plain text, x.glsl or x.toml. x.comp beside it (a compute shader) or x.fast.toml"
+    " (several passes) runs in its place only while both texts are those that were found to agree, within"
+    " the bound that the variant states; a file fast_variants.json beside them says so. Otherwise the plain"
+    " form runs. Without WHAT, the variants that ship.",
+    "playground variants list",
+    "playground variants verify lighting",
+    "playground variants renew my-land",
+)
+LIST_HELP = help_text(
+    "List fast variants, how closely they agree, and which of them run.", "playground variants list"
+)
+VERIFY_HELP = help_text(
+    "Draw fast variants and the canonical form, and compare.\n\n"
+    "At several sizes, square and not, of several terrains and seeds, with each choice of the menus and"
+    " both ends of the sliders. Nothing is written. Exit status 1 where one does not agree.",
+    "playground variants verify",
+    "playground variants verify my-land/height.comp",
+)
+RENEW_HELP = help_text(
+    "Verify fast variants, and record those that agree.\n\n"
+    "The record is fast_variants.json: for what ships, in glsl/; for your own, beside the variant.",
+    "playground variants renew",
+    "playground variants renew my-land",
+)
+
+app = typer.Typer(
+    name="variants",
+    help=HELP,
+    short_help="List, verify and record the fast variants of techniques.",
+    invoke_without_command=True,
+    rich_markup_mode="rich",
+)
+
+WhatArgument = Annotated[
+    str,
+    typer.Argument(
+        help="A technique or a folder of glsl/, or the path of a variant, a kernel or a sketch.",
+        metavar="WHAT",
+        show_default=False,
+    ),
+]
+
+
+@app.callback()
+def _group(ctx: typer.Context) -> None:
+    if ctx.invoked_subcommand is None:
+        print(ctx.get_help())
+
+
+@app.command("list", help=LIST_HELP)
+def list_(what: WhatArgument = "", as_json: JsonOption = False) -> None:
+    """List fast variants, how closely they agree, and which of them run."""
+    from playground.engine.verify_what import subjects
+
+    rows = [_row(subject) for subject in subjects(what, Path())]
+    if as_json:
+        print_json([dict(zip(_HEADINGS, row, strict=True)) for row in rows])
+        return
+    print_table("Fast variants", _HEADINGS, rows)
+
+
+@app.command("verify", help=VERIFY_HELP)
+def verify_(
+    ctx: typer.Context, what: WhatArgument = "", software: SoftwareOption = False, device: DeviceOption = ""
+) -> None:
+    """Draw fast variants and the canonical form, and compare."""
+    _refuse(_verdicts(what, ctx.obj.or_else(software, device)))
+
+
+@app.command("renew", help=RENEW_HELP)
+def renew(
+    ctx: typer.Context, what: WhatArgument = "", software: SoftwareOption = False, device: DeviceOption = ""
+) -> None:
+    """Verify fast variants, and record those that agree."""
+    from playground.engine.verify_what import recorded
+
+    verdicts = _verdicts(what, ctx.obj.or_else(software, device))
+    for path in recorded(verdicts):
+        print(path)
+    _refuse(verdicts)
+
+
+_HEADINGS = ("variant", "agrees", "runs")
+
+
+def _row(subject: Subject) -> tuple[str, str, str]:
+    from playground.paths import shown
+    from playground.sketch.variants import is_verified, why_not
+
+    technique, variant = subject.technique, subject.variant
+    bounds = "; ".join(f"{b.output}: {b}" if b.output else str(b) for b in variant.technique.agrees)
+    runs = "yes" if is_verified(technique, variant) else f"no: {why_not(technique, variant)}"
+    return shown(variant.path), bounds, runs
+
+
+def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
+    from playground.api import headless
+    from playground.engine.plain_forms import silent
+    from playground.engine.verify import verify
+    from playground.engine.verify_what import subjects
+    from playground.paths import shown
+
+    found: list[Verdict] = []
+    with TemporaryDirectory(prefix="playground-variants-") as folder:
+        chosen = subjects(what, Path(folder) / "stand-in.png")
+        with (
+            headless(software=renderer.software, device=renderer.device, notice=silent) as engine,
+            progress("verifying", len(chosen)) as advance,
+        ):
+            for subject in chosen:
+                verdict = verify(engine, subject.variant, subject.technique, subject.places)
+                mark = "ok" if verdict.ok else "skipped" if verdict.skipped else "FAILED"
+                print(f"{mark:8}{shown(subject.variant.path)}: {verdict.words}", flush=True)
+                found.append(verdict)
+                engine.cache.clear()
+                advance()
+    return found
+
+
+def _refuse(verdicts: list[Verdict]) -> None:
+    wrong = sum(1 for verdict in verdicts if verdict.wrong)
+    if wrong:
+        print(f"{counted(wrong, 'variant')} of {len(verdicts)} not verified: the plain form runs")
+        raise typer.Exit(FAILED)

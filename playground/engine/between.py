@@ -1,0 +1,56 @@
+"""Say how the terrain so far is joined up where a run is stopped early.
+
+A kernel with a ``stride`` sets, turn by turn, the nodes of an ever closer lattice; all else is
+still 0, and would stand around its nodes like a plain around nails. Its header says how the
+nodes are joined (``between``). Only pictures are filled so: values that are read stay as they
+are, and a run that goes on goes on from those. ``fill`` does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from playground.sketch import expressions
+from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.flatten import Leaf
+from playground.sketch.model import Kernel
+from playground.sketch.wiring import initial_names
+
+SQUARES, TRIANGLES, CENTRES = 0, 1, 2
+
+
+class Between(NamedTuple):
+    """How the texels that a stopped run knows are joined."""
+
+    stride: int  # texels from one node of the lattice to the next
+    form: int  # SQUARES, TRIANGLES, or CENTRES: of the lattice only squares' corners and centres are known
+
+
+def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number]) -> Between | None:
+    """Return how the texels known after ``repeat`` turns of ``whole`` are joined; None where nothing is.
+
+    A stride that stays for two turns is that of a lattice of which the first turn sets the
+    squares' centres and the second the rest. Raises ``ShaderError`` at a stride that is none.
+    """
+    kernel = leaf.kernel
+    if not kernel.between or not 0 < repeat < whole or _begins_with_something(leaf):
+        return None
+    now, coming = (_stride(kernel, {**names, "iterations": whole}, turn) for turn in (repeat - 1, repeat))
+    if now < 1:
+        raise kernel.error(f"pass '{leaf.path}': stride '{kernel.stride}' gives {now} for turn {repeat - 1}")
+    if now == coming:
+        return Between(now, CENTRES)
+    return Between(now, TRIANGLES if kernel.between == "triangles" else SQUARES)
+
+
+def _stride(kernel: Kernel, names: Mapping[str, Number], turn: int) -> int:
+    try:
+        return expressions.evaluate(kernel.stride, {**names, "iteration": turn})
+    except ExpressionError as error:
+        raise kernel.error(f"stride {error}") from None
+
+
+def _begins_with_something(leaf: Leaf) -> bool:
+    """Say whether a kernel begins with other textures: then texels off its lattice count as well."""
+    return any(source is not None for name, source in leaf.inputs if name in initial_names(leaf.kernel))

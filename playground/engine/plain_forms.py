@@ -1,0 +1,35 @@
+"""Say where a technique runs in its plain form, though there is a fast variant: once for each."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable
+
+from playground.errors import PlainFormWarning
+from playground.sketch.model import VARIANTS, Sketch
+from playground.sketch.variants import left_out
+
+
+def warn(sentence: str) -> None:
+    """Warn, as Python does."""
+    warnings.warn(sentence, PlainFormWarning, stacklevel=2)
+
+
+def silent(sentence: str) -> None:
+    """Say nothing: somebody else does."""
+
+
+class PlainForms:
+    """Tells ``notice`` of each fast variant that does not run; ``compute`` says whether all kinds could."""
+
+    def __init__(self, notice: Callable[[str], None], compute: bool) -> None:
+        self.notice = notice
+        self.kinds = tuple(kind for kind in VARIANTS if compute or kind != "compute")
+        self._told: set[str] = set()
+
+    def tell(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
+        """Tell what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
+        for sentence in (*left_out(sketch, self.kinds), *lacking):
+            if sentence not in self._told:
+                self._told.add(sentence)
+                self.notice(sentence)

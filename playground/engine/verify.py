@@ -1,0 +1,277 @@
+"""Verify a fast variant: draw it and the canonical form, and compare by the bound that it states.
+
+A technique is drawn on a stage of its own, and inside the smallest of the techniques that use
+it, where it reads what it is made for. Both forms are drawn at several sizes, square and not,
+with the same and with unequal spacing along x and y, of two terrains and two seeds; then with
+each choice of its menus and both ends of its sliders.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.engine.stage import free_name, stage
+from playground.paths import GLSL, shown
+from playground.sketch import expressions
+from playground.sketch.agreement import Bound, bound_of
+from playground.sketch.assign import all_paths, resolve
+from playground.sketch.canonical import content_of
+from playground.sketch.model import (
+    Graph,
+    Kernel,
+    Parameter,
+    PassSpec,
+    Sketch,
+    Technique,
+    Value,
+    Variant,
+    kernels_of,
+)
+from playground.sketch.variants import without_variants
+from playground.sketch.wiring import output_names
+
+SIZES = ((33, 33), (64, 48), (129, 129), (97, 130), (257, 193))
+"""Texels; a technique that takes others is drawn at the nearest that it takes."""
+
+_EXTENTS = ((1000.0, 1000.0), (700.0, 1900.0))  # [m]
+_RELIEF = 180.0  # [m]
+_SEEDS = (7, 1234)
+_USERS = 2  # techniques that use it, beside the stage
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a fast variant can run: in a sketch, at a pass."""
+
+    sketch: Sketch
+    path: str  # of the pass
+    technique: Technique
+    variant: Variant
+    varied: bool = False  # parameters are varied here
+
+
+@dataclass
+class Verdict:
+    """How the two forms of a technique compare."""
+
+    variant: Variant
+    contents: tuple[str, str]  # of the canonical form and of the variant
+    drawings: int = 0  # compared
+    worst: dict[str, tuple[float, Bound]] = field(default_factory=dict)  # by output
+    wrong: str = ""  # the first difference beyond the bound, or why nothing could be compared
+    skipped: str = ""  # why it could not be drawn here
+
+    @property
+    def ok(self) -> bool:
+        """Whether they were compared and agree."""
+        return not self.wrong and not self.skipped and self.drawings > 0
+
+    @property
+    def words(self) -> str:
+        """How closely they agree, or what is wrong."""
+        if self.wrong or self.skipped:
+            return self.wrong or self.skipped
+        told = [
+            f"{name} to the last bit" if not bound.most else f"{name} {found:.2g} of {bound}"
+            for name, (found, bound) in self.worst.items()
+        ]
+        return f"{', '.join(told)} ({self.drawings} drawings)"
+
+
+def places_in(sketch: Sketch, folder: Path) -> Iterator[Place]:
+    """Yield where the fast variants of a folder run in a sketch."""
+    for spec in sketch.graph.passes:
+        for path, technique in _inside(spec):
+            for variant in technique.variants:
+                if Path(variant.path).is_relative_to(folder):
+                    yield Place(sketch, path, technique, variant)
+
+
+def places_of(
+    technique: Technique, variant: Variant, picture: Path, users: Iterable[Technique] = ()
+) -> Iterator[Place]:
+    """Yield where a technique is drawn: alone, for two terrains, and inside the smallest of its ``users``.
+
+    ``picture`` is a file that may be written, for parameters that name none.
+    """
+    found = sorted(
+        ((user, path) for user in users for path in _paths_in(user, variant)),
+        key=lambda pair: sum(1 for _ in kernels_of(pair[0])),
+    )
+    for number, seed in enumerate(_SEEDS):
+        yield Place(_staged(technique, seed, picture), _subject(technique), technique, variant, number == 0)
+    for user, path in found[:_USERS]:
+        yield Place(_staged(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant)
+
+
+def verify(engine: Engine, variant: Variant, technique: Technique, places: Iterable[Place]) -> Verdict:
+    """Draw a technique by both forms wherever it is said to be, and compare them."""
+    verdict = Verdict(variant, (content_of(technique), content_of(variant.technique)))
+    if not variant.technique.agrees:
+        verdict.wrong = 'it does not say how closely it agrees, as agrees = "1e-5"'
+    elif variant.kind not in engine.plain_forms.kinds:
+        verdict.skipped = f"this context is {engine.info.opengl}; compute needs 4.3"
+    else:
+        for place in places:
+            for words, sketch in _cases(place):
+                if not verdict.wrong:
+                    _compare(engine, place, sketch, words, verdict)
+    return verdict
+
+
+def compared(engine: Engine, place: Place) -> Verdict:
+    """Compare both forms of a technique in one sketch as it is; no drawings where the variant steps back."""
+    contents = (content_of(place.technique), content_of(place.variant.technique))
+    verdict = Verdict(place.variant, contents)
+    _compare(engine, place, place.sketch, "its own values", verdict)
+    return verdict
+
+
+def difference(found: NDArray[np.float32], wanted: NDArray[np.float32], bound: Bound) -> float:
+    """Return how far numbers are apart, as a bound counts it; 0 where every bit is the same."""
+    if found.shape != wanted.shape:
+        return float("inf")
+    if not bound.most:
+        same = (found.view(np.uint32) == wanted.view(np.uint32)) | (np.isnan(found) & np.isnan(wanted))
+        return float(np.count_nonzero(~same))
+    one, other = (values.astype(np.float64) for values in (found, wanted))
+    if bound.degrees:
+        one, other = (np.degrees(np.arctan(values)) for values in (one, other))
+    alike = (one == other) | (np.isnan(one) & np.isnan(other))
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(np.where(alike, 0.0, one - np.where(alike, 0.0, other)))
+    apart = np.where(alike, 0.0, np.where(np.isnan(apart), np.inf, apart))
+    if not np.isfinite(apart).all():
+        return float("inf")
+    return float(np.sqrt((apart**2).mean()) if bound.rms else apart.max(initial=0.0))
+
+
+# ── places ───────────────────────────────────────────────────────────────────
+
+
+def _subject(technique: Technique) -> str:
+    return free_name("subject", technique)
+
+
+def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
+    folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
+    return stage(technique, _subject(technique), folder, picture, seed=seed)
+
+
+def _inside(spec: PassSpec, prefix: str = "") -> Iterator[tuple[str, Technique]]:
+    path = f"{prefix}{spec.name}"
+    yield path, spec.technique
+    if isinstance(spec.technique, Graph):
+        for inner in spec.technique.passes:
+            yield from _inside(inner, f"{path}.")
+
+
+def _paths_in(user: Technique, variant: Variant) -> Iterator[str]:
+    if isinstance(user, Graph):
+        for spec in user.passes:
+            for path, technique in _inside(spec):
+                if any(v.path == variant.path for v in technique.variants):
+                    yield path
+
+
+# ── cases ────────────────────────────────────────────────────────────────────
+
+
+def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
+    """Yield what is drawn at a place, with the words for it."""
+    sizes = list(dict.fromkeys(_accepted(place.sketch, size) for size in SIZES))
+    seeds = [path for path in all_paths(place.sketch.graph) if path.rpartition(".")[2] == "seed"]
+    own = [path for path in seeds if path.partition(".")[0] == place.path.partition(".")[0]]
+    for number, size in enumerate(sizes):
+        for turn, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
+            extent = _EXTENTS[(number + turn) % len(_EXTENTS)]
+            sketch = replace(place.sketch, size=size, extent=extent, relief=_RELIEF)
+            values = {path: seed for path in own}
+            yield f"{size[0]} x {size[1]} texels, seed {seed}", sketch.with_values(values)
+    if place.varied:
+        small = replace(place.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
+        for path, value in _variations(place):
+            yield f"{path.rpartition('.')[2]} = {value}", small.with_values({path: value})
+
+
+def _accepted(sketch: Sketch, size: tuple[int, int]) -> tuple[int, int]:
+    for spec in sketch.graph.passes:
+        for _, kernel in kernels_of(spec.technique):
+            if kernel.accepts and not expressions.is_accepted(kernel.accepts, size):
+                size = expressions.nearest_accepted(kernel.accepts, size)[-1]
+    return size
+
+
+def _variations(place: Place) -> Iterator[tuple[str, Value]]:
+    names = [p.name for p in place.technique.parameters]
+    for name in names:
+        path = f"{place.path}.{name}"
+        parameter = resolve(place.sketch.graph, path)[0].parameter
+        yield from ((path, value) for value in _ends(parameter) if value != parameter.default)
+
+
+def _ends(parameter: Parameter) -> Iterator[Value]:
+    widget = parameter.widget
+    if parameter.type == "bool":
+        yield from (False, True)
+    elif widget.kind == "menu":
+        yield from range(len(widget.choices))
+    elif widget.kind == "direction":
+        yield from ((0.0, 20.0), (45.0, 8.0), (200.0, 3.0), (275.5, 50.0))
+    elif parameter.type in ("int", "uint", "float") and None not in (widget.low, widget.high):
+        for end in (widget.low, widget.high):
+            assert end is not None
+            yield end if parameter.type == "float" else int(end)
+
+
+# ── comparing ────────────────────────────────────────────────────────────────
+
+
+def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: Verdict) -> None:
+    fast = replace(sketch, graph=_with_one(sketch.graph, place.variant, verdict.contents))
+    for output in output_names(place.technique):
+        bound = bound_of(place.variant.technique.agrees, output)
+        if bound is None:
+            continue
+        found = engine.read(fast, f"{place.path}:{output}")
+        if not _has_run(engine, place):
+            return
+        wanted = engine.read(sketch.plainly(), f"{place.path}:{output}")
+        apart = difference(found, wanted, bound)
+        if apart >= verdict.worst.get(output, (0.0, bound))[0]:
+            verdict.worst[output] = apart, bound
+        if apart > bound.most:
+            many = f"in {apart:.0f} numbers" if not bound.most else f"by {apart:.3g}, more than {bound},"
+            verdict.wrong = (
+                f"{output} differs {many} from {shown(place.technique.path)}, with {words}"
+                f" (as {place.path} of {sketch.name})"
+            )
+            return
+    verdict.drawings += 1
+
+
+def _has_run(engine: Engine, place: Place) -> bool:
+    """Say whether the fast variant was what gave the last texture: where more is wired, it steps back."""
+    files = {kernel.path for _, kernel in kernels_of(place.variant.technique)}
+    steps = engine.plan.walk() if engine.plan is not None else ()
+    return any(step.path.startswith(place.path) and step.kernel.path in files for step in steps)
+
+
+def _with_one(technique: Graph, variant: Variant, contents: tuple[str, str]) -> Graph:
+    """Return a graph in which one fast variant runs, verified or not, and no other."""
+    passes = tuple(replace(p, technique=_only(p.technique, variant, contents)) for p in technique.passes)
+    return replace(technique, passes=passes, variants=())
+
+
+def _only(technique: Technique, variant: Variant, contents: tuple[str, str]) -> Technique:
+    if any(v.path == variant.path for v in technique.variants):
+        return replace(without_variants(technique), variants=(replace(variant, verified=contents),))
+    if isinstance(technique, Graph):
+        return _with_one(technique, variant, contents)
+    return replace(technique, variants=()) if isinstance(technique, Kernel) else technique

@@ -1,0 +1,56 @@
+"""Judge double clicks by when the buttons went down, not by the turns in which they are drawn.
+
+imgui spreads the presses and releases of one moment over several turns and compares the times of the
+turns: where a picture takes 0.4 s, no two clicks are ever a double one. GLFW says that a button went
+down when it is asked, which is when the turn before has ended. So what is known of an event is that
+it came after the last time anybody asked; an event that comes while the window sleeps is told of at
+once. Two clicks are a double click if they can have been one.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+
+APART = 0.3
+"""[s] that the clicks of a double click are apart at most."""
+_AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is told of by then
+_NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time between the two
+
+
+class Clicks:
+    """The left button's. ``asks`` and ``asked`` are called around each wait for events."""
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self._now = now
+        self._asked = self._asks = now()
+        self._pressed: float | None = None  # the latest that the last press can have been
+        self._doubles: deque[bool] = deque()  # presses that imgui has not come to, oldest first
+
+    def asks(self) -> None:
+        """Take note that GLFW is about to be asked for events."""
+        self._asks = self._now()
+
+    def asked(self) -> None:
+        """Take note that it has told of all that there was."""
+        self._asked = self._now()
+
+    def press(self) -> None:
+        """Take note that the button went down."""
+        now = self._now()
+        waited_for = now - self._asks > _AT_ONCE
+        earliest = now if waited_for else self._asked
+        self._doubles.append(self._pressed is not None and earliest - self._pressed < APART)
+        self._pressed = now
+
+    def longest(self) -> float:
+        """Return what imgui is to take in its next turn for the longest time between two clicks [s]."""
+        if not self._doubles:
+            return APART
+        return _ALWAYS if self._doubles[0] else _NEVER
+
+    def taken(self) -> None:
+        """Take note that imgui has come to the oldest press."""
+        if self._doubles:
+            self._doubles.popleft()

@@ -1,0 +1,83 @@
+"""Keep the window alive: a part of its turn that fails becomes a notice, and the rest goes on.
+
+imgui's own checks raise an exception as well, in the middle of whatever was drawn. What was begun
+and not ended by then (windows, ids, colours, fonts) is ended here, so that the next part finds imgui
+as the one before had left it.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+from imgui_bundle import imgui
+
+Result = TypeVar("Result")
+
+log = logging.getLogger("playground.live")
+
+
+class Guard:
+    """Runs the parts of each turn; ``say`` puts a sentence on the screen."""
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
+        self._told: set[str] = set()  # what the terminal has been told already
+
+    def draw(self, part: str, draw: Callable[[], Result], otherwise: Result) -> Result:
+        """Draw a part of the interface, and leave imgui as it was; return ``otherwise`` where that fails."""
+        before = imgui.internal.ErrorRecoveryState()
+        imgui.internal.error_recovery_store_state(before)
+        try:
+            return draw()
+        except Exception as error:
+            self._tell(part, error)
+            return otherwise
+        finally:
+            with _without_complaint():
+                imgui.internal.error_recovery_try_to_recover_state(before)
+
+    def run(self, part: str, act: Callable[[], Result], otherwise: Result) -> Result:
+        """Do a part that draws nothing; return ``otherwise`` where it fails."""
+        try:
+            return act()
+        except Exception as error:
+            self._tell(part, error)
+            return otherwise
+
+    def _tell(self, part: str, error: Exception) -> None:
+        """Put a failure on the screen, and once, with its traceback, on the terminal."""
+        sentence = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
+        self._say(sentence)
+        if sentence not in self._told:
+            self._told.add(sentence)
+            log.error(sentence, exc_info=error)
+
+
+@contextmanager
+def _without_complaint() -> Iterator[None]:
+    """Have imgui end what is open without raising, printing or showing anything."""
+    io = imgui.get_io()
+    before = (
+        io.config_error_recovery_enable_assert,
+        io.config_error_recovery_enable_debug_log,
+        io.config_error_recovery_enable_tooltip,
+    )
+    io.config_error_recovery_enable_assert = False
+    io.config_error_recovery_enable_debug_log = False
+    io.config_error_recovery_enable_tooltip = False
+    try:
+        yield
+    finally:
+        (
+            io.config_error_recovery_enable_assert,
+            io.config_error_recovery_enable_debug_log,
+            io.config_error_recovery_enable_tooltip,
+        ) = before
+
+
+def _brief(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text[:200]}" if text else type(error).__name__

@@ -1,0 +1,32 @@
+"""Tell the terminal that a window was started from what is wrong, each error once while it lasts."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Callable, Iterable
+
+from playground.errors import Diagnostic
+
+to_log = logging.getLogger("playground.live").error
+"""For who has no command line: Python's log ends on standard error."""
+
+
+class TerminalErrors:
+    """What the terminal has been told of the errors that the window shows; ``tell`` prints there."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+        self._told: frozenset[Diagnostic] = frozenset()
+
+    def take(self, errors: Iterable[Diagnostic]) -> None:
+        """Tell of the errors that were not there the last time; one that was fixed may come again.
+
+        Where the terminal is gone, nobody is told; the window shows them all the same.
+        """
+        now = dict.fromkeys(errors)
+        with contextlib.suppress(OSError, ValueError):
+            for diagnostic in now:
+                if diagnostic not in self._told:
+                    self._tell(str(diagnostic))
+        self._told = frozenset(now)

@@ -1,0 +1,39 @@
+"""The record of a case's fast variants: what is reduced runs, though nobody verified it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from playground.errors import PlaygroundError
+from playground.sketch.canonical import content_of
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Kernel
+from playground.sketch.source import read_source
+from playground.sketch.variant_record import Verified, written
+
+
+def record_text(pairs: Mapping[str, tuple[str, str]]) -> str:
+    """Return a record in which each kernel's text and its variant's, by the variant's file, agree.
+
+    A text that is no kernel has no place in it.
+    """
+    found = {name: _contents(name, *texts) for name, texts in pairs.items()}
+    return written({name: contents for name, contents in found.items() if contents is not None})
+
+
+def _contents(name: str, text: str, beside: str) -> Verified | None:
+    try:
+        plain, variant = _kernel("case.glsl", text), _kernel(name, beside)
+    except PlaygroundError:
+        return None
+    if plain is None or variant is None:
+        return None
+    variant = replace(variant, outputs=plain.outputs, accepts=plain.accepts)
+    return content_of(plain), content_of(variant)
+
+
+def _kernel(name: str, text: str) -> Kernel | None:
+    path = Path.cwd() / name
+    return parse_kernel(name, read_source(path, (), {str(path.resolve()): text}))

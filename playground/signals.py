@@ -1,0 +1,35 @@
+"""End as Ctrl-C does when the system asks: files that are half written are removed, a film is shortened."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+_ASKING = ("SIGTERM", "SIGHUP")  # what a shutdown and a closed terminal send; the second not on Windows
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[list[int]]:
+    """Raise ``KeyboardInterrupt`` in the block where the system asks to end; yields the signals that came.
+
+    Does nothing outside the main thread, and leaves alone a signal that is ignored, as by nohup.
+    """
+    came: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+        raise KeyboardInterrupt
+
+    before = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (getattr(signal, name) for name in _ASKING if hasattr(signal, name)):
+            if signal.getsignal(number) == signal.SIG_DFL:
+                before[number] = signal.signal(number, end)
+    try:
+        yield came
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,80 @@
+"""Say in one hash what a technique's text says, so that two readings of it can be compared.
+
+The text of a kernel counts as the compiler takes it: with its includes, without comments,
+whatever its white space. Of a technique of several passes each pass counts, and how they are
+wired. What a person reads besides (titles, labels, tooltips, units) does not; nor do names of
+files, nor fast variants.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import lru_cache
+from typing import Any
+
+from playground.sketch.model import Graph, Kernel, Parameter, Technique
+from playground.sketch.same import Same
+
+_TOKEN = re.compile(
+    r"[A-Za-z_]\w*"
+    r"|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*"
+    r"|<<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|[-+*/%&|^]="
+    r"|\S"
+)
+
+
+def content_of(technique: Technique) -> str:
+    """Return the hash of a technique's canonical text; worked out once for each object."""
+    return _content_of(Same(technique))
+
+
+@lru_cache(maxsize=2048)
+def _content_of(key: Same[Technique]) -> str:
+    technique = key.object
+    parts = _of_graph(technique) if isinstance(technique, Graph) else _of_kernel(technique)
+    return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()
+
+
+def _of_graph(graph: Graph) -> list[Any]:
+    exports = [[(e.name, e.targets) for e in some] for some in (graph.parameters, graph.inputs)]
+    passes = [
+        (p.name, content_of(p.technique), p.inputs, p.values, p.size, p.repeat, p.feedback)
+        for p in graph.passes
+    ]
+    return [*exports, graph.outputs, passes, graph.agrees]
+
+
+def _of_kernel(kernel: Kernel) -> list[Any]:
+    header: list[Any] = [kernel.kind, kernel.registry, kernel.blend, kernel.depth, kernel.samples]
+    header += [kernel.repeat, kernel.accepts, kernel.visits, kernel.stride, kernel.at_once, kernel.count]
+    header += [kernel.groups, kernel.local, kernel.aligned, kernel.stages, kernel.overwrites]
+    header += [(b.name, b.type, b.count) for b in kernel.buffers]
+    header += [(o.name, o.format) for o in kernel.outputs]
+    header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
+    header += [_parameter(p) for p in kernel.parameters]
+    return [header, kernel.agrees, compiled_text(kernel.source.code)]
+
+
+def _parameter(parameter: Parameter) -> tuple[Any, ...]:
+    widget = parameter.widget
+    what = (widget.kind, widget.low, widget.high, widget.choices)
+    return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
+
+
+def _sampling(read: Any) -> tuple[Any, ...]:
+    return read.sampling.filter, read.sampling.wrap, read.sampling.mipmap
+
+
+def compiled_text(code: str) -> str:
+    """Return a text without comments as a compiler takes it: tokens, one space between each two.
+
+    A line of the preprocessor stays a line, with its spaces: they can mean something there.
+    """
+    found: list[str] = []
+    for line in code.split("\n"):
+        if line.lstrip().startswith("#"):
+            found.append(f"\n{' '.join(line.split())}\n")
+        else:
+            found += _TOKEN.findall(line)
+    return " ".join(found)

@@ -1,0 +1,93 @@
+"""Fast variants: which of them may run in place of a technique, and why another may not.
+
+A technique's canonical form is its plain text. A fast variant beside it, a ``.comp`` or the
+passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
+their contents (see ``canonical``) are in a record (see ``variant_record``). What is asked here
+is asked of the techniques as they are at hand, so a text that stands in for a file's, or a
+kernel that was changed in memory, counts as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import replace
+from functools import lru_cache
+
+from playground.paths import shown
+from playground.sketch.canonical import content_of
+from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
+from playground.sketch.same import Same
+
+
+def standing(technique: Technique, kinds: Collection[str]) -> Variant | None:
+    """Return the fast variant of some ``kinds`` that runs in place of a technique, if one may."""
+    found = (v for v in technique.variants if v.kind in kinds and is_verified(technique, v))
+    return next(found, None)
+
+
+def is_verified(technique: Technique, variant: Variant) -> bool:
+    """Say whether a technique and its fast variant are those that were found to agree."""
+    return variant.verified == (content_of(technique), content_of(variant.technique))
+
+
+def left_out(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[str, ...]:
+    """Return a sentence for each fast variant of some ``kinds`` that its sketch cannot have run, and why."""
+    if sketch.plain:
+        return ()
+    return _left_out(Same(sketch.graph), frozenset(kinds))
+
+
+@lru_cache(maxsize=64)
+def _left_out(key: Same[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(_sentences(key.object, kinds)))
+
+
+def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
+    for variant in technique.variants:
+        if variant.kind in kinds and not is_verified(technique, variant):
+            yield f"{shown(variant.path)} is left out, the plain form runs: {why_not(technique, variant)}"
+    if isinstance(technique, Graph) and standing(technique, kinds) is None:
+        for spec in technique.passes:
+            yield from _sentences(spec.technique, kinds)
+
+
+def why_not(technique: Technique, variant: Variant) -> str:
+    """Return why a fast variant that is not verified is not."""
+    renew = f"`playground variants renew {shown(variant.path)}` verifies it"
+    beside = shown(technique.path)
+    if not variant.technique.agrees:
+        return 'it does not say how closely it agrees, as agrees = "1e-5"'
+    if variant.verified is None:
+        return f"it was never verified against {beside}; {renew}"
+    if variant.verified[0] == content_of(technique):
+        return f"it has changed since it was verified against {beside}; {renew}"
+    what = f"{beside}, or what it is made of," if isinstance(technique, Graph) else beside
+    return f"{what} has changed since the two were found to agree; {renew} anew"
+
+
+def trusted(technique: Technique) -> Technique:
+    """Return a technique whose fast variants count as verified, those of its passes included."""
+    if isinstance(technique, Graph):
+        passes = tuple(replace(p, technique=trusted(p.technique)) for p in technique.passes)
+        technique = replace(technique, passes=passes)
+    variants = tuple(
+        replace(v, verified=(content_of(technique), content_of(v.technique))) for v in technique.variants
+    )
+    return replace(technique, variants=variants)
+
+
+def without_variants(technique: Technique) -> Technique:
+    """Return a technique in its canonical form; the same object where it has no fast variants."""
+    if not any_variants(technique):
+        return technique
+    if isinstance(technique, Graph):
+        passes = tuple(replace(p, technique=without_variants(p.technique)) for p in technique.passes)
+        return replace(technique, passes=passes, variants=())
+    return replace(technique, variants=())
+
+
+def any_variants(technique: Technique) -> bool:
+    """Say whether a technique, or one inside it, has fast variants."""
+    if technique.variants:
+        return True
+    return isinstance(technique, Graph) and any(any_variants(spec.technique) for spec in technique.passes)

@@ -1,0 +1,152 @@
+"""What a stopped run has not reached: interpolated in pictures, 0 in values, and never gone on from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.engine.plan import make_plan
+from playground.errors import PlaygroundError
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+SIDE = 16
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "generation/NAME"
+set = { seed = 5 }
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+NAMES = ("diamond_square", "midpoint_displacement", "triangle_subdivision")
+
+
+def sketch_of(folder: Path, name: str) -> Sketch:
+    (folder / "s.toml").write_text(SKETCH.replace("NAME", name), encoding="utf-8")
+    return load(folder / "s.toml")
+
+
+def in_triangle(place: tuple[float, float], corners: list[tuple[float, float, float]]) -> float | None:
+    """Return the height at a place of a triangle's plane; None outside."""
+    (ax, ay, ah), (bx, by, bh), (cx, cy, ch) = corners
+    share = np.linalg.solve([[ax, bx, cx], [ay, by, cy], [1, 1, 1]], [*place, 1.0])
+    return float(share @ [ah, bh, ch]) if share.min() > -1e-9 else None
+
+
+def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float64]:
+    """Join the nodes of a lattice, texel by texel, square by square."""
+    found = np.full(raw.shape, np.nan)
+    side = 2 * stride if form == "centres" else stride
+    for y in range(raw.shape[0]):
+        for x in range(raw.shape[1]):
+            west, south = min(x // side * side, SIDE - side), min(y // side * side, SIDE - side)
+            nodes = [(west + i * side, south + j * side) for j in (0, 1) for i in (0, 1)]
+            sw, se, nw, ne = ((float(i), float(j), float(raw[j, i])) for i, j in nodes)
+            if form == "squares":
+                u, v = (x - west) / side, (y - south) / side
+                low, high = sw[2] + u * (se[2] - sw[2]), nw[2] + u * (ne[2] - nw[2])
+                found[y, x] = low + v * (high - low)
+                continue
+            middle = (west + side / 2, south + side / 2, float(raw[south + side // 2, west + side // 2]))
+            triangles = [[sw, se, middle], [se, ne, middle], [ne, nw, middle], [nw, sw, middle]]
+            if form == "triangles":
+                triangles = [[sw, se, ne], [sw, nw, ne]]
+            heights = [h for t in triangles if (h := in_triangle((x, y), t)) is not None]
+            assert heights and np.ptp(heights) < 1e-6
+            found[y, x] = heights[0]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "turns", "stride", "form"),
+    [
+        ("diamond_square", 1, 16, "squares"),
+        ("diamond_square", 2, 8, "centres"),
+        ("diamond_square", 3, 8, "squares"),
+        ("diamond_square", 6, 2, "centres"),
+        ("diamond_square", 7, 2, "squares"),
+        ("midpoint_displacement", 1, 8, "squares"),
+        ("midpoint_displacement", 3, 2, "squares"),
+        ("triangle_subdivision", 1, 16, "triangles"),
+        ("triangle_subdivision", 3, 4, "triangles"),
+    ],
+)
+def test_a_stopped_run_is_joined_up_between_what_is_known(
+    engine: Engine, tmp_path: Path, name: str, turns: int, stride: int, form: str
+) -> None:
+    sketch, steps = sketch_of(tmp_path, name), {"height.raw": turns}
+    raw = engine.read(sketch, "height.raw", steps=steps)
+    shown = engine.read(sketch, "height.raw", steps=steps, interpolated=True)
+    np.testing.assert_allclose(shown, joined(raw, stride, form), atol=2e-6)
+    known = raw != 0
+    assert known.sum() > 2
+    np.testing.assert_array_equal(shown[known], raw[known], "what is known stays as it is, to the last bit")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_picture_is_interpolated_and_values_and_steps_are_not(
+    engine: Engine, tmp_path: Path, name: str
+) -> None:
+    sketch, steps = sketch_of(tmp_path, name), {"height.raw": 2}
+    smooth = engine.render(sketch, size=(17, 17), steps=steps).array
+    engine.read(sketch, "height", steps=steps, interpolated=True)
+    nails = engine.render(sketch, size=(17, 17), steps=steps, interpolated=False).array
+    assert (smooth != nails).any()
+    values = dict(engine.steps(sketch, "height.raw"))
+    np.testing.assert_array_equal(values[2], engine.read(sketch, "height.raw", steps=steps))
+    assert (values[2] == 0).sum() > 200
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
+    engine: Engine, tmp_path: Path, name: str
+) -> None:
+    sketch = sketch_of(tmp_path, name)
+    whole = engine.read(sketch, "height.raw")
+    for turns in range(1, 4):
+        engine.render(sketch, size=(9, 9), steps={"height.raw": turns})
+        np.testing.assert_array_equal(
+            engine.read(sketch, "height.raw", steps={"height.raw": turns + 1}),
+            dict(engine.steps(sketch, "height.raw"))[turns + 1],
+        )
+    np.testing.assert_array_equal(engine.read(sketch, "height.raw"), whole)
+
+
+def test_all_turns_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
+    sketch = sketch_of(tmp_path, "diamond_square")
+    for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
+        step = make_plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
+        assert step is not None and step.between is None
+
+
+def test_the_picture_of_a_stopped_run_has_a_fingerprint_and_a_hash_of_its_own(
+    engine: Engine, tmp_path: Path
+) -> None:
+    sketch, steps = sketch_of(tmp_path, "diamond_square"), {"height.raw": 3}
+    engine.render(sketch, size=(9, 9), steps=steps)
+    drawn = engine.drawn()
+    engine.render(sketch, size=(9, 9), steps=steps, interpolated=False)
+    assert engine.drawn() != drawn
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ('between = "squares"', "give the kernel a stride"),
+        ('visits = "1, 1", stride = "1", between = "sqares"', "did you mean 'squares'"),
+    ],
+)
+def test_mistakes_in_between(tmp_path: Path, options: str, words: str) -> None:
+    text = f'#pragma kernel(output = "height:r32f", repeat = "2", {options})\n'
+    text += "ivec2 visit(ivec2 c) { return c; }\nfloat kernel(ivec2 texel) { return previous(texel); }\n"
+    (tmp_path / "k.glsl").write_text(text, encoding="utf-8")
+    with pytest.raises(PlaygroundError) as caught:
+        load(tmp_path / "k.glsl")
+    assert words in str(caught.value)

@@ -1,0 +1,393 @@
+"""A fast variant runs only while both texts are those that were found to agree, and an edit always shows."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from playground.api import headless
+from playground.engine.engine import Engine
+from playground.engine.verify import verify
+from playground.engine.verify_what import recorded, subjects
+from playground.errors import PlainFormWarning, PlaygroundError, SketchError
+from playground.sketch.load import load
+from playground.sketch.model import VARIANTS, Sketch
+from playground.sketch.variant_record import NAME
+from playground.sketch.variants import left_out
+
+from ..variants import trust
+
+HILL = """\
+#include "rise.glsl"
+#pragma kernel(output = "height:r32f", repeat = "4")
+uniform float scale = 1.0; //! slider(0, 4) How high
+float kernel(ivec2 texel) { return previous(texel) + scale * rise_of(texel.x); }
+"""
+RISE = "// rise.glsl -- how far the land rises.\nfloat rise_of(int x) { return 0.25 * float(x); }\n"
+COMPUTE = """\
+#pragma compute(groups = "size.x, size.y", local = "1, 1", agrees = "1e-5")
+uniform float scale = 1.0; //! slider(0, 4) How high
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    imageStore(out_height, texel, vec4(scale * float(texel.x)));
+}
+"""
+PASSES = """\
+agrees = "1e-5"
+[[pass]]
+name = "part"
+use = "./part"
+[[pass]]
+name = "height"
+use = "./twice"
+[parameters]
+scale = "part.scale"
+"""
+HALF = """\
+#pragma kernel(output = "part:r32f")
+uniform float scale = 1.0; //! slider(0, 4) How high
+float kernel(ivec2 texel) { return 0.5 * scale * float(texel.x); }
+"""
+TWICE = """\
+#pragma kernel(output = "height:r32f")
+uniform sampler2D part; //! input
+float kernel(ivec2 texel) { return 2.0 * texelFetch(part, texel, 0).r; }
+"""
+BODY = '[[pass]]\nname = "h"\nuse = "./hill"\n'
+NESTED = '[[pass]]\nname = "h"\nuse = "./around"\n'
+AROUND = '[[pass]]\nname = "hill"\nuse = "./hill"\n'
+
+
+@pytest.fixture(params=["compute", "passes"])
+def kind(request, ctx):
+    if request.param == "compute" and ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    return request.param
+
+
+@pytest.fixture
+def hill(folder, kind):
+    """A kernel with a fast variant of one kind, verified."""
+    folder.write("hill.glsl", HILL)
+    folder.write("rise.glsl", RISE)
+    folder.write("part.glsl", HALF)
+    folder.write("twice.glsl", TWICE)
+    folder.write(
+        "hill.comp" if kind == "compute" else "hill.fast.toml", COMPUTE if kind == "compute" else PASSES
+    )
+    trust(folder.path)
+    return folder
+
+
+@pytest.fixture
+def told(ctx):
+    """An engine, and the sentences that it says."""
+    sentences: list[str] = []
+    with Engine(ctx, notice=sentences.append) as engine:
+        yield engine, sentences
+
+
+def slopes(scale=1.0):
+    return np.broadcast_to(np.arange(17) * np.float32(scale), (17, 17))
+
+
+def ran_fast(engine: Engine) -> bool:
+    return any(step.kernel.kind == "compute" or ".fast." in step.path for step in engine.plan.walk())
+
+
+def test_a_verified_variant_runs_and_says_nothing(told, hill):
+    engine, sentences = told
+    for scale in (1.0, 3.0):
+        sketch = hill.sketch(BODY).with_values({"h.scale": scale})
+        np.testing.assert_allclose(engine.read(sketch, "h"), slopes(scale), atol=1e-5)
+        assert ran_fast(engine)
+    assert sentences == []
+
+
+def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(told, hill):
+    engine, sentences = told
+    engine.read(hill.sketch(BODY), "h")
+    hill.write("hill.glsl", HILL.replace("+ scale", "+ 0.5 * scale"))
+    for _ in range(2):
+        np.testing.assert_allclose(engine.read(hill.sketch(BODY), "h"), slopes(0.5))
+    assert not ran_fast(engine)
+    (sentence,) = sentences
+    assert "is left out, the plain form runs" in sentence
+    assert "hill.glsl has changed since the two were found to agree" in sentence
+
+
+def test_comments_and_white_space_change_nothing(told, hill):
+    engine, sentences = told
+    text = HILL.replace("float kernel", "// mine\nfloat   kernel").replace("How high", "A tooltip")
+    hill.write("hill.glsl", text.replace("{ return", "{\n\n    return"))
+    hill.write("rise.glsl", "/* more\nwords */\n" + RISE)
+    engine.read(hill.sketch(BODY), "h")
+    assert ran_fast(engine) and sentences == []
+
+
+EDITS = {
+    "an include": ("rise.glsl", "0.25", "0.5"),
+    "the header": ("hill.glsl", 'repeat = "4"', 'repeat = "8"'),
+    "a default": ("hill.glsl", "scale = 1.0", "scale = 2.0"),
+    "a range": ("hill.glsl", "slider(0, 4)", "slider(0, 40)"),
+}
+
+
+@pytest.mark.parametrize("what", EDITS)
+def test_whatever_the_plain_text_is_made_of_counts(told, hill, what):
+    engine, sentences = told
+    name, before, after = EDITS[what]
+    text = (hill.path / name).read_text()
+    assert before in text
+    hill.write(name, text.replace(before, after))
+    sketch = hill.sketch(BODY)
+    found = engine.read(sketch, "h")
+    assert not ran_fast(engine) and len(sentences) == 1
+    np.testing.assert_array_equal(found, engine.read(sketch.plainly(), "h"))
+
+
+def test_an_edited_variant_does_not_run_before_it_is_verified(told, hill, kind):
+    engine, sentences = told
+    if kind == "compute":
+        hill.write("hill.comp", COMPUTE.replace("scale * float", "2.0 * scale * float"))
+    else:
+        hill.write("twice.glsl", TWICE.replace("2.0", "4.0"))
+    np.testing.assert_allclose(engine.read(hill.sketch(BODY), "h"), slopes())
+    assert not ran_fast(engine)
+    (sentence,) = sentences
+    assert "it has changed since it was verified" in sentence and "playground variants renew" in sentence
+
+
+def test_one_that_was_never_verified_does_not_run(told, hill):
+    engine, sentences = told
+    (hill.path / NAME).unlink()
+    np.testing.assert_allclose(engine.read(hill.sketch(BODY), "h"), slopes())
+    assert not ran_fast(engine)
+    assert "was never verified against" in sentences[0]
+    assert not (hill.path / NAME).exists(), "nothing is written unasked"
+
+
+def test_an_edit_inside_a_technique_around_it_shows_too(told, hill):
+    engine, sentences = told
+    hill.write("around.toml", AROUND)
+    engine.read(hill.sketch(NESTED), "h")
+    assert ran_fast(engine)
+    hill.write("hill.glsl", HILL.replace("+ scale", "+ 0.5 * scale"))
+    np.testing.assert_allclose(engine.read(hill.sketch(NESTED), "h"), slopes(0.5))
+    assert len(sentences) == 1
+
+
+def test_an_inner_pass_counts_for_a_technique_s_variant(told, hill, kind):
+    engine, sentences = told
+    hill.write("around.toml", AROUND + '[parameters]\nscale = "hill.scale"\n')
+    hill.write(
+        "around.comp" if kind == "compute" else "around.fast.toml", COMPUTE if kind == "compute" else PASSES
+    )
+    trust(hill.path)
+    engine.read(hill.sketch(NESTED), "h")
+    assert ran_fast(engine) and "h.hill" not in engine.runs
+    hill.write("rise.glsl", RISE.replace("0.25", "0.5"))
+    np.testing.assert_allclose(engine.read(hill.sketch(NESTED), "h"), slopes(2.0))
+    assert len(sentences) == 2, "neither the technique's nor its pass's runs"
+
+
+def test_plain_forces_the_plain_form(told, hill):
+    engine, sentences = told
+    sketch = hill.sketch(BODY)
+    for plain in (False, True, False):
+        engine.read(sketch.plainly(plain), "h")
+        assert ran_fast(engine) != plain
+    (hill.path / NAME).unlink()
+    engine.read(hill.sketch(BODY).plainly(), "h")
+    assert sentences == [], "who asks for the plain form need not be told of it"
+
+
+def test_steps_are_those_of_the_plain_form(told, hill):
+    engine, _ = told
+    sketch = hill.sketch(BODY)
+    found = [values[0, 4] for _, values in engine.steps(sketch, "h")]
+    assert found == [0, 1, 2, 3, 4]
+    assert not ran_fast(engine)
+
+
+def test_which_form_ran_is_in_keys_and_hashes(told, hill):
+    engine, _ = told
+    sketch = hill.sketch(BODY)
+    forms = [sketch, sketch.plainly()]
+    assert len({engine.fingerprint(one) for one in forms}) == 2
+    for one in forms:
+        engine.render(one, size=(32, 32))
+        assert engine.stale(one, size=(32, 32)) == []
+    engine.render(sketch, size=(32, 32))
+    assert engine.stale(sketch.plainly(), size=(32, 32)) == []
+    assert not any(path.startswith("h") for path in engine.ran), "both stay in memory"
+
+
+def test_only_what_cannot_run_here_is_told(ctx, hill, kind):
+    (hill.path / NAME).unlink()
+    sentences: list[str] = []
+    with Engine(ctx, driver="fragment", notice=sentences.append) as engine:
+        engine.read(hill.sketch(BODY), "h")
+    assert len(sentences) == (kind == "passes"), "without compute a .comp would not run anyway"
+
+
+def test_an_engine_of_one_s_own_warns(hill):
+    (hill.path / NAME).unlink()
+    with headless() as engine, pytest.warns(PlainFormWarning, match="was never verified"):
+        engine.render(hill.sketch(BODY), size=(16, 16))
+
+
+def test_the_passes_of_a_variant_are_no_paths_of_the_sketch(told, hill, kind):
+    engine, _ = told
+    sketch = hill.sketch(BODY)
+    engine.read(sketch, "h")
+    assert engine.plan.flat.outputs.keys() == {"h", "view"}
+    if kind == "passes":
+        assert {"h.fast.part", "h.fast.height"} <= set(engine.ran)
+        with pytest.raises(SketchError, match=r"no pass 'h\.fast\.part'"):
+            engine.read(sketch, "h.fast.part")
+    with pytest.raises(PlaygroundError, match=r"no parameter 'h\.fast\.part\.scale'"):
+        sketch.with_values({"h.fast.part.scale": 2.0})
+
+
+def test_the_fastest_goes_first(ctx, folder):
+    for name, text in {"hill.glsl": HILL, "rise.glsl": RISE, "part.glsl": HALF, "twice.glsl": TWICE}.items():
+        folder.write(name, text)
+    folder.write("hill.comp", COMPUTE)
+    folder.write("hill.fast.toml", PASSES)
+    trust(folder.path)
+    runs = {}
+    for driver in ("auto", "fragment"):
+        with Engine(ctx, driver=driver) as engine:
+            engine.read(folder.sketch(BODY), "h")
+            runs[driver] = engine.ran
+    assert runs["fragment"] == ["h.fast.part", "h.fast.height"]
+    if ctx.version_code >= 430:
+        assert runs["auto"] == ["h"]
+
+
+# ── verifying ────────────────────────────────────────────────────────────────
+
+
+def verdicts(ctx, what, folder):
+    with Engine(ctx) as engine:
+        found = subjects(str(what), folder / "stand-in.png")
+        return [verify(engine, s.variant, s.technique, s.places) for s in found]
+
+
+@pytest.mark.parametrize("of", ["the sketch", "the variant"])
+def test_renewing_draws_both_and_records_what_agrees(ctx, told, hill, kind, tmp_path, of):
+    engine, sentences = told
+    (hill.path / NAME).unlink()
+    sketch = hill.sketch(BODY)
+    own = next(hill.path.glob("hill.comp" if kind == "compute" else "hill.fast.toml"))
+    (found,) = verdicts(ctx, hill.path if of == "the sketch" else own, tmp_path)
+    assert found.ok and found.drawings > 10
+    assert recorded([found]) == [hill.path / NAME]
+    engine.read(load(sketch.file), "h")
+    assert ran_fast(engine) and sentences == []
+
+
+WRONG = {
+    "everywhere": ("scale * float(texel.x)", "1.01 * scale * float(texel.x)", "height differs by"),
+    "at odd sizes": ("scale * float", "(size.x % 2 == 1 ? 2.0 : 1.0) * scale * float", "height differs by"),
+    "at one end of a slider": ("scale * float", "min(scale, 3.0) * float", "with scale = 4.0"),
+    "where the land is not square": (
+        "scale * float",
+        "(spacing.x != spacing.y ? 2.0 : 1.0) * scale * float",
+        "by",
+    ),
+}
+
+
+@pytest.mark.parametrize("where", WRONG)
+def test_one_that_differs_is_not_recorded(ctx, folder, tmp_path, where):
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    before, after, words = WRONG[where]
+    folder.write("hill.glsl", HILL)
+    folder.write("rise.glsl", RISE)
+    folder.write("hill.comp", COMPUTE.replace(before, after))
+    trust(folder.path)
+    sketch = folder.sketch(BODY)
+    (found,) = verdicts(ctx, folder.path, tmp_path)
+    assert not found.ok and words in found.wrong and "hill.glsl" in found.wrong
+    recorded([found])
+    assert json.loads((folder.path / NAME).read_text())["variants"] == {}
+    assert len(left_out(load(sketch.file))) == 1
+
+
+def test_one_without_a_bound_is_refused_in_a_sentence(ctx, folder, tmp_path):
+    folder.write("hill.glsl", HILL)
+    folder.write("rise.glsl", RISE)
+    folder.write("hill.comp", COMPUTE.replace(', agrees = "1e-5"', ""))
+    (sentence,) = left_out(folder.sketch(BODY))
+    assert sentence.endswith('it does not say how closely it agrees, as agrees = "1e-5"')
+    (found,) = verdicts(ctx, folder.path, tmp_path)
+    assert not found.ok and "how closely" in found.wrong
+
+
+@pytest.mark.parametrize(
+    ("agrees", "words"),
+    [
+        ("nearly", "'nearly' states no bound"),
+        ("0", "'0' states no bound"),
+        ("hight: exact", "no output 'hight'; did you mean 'height'"),
+        ("exact; 1e-5", "all other outputs stands twice"),
+    ],
+)
+def test_a_bound_that_is_none_is_a_sentence(folder, agrees, words):
+    folder.write("hill.glsl", HILL)
+    folder.write("rise.glsl", RISE)
+    folder.write("hill.comp", COMPUTE.replace("1e-5", agrees))
+    with pytest.raises(PlaygroundError, match=words):
+        folder.sketch(BODY)
+
+
+def test_a_damaged_record_is_a_sentence(hill):
+    hill.write(NAME, '{"format": 1, "variants": [')
+    with pytest.raises(SketchError, match="not a record of fast variants; remove it") as caught:
+        hill.sketch(BODY)
+    assert caught.value.diagnostics[0].file.endswith(NAME)
+
+
+# ── the shape of a .fast.toml ────────────────────────────────────────────────
+
+SHAPES = {
+    "'scala' is not among the parameters and inputs of hill; did you mean 'scale'": (
+        "\nscale =",
+        "\nscala =",
+    ),
+    "gives part:r32f; hill gives height:r32f": ('[[pass]]\nname = "height"\nuse = "./twice"\n', ""),
+    "use each other in a circle": ('use = "./twice"', 'use = "./hill"'),
+}
+
+
+@pytest.mark.parametrize("words", SHAPES)
+def test_a_fast_toml_has_its_technique_s_shape(folder, words):
+    for name, text in {"hill.glsl": HILL, "rise.glsl": RISE, "part.glsl": HALF, "twice.glsl": TWICE}.items():
+        folder.write(name, text)
+    before, after = SHAPES[words]
+    assert before in PASSES
+    folder.write("hill.fast.toml", PASSES.replace(before, after))
+    with pytest.raises(SketchError, match=words):
+        folder.sketch(BODY)
+
+
+def test_a_fast_toml_is_not_used_by_its_own_name_and_opens_its_technique(folder):
+    for name, text in {"hill.glsl": HILL, "rise.glsl": RISE, "part.glsl": HALF, "twice.glsl": TWICE}.items():
+        folder.write(name, text)
+    path = folder.write("hill.fast.toml", PASSES)
+    with pytest.raises(SketchError, match=r"'\./hill\.fast' is a fast variant; use = '\./hill' runs it"):
+        folder.sketch(BODY.replace("./hill", "./hill.fast"))
+    assert isinstance(load(path), Sketch) and load(path).graph.find("height").technique.name == "hill"
+    (folder.path / "hill.glsl").unlink()
+    with pytest.raises(SketchError, match=r"in place of hill\.glsl or hill\.toml, which is missing"):
+        load(path)
+
+
+def test_variants_of_either_kind_are_a_kind(hill, kind):
+    assert [v.kind for v in hill.sketch(BODY).graph.passes[0].technique.variants] == [kind]
+    assert kind in VARIANTS

@@ -1,0 +1,152 @@
+"""Images and elevation files are read by the trial first: what it does not survive is not loaded here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.trial import TrialReport
+from playground.errors import TrialCrash
+from playground.images.files import write_png
+from playground.live.session import Session, Stage
+from playground.sketch.model import Camera
+from playground.terrain import elevation, sources
+
+from .test_session import FakeTrial
+
+SIZE = (32, 32)
+SKETCH = """format = 1
+extent = 100.0
+[[pass]]
+name = "height"
+use = "generation/heightmap"
+set = { elevation = "land.npy" }
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+
+
+@pytest.fixture
+def read(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """Give the names of the elevation files that this process has read."""
+    names: list[str] = []
+
+    def reading(path: Path, **named: object) -> elevation.Elevation:
+        names.append(path.name)
+        return elevation.read_elevation(path, **named)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(sources, "read_elevation", reading)
+    sources._read.cache_clear()
+    yield names
+    sources._read.cache_clear()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, slope in (("land.npy", 1.0), ("other.npy", 2.0)):
+        np.save(tmp_path / name, slope * np.outer(np.ones(9), np.arange(9)).astype(np.float32))
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def session(folder: Path, any_engine: Engine, read: list[str]) -> Iterator[Session]:
+    made = Session(any_engine, folder, trial=FakeTrial())
+    yield made
+    made.release()
+
+
+def answer(session: Session, report: TrialReport) -> None:
+    trial = session._trial
+    assert isinstance(trial, FakeTrial)
+    trial.answer = report
+    session.frame(SIZE)
+
+
+def test_the_first_picture_s_file_is_read_by_the_trial_first(session: Session, read: list[str]) -> None:
+    session.frame(SIZE)
+    assert session.testing and read == []
+    answer(session, TrialReport(True))
+    assert session.sketch is not None and set(read) == {"land.npy"}
+
+
+def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
+    session: Session, folder: Path, read: list[str]
+) -> None:
+    answer(session, TrialReport(True))
+    read.clear()
+    np.save(folder / "land.npy", np.eye(11, dtype=np.float32))
+    session.reload()
+    assert session.testing and read == []
+    answer(session, TrialReport(False, TrialCrash("ran out of memory")))
+    session.look(Camera(azimuth=12.0))
+    assert session.frame(SIZE) is not None, "the last good picture stays"
+    assert session.stage is Stage.FAILED and "ran out of memory" in str(session.error)
+    assert read == []
+    session.reload()
+    assert session.testing, "it is tried again, not believed"
+    answer(session, TrialReport(True))
+    assert session.error is None and read == ["land.npy"]
+    session.reload()
+    assert not session.testing, "nothing of it is new by now"
+
+
+@pytest.mark.parametrize("name", ["other.npy", "gone.npy"])
+def test_a_file_chosen_by_hand_is_tried_first(
+    session: Session, folder: Path, read: list[str], name: str
+) -> None:
+    answer(session, TrialReport(True))
+    read.clear()
+    session.set("height.elevation", str(folder / name))
+    assert session.testing and read == []
+    answer(session, TrialReport(False, TrialCrash("the decoder crashed")))
+    assert "the decoder crashed" in str(session.error) and read == []
+    session.frame(SIZE)
+    assert read == [], "what is shown stays as it was"
+    session.set("height.elevation", str(folder / "land.npy"))
+    session.frame(SIZE)
+    assert session.error is None and not session.testing and session.stage is Stage.NONE
+
+
+def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
+    session: Session, folder: Path, read: list[str]
+) -> None:
+    answer(session, TrialReport(True))
+    before = session.draws
+    session.set("height.elevation", str(folder / "other.npy"))
+    session.set("view.channel", "red")
+    answer(session, TrialReport(True))
+    assert session.error is None and session.draws > before and "other.npy" in read
+    assert session.shown is not None
+    assert dict(session.shown.edits.values)["height.elevation"] == str(folder / "other.npy")
+    assert "view.channel" in dict(session.shown.edits.values)
+
+
+def test_other_values_wait_for_nothing(session: Session) -> None:
+    answer(session, TrialReport(True))
+    session.set("view.channel", "red")
+    assert not session.testing
+
+
+def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
+    from playground.engine.trial import Trial, TrySketch
+    from playground.sketch.load import load
+
+    with (folder / "land.npy").open("wb") as file:  # 4 GiB of float32 and of holes
+        np.lib.format.write_array_header_1_0(
+            file, {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
+        )
+        file.truncate(file.tell() + 8 * 16384**2)
+    with Trial(memory_bytes=2**30) as trial:
+        report = trial.run(TrySketch(load(folder)))
+        assert not report.ok and report.error is not None
+        assert "there is not enough memory to read it" in str(report.error)
+        assert "land.npy" in str(report.error)
+        write_png(folder / "fine.png", np.zeros((4, 4, 3), np.uint8))
+        np.save(folder / "land.npy", np.eye(9, dtype=np.float32))
+        assert trial.run(TrySketch(load(folder))).ok, "the same child goes on"

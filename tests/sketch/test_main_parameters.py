@@ -1,0 +1,68 @@
+"""The parameters that a sketch is about: read, checked, kept when it is saved and when a technique goes."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.paths import SKETCHES
+from playground.sketch.assign import resolve
+from playground.sketch.choose import with_technique
+from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
+from playground.sketch.save import save
+
+HEAD = 'format = 1\nmain = ["height.rise"]  # what it is about\n'
+OTHER = '#pragma kernel(output = "height:r32f")\nuniform float fall = 1.0;  //! slider(0, 2)\n'
+OTHER += "float kernel(ivec2 texel) { return fall; }\n"
+
+
+def test_a_sketch_lists_its_main_parameters(folder):
+    assert folder.sketch(head=HEAD).main == ("height.rise",)
+    assert folder.sketch().main == ()
+
+
+@pytest.mark.parametrize(
+    ("main", "words"),
+    [
+        ('["height.rize"]', "did you mean 'height.rise'"),
+        ('["relief"]', "no parameter 'relief'"),
+        ('["height.rise", "height.rise"]', "'height.rise' stands twice"),
+        ('"height.rise"', "expected a list"),
+        ("[1]", "expected paths of parameters"),
+    ],
+)
+def test_a_wrong_one_is_refused_at_its_line(folder, main, words):
+    folder.refused(words, line=2, head=f"format = 1\nmain = {main}\n")
+
+
+def test_a_technique_does_not_take_the_key(folder):
+    folder.write("two.toml", 'main = ["a.rise"]\n[[pass]]\nname = "a"\nuse = "./land"\n')
+    folder.refused("no key 'main' here", 1, "two.toml", body='[[pass]]\nname = "height"\nuse = "./two"\n')
+
+
+def test_it_is_kept_when_a_value_is_saved(folder):
+    file = folder.sketch(head=HEAD)
+    save(file, file.with_values({"height.rise": 1.5}))
+    assert load(file.file).main == ("height.rise",)
+    assert HEAD in (folder.path / "s.toml").read_text(encoding="utf-8")
+
+
+def test_one_that_a_new_technique_lacks_goes_with_the_old_technique(folder):
+    folder.write("other.glsl", OTHER)
+    file = folder.sketch(head=HEAD)
+    other = with_technique(file, "height", "./other")
+    assert other.main == ()
+    save(file, other)
+    assert load(file.file).main == ()
+
+
+def test_of_a_technique_opened_alone_all_its_own_are_main(folder):
+    assert load(folder.path / "land.glsl").main == ("height.rise",)
+
+
+@pytest.mark.parametrize("name", sorted(shipped_sketches()))
+def test_a_shipped_sketch_says_what_it_is_about(name):
+    sketch = load(SKETCHES / f"{name}.toml")
+    assert 1 <= len(sketch.main) <= 8, "a handful: the rest is in the passes"
+    for path in sketch.main:
+        assert resolve(sketch.graph, path)

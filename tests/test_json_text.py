@@ -1,0 +1,25 @@
+"""JSON from elsewhere: what cannot be read is one kind of error, however deep it is."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.json_text import DEEPEST, read_json
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":', '[{"a":'])
+@pytest.mark.parametrize("times", [DEEPEST, 400, 3000, 100_000])
+def test_what_is_nested_too_deeply_is_refused(opening: str, times: int):
+    closing = "".join({"[": "]", "{": "}"}[c] for c in reversed(opening) if c in "[{")
+    for text in (opening * times + "[]" + closing * times, opening * (DEEPEST + 1)):
+        with pytest.raises(ValueError):
+            read_json(text)
+
+
+def test_what_is_nested_as_deep_as_allowed_is_read():
+    text = "[" * DEEPEST + "]" * DEEPEST
+    found = read_json(text)
+    for _ in range(DEEPEST - 1):
+        (found,) = found
+    assert found == []
+    assert read_json(b'{"a": [1, {"b": null}]}') == {"a": [1, {"b": None}]}

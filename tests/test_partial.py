@@ -1,0 +1,117 @@
+"""Half-written files: gone with whoever writes them, however that ends, and nobody else's are touched."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from playground.images.files import replacing
+from playground.partial import partial_file, remove_left_over
+
+ROOT = Path(__file__).resolve().parent.parent
+PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
+LEFT = ".land.png.0123456789ab.part"
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.fixture(autouse=True)
+def _as_in_a_new_process():
+    remove_left_over.cache_clear()
+
+
+def test_a_file_is_there_while_it_is_written_and_gone_after(tmp_path: Path):
+    with partial_file(tmp_path / "a.png") as partial:
+        assert names(tmp_path) == [partial.path.name]
+    assert names(tmp_path) == []
+    with replacing(tmp_path / "a.png") as handle:
+        handle.write(b"new")
+    assert names(tmp_path) == ["a.png"] and (tmp_path / "a.png").read_bytes() == b"new"
+
+
+def test_what_a_dead_process_left_is_removed_and_nothing_else(tmp_path: Path):
+    others = [".land.png.part", "land.png.0123456789ab.part", ".a.0123456789az.part", "b.part"]
+    for name in (LEFT, *others):
+        (tmp_path / name).write_bytes(b"some")
+    (tmp_path / ".folder.0123456789ab.part").mkdir()
+    with replacing(tmp_path / "b.png"):
+        pass
+    assert names(tmp_path) == sorted([".folder.0123456789ab.part", "b.png", *others])
+
+
+WRITES = """
+import sys, time
+from pathlib import Path
+from playground.partial import partial_file
+with partial_file(Path(sys.argv[1])) as partial:
+    print(partial.path.name, flush=True)
+    time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="an open file cannot be removed there")
+def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Path):
+    command = [sys.executable, "-c", WRITES, str(tmp_path / "land.png")]
+    environ = os.environ | {"PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environ) as writer:
+        assert writer.stdout is not None
+        written = writer.stdout.readline().strip()
+        try:
+            with replacing(tmp_path / "a.png"):
+                pass
+            assert names(tmp_path) == sorted(["a.png", written])
+        finally:
+            writer.kill()
+    assert written in names(tmp_path), "nobody could remove it"
+    remove_left_over.cache_clear()
+    with replacing(tmp_path / "a.png"):
+        pass
+    assert names(tmp_path) == ["a.png"]
+
+
+def begun(folder: Path) -> subprocess.Popen[bytes]:
+    """Return a process that draws a large picture, of which the first bytes are there."""
+    (folder / "plain.frag").write_text(PLAIN, encoding="utf-8")
+    command = [sys.executable, "-m", "playground", "render", "plain.frag"]
+    process = subprocess.Popen(
+        [*command, "--size", "30000x30000", "-o", "land.png"],
+        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    while process.poll() is None and not any(p.stat().st_size for p in folder.glob(".land.png.*.part")):
+        time.sleep(0.02)
+    assert process.poll() is None, process.communicate()
+    return process
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_large_picture_that_is_ended_leaves_nothing(tmp_path: Path, name: str):
+    process = begun(tmp_path)
+    number = getattr(signal, name)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, out, err) == (128 + number, b"", b"")
+    assert names(tmp_path) == ["plain.frag"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
+def test_what_a_killed_picture_left_goes_with_the_next(tmp_path: Path):
+    process = begun(tmp_path)
+    process.kill()
+    process.communicate(timeout=120)
+    assert len(names(tmp_path)) == 2
+    done = subprocess.run(
+        [sys.executable, "-m", "playground", "render", "plain.frag", "--size", "4x4", "-o", "land.png"],
+        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert names(tmp_path) == ["land.png", "plain.frag"]
