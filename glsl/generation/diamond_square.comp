@@ -64,9 +64,9 @@ Lattice lattice_of(int level) {
 // What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl does.
 vec2 scale_of(vec2 range) {
     float low = normalise == 1 ? 0.0 : range.x;
-    float span = range.y - low;
+    float span = span_of(vec2(low, range.y));
     // A land without a range becomes 0, or with "max" stays as it is.
-    if (!(span > 1e-37)) span = normalise == 1 ? 1.0 : 3.4e38;
+    if (span == 0.0) span = normalise == 1 ? 1.0 : 3.4e38;
     return vec2(low, span);
 }
 

@@ -2,7 +2,7 @@
 //
 //   gives    height
 //   needs    generation/fourier/wave.glsl, maths/complex.glsl, maths/fourier.glsl, maths/power.glsl,
-//            maths/whole.glsl
+//            maths/whole.glsl, terrain/extremes.glsl
 //   units    heights without unit: 0..1, unless normalise says otherwise
 //   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
 //            others 1992, "Numerical Recipes in C", section 12.3
@@ -34,6 +34,7 @@
 #include "maths/fourier.glsl"
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
+#include "terrain/extremes.glsl"
 #pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 6 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4", agrees = "1e-5")
 
 uniform float roughness = 2.0; //! slider(0, 4) step(0.01) The r of 1 / f^r
@@ -235,8 +236,8 @@ void measure() {
 vec4 normalised(vec4 h, vec2 range) {
     if (normalise == 0) return h;
     float low = normalise == 1 ? 0.0 : range.x;
-    float span = range.y - low;
-    if (!(span > 1e-37)) return normalise == 1 ? h : vec4(0.0);
+    float span = span_of(vec2(low, range.y));
+    if (span == 0.0) return normalise == 1 ? h : vec4(0.0);
     vec4 share = (h - low) / span;
     return normalise == 1 ? share : clamp(share, 0.0, 1.0);
 }

@@ -246,6 +246,7 @@ class Session(Drafts):
         """
         engine.runner.mouse = self.engine.runner.mouse
         engine.plain_forms.notice = silent
+        engine.painted.update(self.engine.painted)
         self.engine, self.plan, self.hasty = engine, None, False
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)

@@ -23,6 +23,7 @@ from typing import Any
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
+from playground.sketch.follows import Rule, follow, rules_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.same import Same
 from playground.sketch.variant_check import INSIDE
@@ -125,6 +126,7 @@ class _Shape:
     paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
     constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
     copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
+    rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
 
 
@@ -151,6 +153,7 @@ def flatten(
             shape.targets[path] = tuple(target.path for target in resolve(graph, path))
         for target in shape.targets[path]:
             values[target] = value
+    follow(shape.rules, values)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
     nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
     return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs, shape.wires)
@@ -202,8 +205,10 @@ def _shape(
         path: {name: maker.real(source) for name, source in found.items()}
         for path, found in maker.wires.items()
     }
+    inside = tuple(f"{path}.{INSIDE}." for path in maker.inside)  # there values are copied
+    rules = rules_of({path: g for path, g in maker.graphs.items() if not f"{path}.".startswith(inside)})
     return _Shape(
-        nodes, maker.specs, maker.graphs, outputs, wires, maker.paths, maker.constants, maker.copied
+        nodes, maker.specs, maker.graphs, outputs, wires, maker.paths, maker.constants, maker.copied, rules
     )
 
 

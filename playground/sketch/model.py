@@ -48,6 +48,15 @@ class Sampling:
 
 
 @dataclass(frozen=True, slots=True)
+class Follows:
+    """An angle that takes a direction's azimuth while it has its default."""
+
+    direction: str  # a parameter of the same file
+    menu: str = ""  # likewise; "" where it always follows
+    choice: int = 0  # of the menu, while it follows
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A uniform with its ``//!`` annotation."""
 
@@ -62,6 +71,7 @@ class Parameter:
     tooltip: str = ""
     sampling: Sampling = Sampling()  # of a file
     painted: bool = False  # a file that may be painted on in the window
+    follows: Follows | None = None  # where its value comes from while nobody sets it
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     file: str = ""
     line: int = 0
@@ -197,6 +207,7 @@ class PassSpec:
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     file: str = ""
     line: int = 0
+    set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
 
     def error(self, message: str) -> SketchError:
         """Return an error that points at this pass."""

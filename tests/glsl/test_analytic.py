@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ..truth.land import Land, cone, real, towards
+from ..truth.sun import sunlight
 from .lands import lit_by
 
 HALF = 2.0**-10
@@ -210,13 +211,52 @@ def test_two_directions_are_enough_for_the_arc(read):
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
 def test_moving_the_sun_looks_at_no_land(kept, sketch, use):
-    made = sketch(steep(33), use)
+    made = sketch(steep(33), use, **({"arc": 135.0} if use == "horizon_sun" else {}))
     kept.read(made, "light")
     for sun in ((140, 20), (140, 60)):
         kept.read(made.with_values({"light.sun": sun}), "light")
         assert sorted(kept.ran) == ["light.light", "light.stand", "light.table"]
     kept.read(made.with_values({"light.sun": (140, 60), "light.sun_colour": (1.0, 0.8, 0.5)}), "light")
     assert sorted(kept.ran) == ["light.light", "light.table"]
+
+
+@pytest.mark.parametrize("azimuth", [30.0, 225.0, 300.0])
+def test_unless_set_the_arc_is_under_the_sun(read, azimuth):
+    """The light of a sun of any azimuth is what the truth says, and not that of a sun in the zenith."""
+    land = steep(33)
+    light = read(land, "horizon_sun", "light", sun=(azimuth, 18.0), gain=1.0)
+    np.testing.assert_array_equal(
+        light, read(land, "horizon_sun", "light", sun=(azimuth, 18.0), arc=azimuth, gain=1.0)
+    )
+    _, truth = sunlight(land, azimuth, 18.0)
+    assert light[..., 0].mean() == pytest.approx(truth.mean(), abs=0.02)
+    assert np.abs(light[..., 0] - truth).mean() < 0.03
+
+
+def test_a_sun_on_a_free_arc_is_measured_anew_when_its_azimuth_changes(kept, sketch):
+    made = sketch(steep(33), "horizon_sun")
+    kept.read(made, "light")
+    kept.read(made.with_values({"light.sun": (135, 60)}), "light")
+    assert sorted(kept.ran) == ["light.light", "light.stand", "light.table"]
+    kept.read(made.with_values({"light.sun": (140, 60)}), "light")
+    assert any("horizons" in path for path in kept.ran)
+    eight = made.with_values({"light.measured": "eight directions"})
+    kept.read(eight, "light")
+    kept.read(eight.with_values({"light.sun": (150, 60)}), "light")
+    assert sorted(kept.ran) == ["light.light", "light.stand", "light.table"]
+
+
+def test_a_daylights_sun_keeps_to_no_arc(kept, sketch):
+    """Its azimuth is in no parameter: it takes eight horizons, whatever is set for the sun."""
+    passes = (
+        '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 16.0, latitude = 40.0 }\n'
+    )
+    land = steep(33)
+    arc, eight = (
+        kept.read(sketch(land, "horizon_sun", passes=passes, arc=0.0, measured=way), "light")
+        for way in ("on its arc", "eight directions")
+    )
+    np.testing.assert_array_equal(arc, eight)
 
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])

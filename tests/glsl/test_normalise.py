@@ -102,6 +102,21 @@ def test_flat_land_is_a_number(engine, sketch_of, mode, base, expected):
     np.testing.assert_array_equal(found, np.float32(expected))
 
 
+@pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
+def test_flat_land_with_roundings_is_flat(engine, sketch_of, base):
+    """A step or two of a float is no land; 32 additions may leave sixteen."""
+    land = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "land")
+    assert 0 < np.ptp(land) < 16 * np.finfo(np.float32).eps * abs(base)
+    found = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "normal")
+    np.testing.assert_array_equal(found, 0)
+
+
+@pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
+def test_land_over_its_roundings_is_stretched(engine, sketch_of, base):
+    found = engine.read(sketch_of(scale=abs(base) * 1e-5, base=base), "normal")
+    assert found.min() == 0.0 and found.max() == 1.0
+
+
 def test_land_below_0_is_not_turned_over_by_max(engine, sketch_of):
     sketch = sketch_of(mode="max", base=-3.0)
     np.testing.assert_array_equal(engine.read(sketch, "normal"), engine.read(sketch, "land"))

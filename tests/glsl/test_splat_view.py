@@ -91,6 +91,74 @@ def test_many_draws_blended_give_the_picture_of_one(any_engine, make_sketch, sam
         np.testing.assert_allclose(found, expected, atol=2.01)
 
 
+COUNT = """
+#include "view/surface.glsl"
+#include "view/vertices.glsl"
+#pragma draw(mesh = "land", output = "frame:rgba16f", blend = "add", depth = "equal")
+uniform sampler2D height;   //! input("linear")
+uniform sampler2D spans;    //! input("black")
+uniform sampler2D errors;   //! input("black")
+uniform int detail = 0;
+uniform int grid = 257;
+uniform float tolerance = 1.0;
+uniform float skirt = 0.03;
+vec4 vertex(vec3 corner, vec4 tile) {
+    vec2 share = share_of_vertex(height, detail, corner, tile);
+    return clip_from_world * vec4(place_of_vertex(height, share, corner.z, extent, relief, skirt).xyz, 1.0);
+}
+vec4 fragment() { return vec4(1.0, 0.0, 0.0, 0.0); }
+"""
+
+
+TIES = """
+[[pass]]
+name = "first"
+use = "view/splat_multipass/first"
+[[pass]]
+name = "land"
+use = "./count"
+inputs = { initial = "first" }
+[inputs]
+height = ["first.height", "land.height"]
+grass = "first.colour"
+"""
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, make_sketch, tmp_path, samples):
+    """At crests, along which the slope beyond begins at the depth of the one in front: both are blended."""
+    rough = (
+        real_land("view/splat", samples)
+        .replace("grid = 65", "")
+        .replace(
+            '"generation/diamond_square"',
+            '"generation/gradient_noise"\nset = { octaves = 8, frequency = 2.2 }',
+        )
+    )
+    (tmp_path / "ties.toml").write_text(TIES)
+    texts = (
+        rough,
+        rough.replace("view/splat", "view/splat_multipass"),
+        rough.replace("view/splat", "./ties"),
+    )
+    land = {"size": 257, "extent": 2560.0, "relief": 470.0, "count": COUNT}
+    one, many, ties = (make_sketch(text, **land) for text in texts)
+    for azimuth, elevation in ((70, 22), (200, 12)):
+        camera = Camera(azimuth=azimuth, elevation=elevation, distance=1800, target=(1280, 1280, 100))
+        mixed, blended = (
+            any_engine.render(s.with_camera(camera), size=(480, 270)).array.astype(int) for s in (one, many)
+        )
+        differs = np.abs(mixed - blended).max(axis=-1) > 2
+        assert differs.mean() < 1e-4
+        if samples == 1:
+            frames = [
+                any_engine.read(ties.with_camera(camera), f"view.{name}", size=(480, 270))[::-1, :, 0]
+                for name in ("first", "land")
+            ]
+            times = frames[1].astype(float) - frames[0]
+            assert (times > 0.9).mean() > 0.3 and (times[differs] > 1.9).all()
+
+
 @pytest.mark.parametrize("detail", ["geomipmap", "morph"])
 def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sketch, detail):
     """With a tolerance below a pixel, in one draw and in four; the four meet the one to 2 of 255 here too."""

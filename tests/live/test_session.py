@@ -11,6 +11,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, SketchError, TrialTimeout
+from playground.images.files import write_png
 from playground.live.files import files_of
 from playground.live.framing import framed
 from playground.live.session import Session, Stage
@@ -496,3 +497,24 @@ def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(benc
     np.testing.assert_array_equal(bench.picture(), at_eight)
     session.reset_values()
     np.testing.assert_array_equal(bench.picture(), whole)
+
+
+PLAIN = """#version 330
+uniform sampler2D tex;  //! file("x.png")
+out vec4 colour;
+void main() { colour = texelFetch(tex, ivec2(0), 0); }
+"""
+
+
+def test_the_image_of_a_plain_shader_is_watched_and_its_change_shows(any_engine: Engine, tmp_path: Path):
+    for level in (50, 200):
+        write_png(tmp_path / "x.png", np.full((2, 2, 4), level, np.uint8))
+        if level == 50:
+            (tmp_path / "look.frag").write_text(PLAIN)
+            session = Session(any_engine, tmp_path / "look.frag")
+            assert tmp_path / "x.png" in session.files
+        session.reload()
+        session.frame(SIZE)
+        frame = session.read()
+        assert frame is not None and frame.array[0, 0, 0] == level
+    session.release()

@@ -2,10 +2,14 @@
 
 import sys
 from pathlib import Path
+from types import ModuleType
 
-# By the folder's own name, since other packages may be called "tests".
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+# The folder's modules import from the one above, so both need their places in a package; and
+# another one may be installed as "tests", which would come before a folder without __init__.py.
+package = ModuleType("tests")
+package.__path__ = [str(Path(__file__).resolve().parent.parent)]
+sys.modules["tests"] = package
 
-from truth.errors import main
+from tests.truth.errors import main  # noqa: E402
 
 main()

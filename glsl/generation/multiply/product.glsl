@@ -1,13 +1,14 @@
 // generation/multiply/product.glsl -- the product of two lands.
 //
 //   gives    height, 0..1; not above either factor
-//   needs    nothing
+//   needs    terrain/extremes.glsl
 //   units    heights without unit; the ranges in the same
 //   source   Belaiche 2010, section 1.3.4
 //   tested   tests/glsl/test_multiply.py, against NumPy
 //
 // All heights fall, low ones more than high ones. That needs factors in 0..1: one that leaves
 // that range is brought to it, lowest to 0 and highest to 1; one that does not is left alone.
+#include "terrain/extremes.glsl"
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D first;        //! input
@@ -17,9 +18,9 @@ uniform sampler2D second_range; //! input
 
 float factor(float h, vec2 range) {
     if (range.x >= 0.0 && range.y <= 1.0) return h;
-    float span = range.y - range.x;
-    // Flat land has no range to stretch; below this, 1 / span is no float.
-    return span > 1e-37 ? clamp((h - range.x) / span, 0.0, 1.0) : 0.0;
+    float span = span_of(range);
+    // Flat land has no range to stretch.
+    return span > 0.0 ? clamp((h - range.x) / span, 0.0, 1.0) : 0.0;
 }
 
 float kernel(ivec2 texel) {

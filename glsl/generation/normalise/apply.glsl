@@ -1,14 +1,15 @@
 // generation/normalise/apply.glsl -- heights moved and stretched by a range that is known.
 //
 //   gives    height: as it is, highest at 1, or lowest at 0 and highest at 1
-//   needs    nothing
+//   needs    terrain/extremes.glsl
 //   units    heights without unit; the range in the same
 //   source   Belaiche 2010, section 4.3.1 ("Normalisation": h 256 / max)
 //   tested   tests/glsl/test_normalise.py, against NumPy
 //
 // The thesis multiplies by 256 for bytes, which reaches 256 and wraps; here the highest is 1.
-// A flat land has no range to stretch: it becomes 0 by "minmax", and stays by "max" unless
+// A flat land, roundings apart, has no range to stretch: it becomes 0 by "minmax", and stays by "max" unless
 // it is above 0. A land wholly below 0 stays by "max", for division would turn it over.
+#include "terrain/extremes.glsl"
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D height; //! input
@@ -20,9 +21,8 @@ float kernel(ivec2 texel) {
     if (mode == 0) return h;
     vec2 found = texelFetch(range, ivec2(0), 0).rg;
     float low = mode == 1 ? 0.0 : found.x;
-    float span = found.y - low;
-    // Below this, 1 / span is no float.
-    if (!(span > 1e-37)) return mode == 1 ? h : 0.0;
+    float span = span_of(vec2(low, found.y));
+    if (span == 0.0) return mode == 1 ? h : 0.0;
     float share = (h - low) / span;
     return mode == 1 ? share : clamp(share, 0.0, 1.0);
 }

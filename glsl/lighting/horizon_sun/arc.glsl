@@ -1,6 +1,6 @@
 // lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, which horizons count, and how much of its disc is over them.
 //
-//   gives    ARC, EIGHT, on_arc, Weights, weights_of, elevation_of, in_diameters, disc_seen
+//   gives    ARC, EIGHT, directions_for, on_arc, Weights, weights_of, elevation_of, in_diameters, disc_seen
 //   needs    maths/angle.glsl
 //   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
 //   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
@@ -9,9 +9,11 @@
 //   tested   tests/glsl/test_analytic.py, against float64
 //
 // The thesis has the sun rise in one direction, go through the zenith and set in the opposite
-// one: two horizons a texel are enough. A sun that stands elsewhere is put on its arc, where it
-// is nearest. With eight horizons the sun may stand anywhere, and its horizon is taken between
-// the two that are nearest to its azimuth, which rounds off what stands between them.
+// one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it;
+// a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may stand
+// anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
+// rounds off what stands between them. The sun of a daylight keeps to no arc, and no parameter
+// knows its azimuth: it takes the eight.
 #ifndef LIGHTING_HORIZON_SUN_ARC
 #define LIGHTING_HORIZON_SUN_ARC
 #include "maths/angle.glsl"
@@ -19,6 +21,11 @@
 // How many directions the horizons were measured in.
 const int ARC = 0;
 const int EIGHT = 1;
+
+// How many count for a sun of a daylight, or of a parameter.
+int directions_for(int measured, bool of_daylight) {
+    return of_daylight ? EIGHT : measured;
+}
 
 // The sun's direction, put on the upright circle through the azimuth `arc` where there is one.
 vec3 on_arc(vec3 to_sun, float arc, int measured) {

@@ -31,8 +31,8 @@ uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth cloc
 uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
 uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
 uniform float clouds = 0.0;              //! slider(0, 1) step(0.01) group("Sun") How much of the sun's light clouds keep back
-uniform int measured = 0;                //! menu("on its arc", "eight directions") group("Sun") A sun that keeps to its arc needs two horizons; with eight it may stand anywhere
-uniform float arc = 135.0;               //! angle(-360, 360) unit("°") group("Sun") Azimuth of the first horizon, and of the sun's arc, which goes on through the zenith
+uniform int measured = 0;                //! menu("on its arc", "eight directions") group("Sun") A sun that keeps to its arc needs two horizons; with eight it may stand anywhere, as that of a daylight always does
+uniform float arc = -360.0;              //! angle follows("sun", "measured", "on its arc") group("Sun") Azimuth of the first horizon, and of the sun's arc, which goes on through the zenith. Unless set, the arc is under the sun, and its horizons are worked out anew when the sun's azimuth changes
 uniform int sun_term = 0;                //! menu("table", "each texel") group("Sun") Sunlight from a table of normals, or worked out for each texel
 uniform int normal = 0;                  //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
 
@@ -41,13 +41,13 @@ vec4 received_at(ivec2 texel) {
     Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, vec3(0.0));
     ivec2 grid = textureSize(height, 0);
     vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
-    float received = max(dot(normal_of_slope(slope), on_arc(given.direction, arc, measured)), 0.0);
+    float received = max(dot(normal_of_slope(slope), on_arc(given.direction, arc, directions_for(measured, wired_daylight))), 0.0);
     return vec4(given.sun * (gain * (1.0 - clouds) * received), received > 0.0 ? 1.0 : 0.0);
 }
 
 void kernel(ivec2 texel, out vec4 light, out float visibility) {
     float horizon = dot(texelFetch(upright, texel, 0), texelFetch(stand, ivec2(0), 0));
-    if (measured == EIGHT) horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
+    if (directions_for(measured, wired_daylight) == EIGHT) horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
     vec4 over = texelFetch(stand, ivec2(2, 0), 0);
     visibility = disc_seen(over.a, horizon);
     vec4 received = received_at(texel);

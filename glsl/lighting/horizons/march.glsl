@@ -41,7 +41,7 @@ float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, floa
     for (int k = 1; k < course.rows; k++) {
         float rows = float(k);
         vec2 at = start + rows * way;
-        if (any(lessThan(at, vec2(-0.5))) || any(greaterThanEqual(at, reach)) || most <= found * rows) break;
+        if (any(lessThan(at, vec2(-0.5))) || any(greaterThan(at, reach)) || most <= found * rows) break;
         float land_there = on_texels ? height_on_line(height, at, across) : height_at(height, at * scale);
         found = max(found, (land_there - foot) * course.steep / rows);
     }

@@ -1,0 +1,322 @@
+"""Every command that the READMEs and the lessons quote runs.
+
+What is quoted is found in the texts: the lines of shell blocks, and what stands between backticks
+and begins with a program's name. Each is run in a folder of its own that holds the files it speaks
+of, at a small size. A command that opens a window is run twice: without a display, where its
+arguments are read and the missing display is told, and, in the slow tests, in a window under Xvfb.
+What is not run is in NOT_RUN, with its reason.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground import cli
+
+from .live.screen import ON_LINUX, Program, Screen
+
+ROOT = Path(__file__).resolve().parent.parent
+TEXTS = ROOT / "playground" / "lessons" / "texts"
+QUOTING = (ROOT / "README.md", ROOT / "glsl" / "README.md", *sorted(TEXTS.rglob("*.md")))
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`]*)?)`")
+FORM = re.compile(r"[…\[\]]|\b(?:FILE|NAME|PATH|FOLDER|DIR)\b")  # how a command is used, not a command
+
+NOT_RUN = {
+    r"export \w+=.*": "sets a variable; tests/live/test_editors.py and tests/commands/test_cache.py read it",
+    r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
+    r"sudo apt-get .*": "needs a network and an administrator",
+    r"\./play test": "is these tests",
+    r"pytest -n 2 --dist loadfile": "is these tests, in two processes",
+    r"playground shots review.*": "serves until it is told to stop: tests/report/test_review.py",
+    r"playground reduce my-land --shot morning": "needs a reference that fails: tests/reduce/test_reduce.py",
+    r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",
+    r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
+    r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
+    r"playground render --video": "names the option; the films of the README are run",
+    r"pytest|pip": "names the program",
+}
+
+FLIGHT = {
+    "format": "playground flight",
+    "version": 1,
+    "sketch": "flight",
+    "size": [64, 36],
+    "step": 1 / 60,
+    "radius": 1.5,
+    "values": {},
+    "start": None,
+}
+PLASMA = """#version 330
+uniform vec2 iResolution;
+uniform float iTime;
+out vec4 colour;
+void main() { colour = vec4(gl_FragCoord.xy / iResolution, fract(iTime), 1.0); }
+"""
+
+
+def quoted() -> list[str]:
+    """Return the commands of all texts, each once, in the order of the texts."""
+    found: dict[str, None] = {}
+    for path in QUOTING:
+        text = path.read_text("utf-8")
+        for kind, block in FENCE.findall(text):
+            found |= dict.fromkeys(lines_of(kind, block))
+        for command in INLINE.findall(FENCE.sub("", text)):
+            found[command] = None
+        if TEXTS in path.parents:  # exercises lie in TOML blocks
+            for _, block in FENCE.findall(text):
+                found |= dict.fromkeys(INLINE.findall(block))
+    return [command for command in found if not FORM.search(command)]
+
+
+def lines_of(kind: str, block: str) -> Iterator[str]:
+    """Yield the commands of a shell block, and of a workflow's steps."""
+    if kind == "sh":
+        for line in block.replace("\\\n", " ").splitlines():
+            command = re.sub(r"\s+# .*", "", line).strip()
+            if command and not command.startswith("#"):
+                yield re.sub(r"\s+", " ", command)
+    if kind == "yaml":
+        for command in re.findall(r"- run: (.*)", block):
+            yield from re.sub(r"\s+#.*", "", command).split(" && ")
+
+
+def arguments(command: str) -> list[str]:
+    """Return what a command gives to the playground; ``./play`` is ``playground``."""
+    return shlex.split(command)[1:]
+
+
+def runs_by_playground(command: str) -> bool:
+    return command.split()[0] in ("playground", "./play") and not command.startswith("./play test")
+
+
+def opens_a_window(command: str) -> bool:
+    words = arguments(command)
+    if command in ("./play", "playground") or words[:1] == ["live"] or words[:2] == ["lesson", "open"]:
+        return True
+    return words[:1] == ["fly"] and "--frames" not in words
+
+
+def is_run(command: str) -> bool:
+    return not any(re.fullmatch(pattern, command) for pattern in NOT_RUN)
+
+
+ALL = quoted()
+OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
+WINDOWS = [c for c in OURS if opens_a_window(c)]
+OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
+SLOW = re.compile(r"lesson (build|check)|reduce|fly|--video|--frames|\.glb|--sweep|20000|--texture")
+
+
+def test_there_are_commands_and_each_reason_is_still_needed():
+    assert len(ALL) > 50
+    unused = [pattern for pattern in NOT_RUN if not any(re.fullmatch(pattern, c) for c in ALL)]
+    assert not unused
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Give a folder that is the present one, with caches and memories of its own."""
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
+    return here
+
+
+def furnish(folder: Path, command: str) -> None:
+    """Put there what a command speaks of and does not make itself."""
+    from playground.templates import make_sketch
+
+    words = arguments(command)
+    for name in ("hills", "my-land"):
+        if words[:1] != ["new"] and (name in words or (name == "my-land" and words == ["check"])):
+            made = make_sketch(folder / name)
+            if words[0] == "reduce":
+                kernel = made / "my_land.glsl"
+                text = kernel.read_text("utf-8")
+                at = text.index("return")
+                kernel.write_text(text[:at] + "float wrong = fract(1.0, 2.0);\n    " + text[at:], "utf-8")
+    if "lesson.zip" in words and words[0] != "pack":
+        make_sketch(folder / "my-land")
+        assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
+    if "plasma.frag" in words:
+        (folder / "plasma.frag").write_text(PLASMA, "utf-8")
+    for land in ("land.png", "land.r16"):
+        if f"height.elevation={land}" in words:
+            assert cli.main(["export", "jacksboro", "--to", land]) == 0
+    if "--replay" in words:
+        (folder / "evening.jsonl").write_text(
+            "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"
+        )
+
+
+def smaller(words: list[str]) -> list[str]:
+    """Return a command's arguments with small pictures, short films, few values and one lesson."""
+    found = list(words)
+    for at, word in enumerate(words):
+        if word == "--size":
+            width, height = (int(n) for n in words[at + 1].split("x"))
+            found[at + 1] = f"{max(width // 100, 32)}x{max(height // 100, 32)}"
+        if word == "--frames" and ".." in words[at + 1]:
+            found[at + 1] = "0..1"
+        if word == "-n":
+            found[at + 1] = "2"
+    if "--video" in found:
+        found += ["--seconds", "0.1"]
+    if found[0] == "render" and "--size" not in found:
+        found += ["--size", "64x36"]
+    if found == ["check"]:
+        found += ["my-land"]
+    if found[:2] in (["lesson", "build"], ["lesson", "check"]):
+        found += ["heightfield"]
+    return found
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(c, marks=pytest.mark.slow if SLOW.search(c) else ())
+        for c in OURS
+        if not opens_a_window(c)
+    ],
+)
+def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str]):
+    furnish(folder, command)
+    status = cli.main(smaller(arguments(command)))
+    assert status == 0, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", WINDOWS)
+def test_without_a_display_only_the_display_is_missing(
+    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    """Its arguments are read before the display is asked for."""
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_SESSION_TYPE"):
+        monkeypatch.delenv(variable, raising=False)
+    furnish(folder, command)
+    status = cli.main(arguments(command))
+    said = capsys.readouterr().err
+    assert "screen to open a window" in said or "no display" in said
+    assert status == (0 if command in ("./play", "playground") else 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [pytest.param(c, marks=ON_LINUX) for c in WINDOWS])
+def test_it_opens_its_window(command: str, folder: Path, tmp_path: Path):
+    furnish(folder, command)
+    screen = Screen(tmp_path, 800, 600)
+    program = Program(screen, tmp_path, [sys.executable, "-m", "playground", *arguments(command)], folder)
+    try:
+        if arguments(command)[:1] == ["fly"]:
+            wait_for_a_picture(program)
+        else:
+            program.wait(lambda now: now["draws"] > 0 and not now["error"])
+    finally:
+        program.close()
+        screen.close()
+
+
+def wait_for_a_picture(program: Program) -> None:
+    """Wait until something is on the screen: ``fly`` does not tell what it shows."""
+    import time
+
+    end = time.monotonic() + 90
+    while time.monotonic() < end:
+        assert program.process.poll() is None, program.complaint()
+        if program.screen.pixels().std() > 5:
+            return
+        time.sleep(0.2)
+    pytest.fail("no picture")
+
+
+# How a command is used, where that is quoted
+
+
+ROWS = re.findall(
+    r"^\| `playground ([a-z]+(?: [a-z]+)?)[^|]*\|[^|]*\|$", QUOTING[0].read_text("utf-8"), re.MULTILINE
+)
+
+
+@pytest.mark.parametrize("name", sorted(set(ROWS)))
+def test_the_options_in_the_table_of_commands_are_the_commands(name: str, capsys: pytest.CaptureFixture[str]):
+    rows = [
+        line
+        for line in QUOTING[0].read_text("utf-8").splitlines()
+        if line.startswith(f"| `playground {name}")
+    ]
+    known = ""
+    for command in (name.split(), name.split()[:1]):
+        cli.main([*command, "--help"])
+        known += capsys.readouterr().out
+    unknown = {option for row in rows for option in re.findall(r"--[a-z-]+", row) if option not in known}
+    assert not unknown and rows
+
+
+# Programs beside the playground
+
+
+def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.CompletedProcess[str]:
+    """Run a program of this Python's; return what it said."""
+    words = [sys.executable if word == "python" else word for word in words]
+    if words[0] == "pytest":
+        words[:1] = [sys.executable, "-m", "pytest"]
+    return subprocess.run(
+        words, cwd=folder, capture_output=True, text=True, encoding="utf-8", timeout=timeout
+    )
+
+
+SMALL = {
+    "python tests/truth": ["--size", "25"],
+    "python tests/benchmarks/generation.py": ["--size", "65", "--rounds", "1"],
+    "python tests/benchmarks/lighting.py": ["--size", "65", "--rounds", "1"],
+}
+IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
+OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
+
+
+def test_every_other_program_is_known():
+    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY}
+
+
+def test_the_truth_is_printed():
+    done = run(ROOT, ["python", "tests/truth", "--size", "25", "L·N"])
+    assert done.returncode == 0, done.stderr
+    assert "L·N" in done.stdout and "cone" in done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", SMALL)
+def test_a_program_of_the_checkout_runs(command: str):
+    done = run(ROOT, [*command.split(), *SMALL[command]])
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.slow
+def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
+    """As the README has it: no reference fails, an update writes it, and then it passes."""
+    assert cli.main(["new", "hills"]) == 0
+    for command, wanted in zip(IN_HILLS, (1, None, 0), strict=True):
+        done = run(folder, shlex.split(command))
+        assert wanted is None or done.returncode == wanted, done.stdout
+    assert list((folder / "hills" / "screenshots").rglob("*.png"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", OF_PLAY)
+def test_play_test_finds_what_is_named(command: str):
+    """The tests themselves are run elsewhere; an update would write this checkout's references."""
+    done = run(ROOT, ["pytest", "--collect-only", "-q", "-m", "", *shlex.split(command)[2:]])
+    assert done.returncode == 0 and "jacksboro" in done.stdout, done.stdout
