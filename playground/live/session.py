@@ -246,8 +246,8 @@ class Session(Drafts):
         then it waits until something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
-        engine.painted.update(self.engine.painted)
         engine.plain_forms.notice = silent
+        engine.painted.update(self.engine.painted)
         self.engine, self.plan, self.hasty = engine, None, False
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
