@@ -46,7 +46,9 @@ def read_follows(
         return Follows(words[0])
     menus = {name: p.widget.choices for name, p in by_name.items() if p.widget.kind == "menu"}
     if words[1] not in menus:
-        raise line.error(f"follows of '{parameter.name}': no menu '{words[1]}' here{nearest(words[1], menus)}")
+        raise line.error(
+            f"follows of '{parameter.name}': no menu '{words[1]}' here{nearest(words[1], menus)}"
+        )
     choices = menus[words[1]]
     if words[2] not in choices:
         raise line.error(

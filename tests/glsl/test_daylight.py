@@ -8,7 +8,7 @@ from scipy.ndimage import map_coordinates
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
-from playground.sketch.model import Camera
+from playground.sketch.model import Camera, kernels_of
 from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names
 
@@ -338,6 +338,17 @@ def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sk
     assert np.ptp(found[..., 0]) > 0.05
     same = np.abs(found - wanted) <= 2e-3 * np.abs(wanted) + 1e-4
     assert same.mean() > 0.995  # a grazing ray may fall to either side
+
+
+def test_turbidity_is_said_once():
+    """One kernel has it and all others read that: nothing can be set to another air."""
+    graph = read_technique("lighting/daylight", GLSL, GLSL)
+    having = [path for path, kernel in kernels_of(graph) if kernel.parameter("turbidity")]
+    views = [n for n in shipped_techniques() if n.startswith("view/")]
+    having += [
+        n for n in views for _, k in kernels_of(read_technique(n, GLSL, GLSL)) if k.parameter("turbidity")
+    ]
+    assert having == ["air"]
 
 
 # ── seen behind the land ─────────────────────────────────────────────────────

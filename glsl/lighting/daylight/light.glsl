@@ -4,7 +4,7 @@
 //            sky's light on level ground; 3 the zenith, what all is multiplied by for the eye; 4 the
 //            mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of open sky;
 //            from 7 on the mean horizon as seen from each height of sky/dome.glsl
-//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place and two tables
+//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place, the air and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it; degrees
 //   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
 //            light, whose reading to the power -adaptation is the exposure
@@ -22,7 +22,7 @@
 uniform sampler2D place;           //! input
 uniform sampler2D columns;         //! input
 uniform sampler2D dome;            //! input
-uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform sampler2D air;             //! input
 uniform float clouds = 0.0;        //! slider(0, 1) step(0.01) Cover of cloud: dims the sun, whitens the sky
 uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01) How much of the light's loss the eye makes up for
 
@@ -40,7 +40,7 @@ vec3 towards(float rise, float turned, vec3 sun) {
 vec4 kernel(ivec2 texel) {
     vec2 at = texelFetch(place, ivec2(0), 0).rg;
     vec3 sun = to_sun(at);
-    vec3 beam = left_of_sunlight(columns, air_of(turbidity), 0.0, sun.z);
+    vec3 beam = left_of_sunlight(columns, air_of(texelFetch(air, ivec2(0), 0).r), 0.0, sun.z);
     vec3 sky = vec3(0.0);
     vec3 horizon = vec3(0.0);
     float height = dome_height(clamp(texel.x - 7, 0, DOMES - 1));
