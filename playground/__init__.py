@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import ParameterError as ParameterError
     from playground.errors import PlainFormWarning as PlainFormWarning
     from playground.errors import PlaygroundError as PlaygroundError
+    from playground.errors import PlaygroundWarning as PlaygroundWarning
     from playground.errors import ShaderError as ShaderError
     from playground.errors import SketchError as SketchError
     from playground.errors import TrialCrash as TrialCrash
@@ -71,6 +72,7 @@ _HOMES = {
     "Sketch": "playground.sketch.model",
     "PlainFormWarning": "playground.errors",
     "PlaygroundError": "playground.errors",
+    "PlaygroundWarning": "playground.errors",
     "SketchError": "playground.errors",
     "ParameterError": "playground.errors",
     "ShaderError": "playground.errors",

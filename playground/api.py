@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from playground.engine.engine import Engine, opened
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import warn
+from playground.errors import Diagnostic, PlaygroundWarning
 from playground.gpu.context import open_context
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
@@ -23,11 +25,20 @@ def headless(
     """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
 
     ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". Where a fast variant does not run, ``notice`` is
-    told why: a ``PlainFormWarning``, unless told otherwise. Raises ``ContextError`` in a sentence.
+    ``driver`` is "auto", "fragment" or "compute". What is drawn though something is wrong with
+    it is told by Python's warnings, as ``PlaygroundWarning``, once. Where a fast variant does not
+    run, ``notice`` is told why: a ``PlainFormWarning``, unless told otherwise, and then the other
+    warnings are left out as well. Raises ``ContextError`` in a sentence.
     """
     context = open_context(software=software, device=device)
-    return Engine(context, driver=driver, owns_context=True, notice=notice)
+    engine = Engine(context, driver=driver, owns_context=True, notice=notice)
+    if notice is warn:
+        engine.warnings.tell = _warn
+    return engine
+
+
+def _warn(warning: Diagnostic) -> None:
+    warnings.warn(str(warning), PlaygroundWarning, stacklevel=2)
 
 
 def render(

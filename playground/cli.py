@@ -46,7 +46,7 @@ from playground.commands.arguments import (
     quoted,
     read_device,
 )
-from playground.errors import PlainFormWarning, PlaygroundError, nearest
+from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
@@ -88,7 +88,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
-        with _noting_plain_forms():
+        with _printing_warnings():
             status = app(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
@@ -120,18 +120,20 @@ def _status(given: list[str]) -> int:
 
 
 @contextmanager
-def _noting_plain_forms() -> Iterator[None]:
-    """Print, as a note, why a fast variant does not run; other warnings are Python's."""
+def _printing_warnings() -> Iterator[None]:
+    """Print the playground's own warnings as sentences, why a fast variant does not run as a note."""
     with warnings.catch_warnings():
         others = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *more: Any, **named: Any) -> None:
             if issubclass(category, PlainFormWarning):
                 note(f"note: {message}")
+            elif issubclass(category, PlaygroundWarning):
+                complain(str(message), "warning")
             else:
                 others(message, category, *more, **named)
 
-        warnings.simplefilter("always", PlainFormWarning)
+        warnings.simplefilter("always", PlaygroundWarning)
         warnings.showwarning = show
         yield
 

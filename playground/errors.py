@@ -11,6 +11,8 @@
         ├── TrialTimeout           … it took too long
         └── TrialCrash             … it died
 
+``PlaygroundWarning`` is for what can be drawn all the same.
+
 A message is one sentence: what was found, what was expected, the nearest valid
 choice. The command line prints it and leaves with status 2; it never shows a
 traceback for one of these.
@@ -127,7 +129,11 @@ class TrialCrash(TrialError):
     """The trial child died: the driver or its compiler crashed, or memory ran out."""
 
 
-class PlainFormWarning(UserWarning):
+class PlaygroundWarning(UserWarning):
+    """What can be drawn, though not as its author may think: Python's own warnings tell it to a program."""
+
+
+class PlainFormWarning(PlaygroundWarning):
     """A fast variant does not run: its technique's text is not the one that it was verified against."""
 
 

@@ -217,6 +217,7 @@ def test_completion_offers_the_shipped_sketches(start: Run):
         (["render", "--device", "first"], "--device first: expected the number of an EGL device"),
         (["--device", "-1", "render"], "--device -1: expected the number of an EGL device"),
         (["render", "--steps", "height"], "--steps height: expected a pass and a whole number, as height=9"),
+        (["render", "diamond_square", "--steps", "height=99"], "steps: 'height.raw' stops after 99 steps"),
         (["render", "--steps", "height=3"], "steps: no repeated pass 'height' in sketch jacksboro"),
         (["render", "--shot", "nigth"], "no shot 'nigth' in sketch jacksboro"),
         (["render", "--preset", "nigth"], "no preset 'nigth'"),

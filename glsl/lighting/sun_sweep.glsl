@@ -11,6 +11,7 @@
 // wide that is. It has the land's size; at any other, which those give it who do not want it, it
 // knows of no horizon. This text walks a texel's band from its beginning, for every texel anew;
 // the compute variant walks each band once, so that a land costs as many steps as it has texels.
+// Without compute shaders the methods of shadow march: that is twenty times as fast as this text.
 //
 // Against a march: hard shadows differ on at most 0.6 % of the texels of the lands that ship, at
 // a sun of 5 to 25 degrees, and at a shadow's edge; a soft part by 0.006 on average, by 0.02 for a

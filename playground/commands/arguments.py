@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from playground.errors import ParameterError, PlaygroundError
-from playground.sketch.model import DRIVERS, LARGEST_SIDE, Sketch
+from playground.sketch.model import DRIVERS, LARGEST_SIDE, Shot, Sketch
 
 FAILED = 1
 """Exit status of ``check`` and ``doctor`` that found something."""
@@ -222,6 +222,7 @@ class Moment:
     time: float
     steps: dict[str, int]
     size: tuple[int, int] | None
+    shot: Shot | None = None  # that it begins with
 
 
 def moment_of(
@@ -247,7 +248,7 @@ def moment_of(
     usual = promised.time if promised is not None else 0.0
     turns = dict(promised.steps) if promised is not None else {}
     size = promised.size if promised is not None else None
-    return Moment(sketch, usual if time is None else time, turns | (steps or {}), size)
+    return Moment(sketch, usual if time is None else time, turns | (steps or {}), size, promised)
 
 
 def quoted(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,7 +17,7 @@ from playground.commands.arguments import (
     SoftwareOption,
     help_text,
 )
-from playground.errors import counted
+from playground.errors import Diagnostic, counted
 from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
@@ -53,12 +54,15 @@ def check(
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)
     failed, skipped = 0, False
+    told: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (
         Trial(software=renderer.software, device=renderer.device) as trial,
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
             report = check_file(path, trial, root, plain=plain)
+            report = replace(report, warnings=tuple(w for w in report.warnings if w not in told))
+            told |= set(report.warnings)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
@@ -67,7 +71,9 @@ def check(
                 _print_report(report)
             advance()
     if not as_json:
-        print(f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{_why_skipped(skipped)}")
+        warned = f", {counted(len(told), 'warning')}" if told else ""
+        said = f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{warned}"
+        print(f"{said}{_why_skipped(skipped)}")
     if failed:
         raise typer.Exit(FAILED)
 
@@ -80,8 +86,9 @@ def _print_report(report: FileReport) -> None:
     mark = painted("ok", "32", sys.stdout) if report.ok else painted("FAILED", "1;31", sys.stdout)
     skipped = f"  (skipped: {', '.join(report.skipped)})" if report.skipped else ""
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
-    for diagnostic in report.errors:
-        print("\n".join(f"        {line}" for line in str(diagnostic).split("\n")))
+    for diagnostic in (*report.errors, *report.warnings):
+        text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
+        print("\n".join(f"        {line}" for line in text.split("\n")))
     for sentence in report.notes:
         print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

@@ -25,6 +25,7 @@ from playground.commands.arguments import (
 )
 from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
+from playground.terminal import complain
 
 FreshOption = Annotated[
     bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
@@ -143,6 +144,7 @@ def open_window(
         language=language,
         beside=beside,
         keeps=keeps,
+        tell=complain,
     )
     if status:
         raise typer.Exit(status)

@@ -32,7 +32,7 @@ from playground.commands.arguments import (
     read_values,
 )
 from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
-from playground.errors import DataError, ParameterError
+from playground.errors import DataError, ParameterError, counted
 from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
 from playground.streams import Nowhere
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from playground.engine.engine import Engine
     from playground.sketch.model import Sketch
 
+
+_MOST_HIDDEN = 3  # defaults without effect that are told one by one
 
 HELP = help_text(
     "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
@@ -234,6 +236,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
         steps=picture.steps,
         time=picture.time,
     )
+    _say_hidden_defaults(moment.sketch)
     if picture.asked is not None and picture.asked.many:
         make_many(picture.asked, moment, picture.output, picture.size, renderer, picture.driver)
         return
@@ -241,8 +244,10 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
+    from playground.engine.placing import told_at
 
     with (
+        told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),
         _target(picture, sketch) as target,
         headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
     ):
@@ -266,6 +271,18 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
             _print_profile(engine)
     if picture.output != "-":
         print(target)
+
+
+def _say_hidden_defaults(sketch: Sketch) -> None:
+    """Say which defaults of the sketch's own kernels have no effect, for its own files set them over."""
+    from playground.sketch.shadowed import shadowed_by_files
+
+    hidden = shadowed_by_files(sketch)
+    for one in hidden[:_MOST_HIDDEN]:
+        note(str(one))
+    if len(hidden) > _MOST_HIDDEN:
+        more = counted(len(hidden) - _MOST_HIDDEN, "more default")
+        note(f"{more} that a set stands over: playground check lists them")
 
 
 def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int], target: Path) -> None:

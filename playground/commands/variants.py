@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
@@ -18,7 +17,7 @@ from playground.commands.arguments import (
     help_text,
 )
 from playground.errors import counted
-from playground.terminal import print_table, progress
+from playground.terminal import print_json, print_table, progress
 
 if TYPE_CHECKING:
     from playground.engine.verify import Verdict
@@ -31,7 +30,7 @@ HELP = help_text(
     " the bound that the variant states; a file fast_variants.json beside them says so. Otherwise the plain"
     " form runs. Without WHAT, the variants that ship.",
     "playground variants list",
-    "playground variants verify generation/fourier",
+    "playground variants verify lighting",
     "playground variants renew my-land",
 )
 LIST_HELP = help_text(
@@ -82,7 +81,7 @@ def list_(what: WhatArgument = "", as_json: JsonOption = False) -> None:
 
     rows = [_row(subject) for subject in subjects(what, Path())]
     if as_json:
-        print(json.dumps([dict(zip(_HEADINGS, row, strict=True)) for row in rows], indent=2))
+        print_json([dict(zip(_HEADINGS, row, strict=True)) for row in rows])
         return
     print_table("Fast variants", _HEADINGS, rows)
 

@@ -23,7 +23,7 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Kernel, Parameter, Sampling, Value
-from playground.sketch.words import MATCHES, TOWARDS, WINDOW, WIRED
+from playground.sketch.words import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Binder:
         self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
-        self._files: OrderedDict[tuple[str, bool], moderngl.Texture] = OrderedDict()
+        self._files: OrderedDict[tuple[str, bool, bool], moderngl.Texture] = OrderedDict()
         self._units = 0  # texture units used in this frame
 
     def release(self) -> None:
@@ -80,8 +80,8 @@ class Binder:
                 if (name := f"{TOWARDS}{parameter.name}") in program:
                     program.set(name, unit_vector(step.values[parameter.name]))  # type: ignore[arg-type]
             elif parameter.name in program:
-                image = self._file(parameter, step.values[parameter.name])
-                unit = self.texture(program, parameter.name, unit, image, parameter.sampling)
+                unit = self.file(program, parameter, step.values[parameter.name], unit)
+        program.set(UNWIRED, has_unwired(kernel, inputs))
         for declared in kernel.inputs:
             result, texture, output = inputs.get(declared.name, Wired())
             program.set(f"{WIRED}{declared.name}", texture is not None)
@@ -110,12 +110,35 @@ class Binder:
     def texture(
         self, program: Program, name: str, unit: int, texture: moderngl.Texture, sampling: Sampling
     ) -> int:
-        """Bind one texture; return the next free unit."""
+        """Bind one texture to a sampler; return the next free unit."""
+        program.set(name, unit)
+        return self.unit(unit, texture, sampling)
+
+    def unit(self, unit: int, texture: moderngl.Texture, sampling: Sampling) -> int:
+        """Bind one texture to a unit; return the next free one."""
         texture.use(unit)
         self._sampler(sampling).use(unit)
-        program.set(name, unit)
         self._units = max(self._units, unit + 1)
         return unit + 1
+
+    def file(
+        self, program: Program, parameter: Parameter, value: Value, unit: int, *, encoded: bool = False
+    ) -> int:
+        """Bind an image file's texture to a sampler; return the next free unit.
+
+        Its colours are decoded to linear light, or stay as they are ``encoded`` in the file.
+        """
+        path = Path(str(value))
+        key = (content_hash(path), parameter.sampling.mipmap, encoded)
+        if key not in self._files:
+            texture = self._read(path, encoded=encoded)
+            if parameter.sampling.mipmap:
+                texture.build_mipmaps()
+            self._files[key] = texture
+            while len(self._files) > _MAX_FILES:
+                self._files.popitem(last=False)[1].release()
+        self._files.move_to_end(key)
+        return self.texture(program, parameter.name, unit, self._files[key], parameter.sampling)
 
     def constant(self, name: str) -> moderngl.Texture:
         """Return a texture of one texel: white, black, or zero in every channel."""
@@ -137,21 +160,8 @@ class Binder:
             self._samplers[sampling] = sampler
         return self._samplers[sampling]
 
-    def _file(self, parameter: Parameter, value: Value) -> moderngl.Texture:
-        path = Path(str(value))
-        key = (content_hash(path), parameter.sampling.mipmap)
-        if key not in self._files:
-            texture = self._read(path)
-            if parameter.sampling.mipmap:
-                texture.build_mipmaps()
-            self._files[key] = texture
-            while len(self._files) > _MAX_FILES:
-                self._files.popitem(last=False)[1].release()
-        self._files.move_to_end(key)
-        return self._files[key]
-
-    def _read(self, path: Path) -> moderngl.Texture:
-        """Make a texture of an image file: linear light, row 0 south."""
+    def _read(self, path: Path, *, encoded: bool) -> moderngl.Texture:
+        """Make a texture of an image file, row 0 south: in linear light, or as it is encoded."""
         pixels = read_image(path).pixels[::-1]
         size = (pixels.shape[1], pixels.shape[0])
         try:
@@ -160,12 +170,19 @@ class Binder:
             raise ContextError(str(error), file=shown(path)) from None
         if pixels.dtype == np.uint8:
             data = np.ascontiguousarray(pixels).tobytes()
-            texture = self.ctx.texture(size, 4, data, alignment=1, internal_format=_SRGB8_ALPHA8)
+            decoded = None if encoded else _SRGB8_ALPHA8
+            texture = self.ctx.texture(size, 4, data, alignment=1, internal_format=decoded)
         else:
-            linear = pixels.astype(np.float64)  # 0..1
-            linear[..., :3] = srgb_to_linear(linear[..., :3])
+            texels = pixels.astype(np.float64)  # 0..1
+            if not encoded:
+                texels[..., :3] = srgb_to_linear(texels[..., :3])
             with np.errstate(under="ignore"):
-                half = linear.astype(np.float16)
+                half = texels.astype(np.float16)
             texture = self.ctx.texture(size, 4, half.tobytes(), alignment=1, dtype="f2")
         drain(self.ctx)
         return texture
+
+
+def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
+    """Say whether nothing is wired to some input that may stay so."""
+    return any(i.fallback and inputs.get(i.name, Wired()).texture is None for i in kernel.inputs)

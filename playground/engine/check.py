@@ -18,8 +18,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from playground.engine.placing import told_at
 from playground.engine.plan import make_plan
-from playground.engine.stage import free_name, stage
+from playground.engine.plan_warnings import kernel_warnings, source_warnings
+from playground.engine.stage import free_name, stage, with_pictures
 from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
@@ -27,6 +29,7 @@ from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.places import TEXTS, canonical_of, is_variant, root_of
+from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import lonely_variant, nothing_to_run, read_kernel, read_technique
 from playground.sketch.unpack import ENDING, is_pack, unpacked
@@ -38,6 +41,7 @@ from playground.sketch.variants import (
     why_not,
     without_variants,
 )
+from playground.sketch.warnings import warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
@@ -52,16 +56,18 @@ class FileReport:
     ok: bool
     skipped: tuple[str, ...] = ()  # drivers that this machine does not have
     errors: tuple[Diagnostic, ...] = ()
+    warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
     notes: tuple[str, ...] = ()  # sentences: fast variants that do not run
     seconds: float = 0.0  # in the trial child
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
-        errors = [
-            {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in self.errors
-        ]
-        skipped, notes = list(self.skipped), list(self.notes)
-        return {"path": self.path, "ok": self.ok, "skipped": skipped, "errors": errors, "notes": notes}
+        errors, warnings = (
+            [{"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in some]
+            for some in (self.errors, self.warnings)
+        )
+        found = {"path": self.path, "ok": self.ok, "skipped": list(self.skipped)}
+        return found | {"errors": errors, "warnings": warnings, "notes": list(self.notes)}
 
 
 def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
@@ -89,6 +95,8 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 wanted = ", ".join((*TEXTS, ENDING))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
+        elif path.exists():
+            raise DataError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
         else:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             hint = nearest(path.name, near)
@@ -124,6 +132,7 @@ class _Check:
         self.scratch = scratch  # where the stand-in picture is written
         self.skipped: dict[str, None] = {}
         self.errors: dict[Diagnostic, None] = {}
+        self.warnings: dict[Diagnostic, None] = {}
         self.seconds = 0.0
 
     def run(self) -> FileReport:
@@ -137,7 +146,9 @@ class _Check:
         except PlaygroundError as error:
             self.failed(error)
         wrong = tuple(self.errors)
-        return FileReport(shown(self.path), not wrong, tuple(self.skipped), wrong, self.notes, self.seconds)
+        mild = () if wrong else tuple(self.warnings)  # a misspelt name would be one that nothing reads
+        skipped, notes = tuple(self.skipped), self.notes
+        return FileReport(shown(self.path), not wrong, skipped, wrong, mild, notes, self.seconds)
 
     # ── the kinds of file ────────────────────────────────────────────────────
 
@@ -145,12 +156,15 @@ class _Check:
         kernel = read_kernel(self.path, self.root)
         if kernel is None and self.path.suffix != ".glsl":
             raise nothing_to_run(self.path)
+        if kernel is not None:
+            self.warnings |= dict.fromkeys(warnings_of_kernel(kernel))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root)))
         elif kernel.kind.startswith("plain"):
             view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
             graph = Graph(kernel.name, str(self.path), (view,))
             sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
+            sketch = with_pictures(sketch, self.picture)
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
             raise lonely_variant(self.path)
@@ -178,11 +192,14 @@ class _Check:
         sketch = load(self.path).plainly(self.plain)
         self.notes = left_out(sketch)
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        make_plan(sketch, frame_size=_FRAME)
+        plan = make_plan(sketch, frame_size=_FRAME)
+        self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
+        self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
             make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+            with told_at(sketch, shot):
+                make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
         self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any"))
 
     # ── trying ───────────────────────────────────────────────────────────────
@@ -220,8 +237,13 @@ class _Check:
     def stage(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to stand-ins."""
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
-        found = stage(technique, free_name(subject, technique), self.root, self.scratch / "stand-in.png")
+        found = stage(technique, free_name(subject, technique), self.root, self.picture)
         return replace(found, name=self.path.stem, file=str(self.path))
+
+    @property
+    def picture(self) -> Path:
+        """The file that stands in for those that nothing names."""
+        return self.scratch / "stand-in.png"
 
 
 def _inside(folder: Path) -> Iterator[Path]:

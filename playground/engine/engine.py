@@ -24,8 +24,10 @@ from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
 from playground.engine.ground import Ground
 from playground.engine.keys import Form, KeyMaker, Keys
+from playground.engine.painted import PaintedFiles
 from playground.engine.plain_forms import PlainForms, warn
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -79,12 +81,14 @@ class Engine:
         self.times: dict[str, float] = {}  # [ms] of each pass that ran in the last frame, while profiling
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
-        self.runner = Runner(ctx, self.info, self.pool)
+        self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
+        self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
         self.ground = Ground()  # under the last frame's eye
         self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
-        self._keys = KeyMaker()
+        self._keys = KeyMaker(content=self.painted.content)
         self._drawn = Drawn()
         self._finite = FiniteCheck(self)
         self._timer: Timer | None = None
@@ -380,7 +384,7 @@ class Engine:
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
-        self.plain_forms.tell(plan.sketch)
+        self.plain_forms.tell(plan.sketch, plan.lacking)
         self._plan = plan
         self.ran, self.texels, self.times, self.results = [], 0, {}, {}
         self.runner.draws.drawn = 0
@@ -405,6 +409,7 @@ class Engine:
             execution.run(nodes)
         self.cache.trim()
         self.results = execution.results
+        self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
     @contextmanager

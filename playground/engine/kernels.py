@@ -11,18 +11,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder
+from playground.engine.binder import Binder, has_unwired
 from playground.engine.plan import Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.gpu.textures import make_framebuffer
-from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL
+from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.wiring import initial_names
-from playground.sketch.words import MATCHES, WINDOW, WIRED
+from playground.sketch.words import MATCHES, PLAIN_UNIFORMS, UNWIRED, WINDOW, WIRED
 
 if TYPE_CHECKING:
     import moderngl
@@ -47,7 +46,10 @@ void main() {
     k_out = known ? texelFetch(k_picture, texel >> k_shift, 0) : vec4(0.0);
 }
 """
-_SAMPLER_2D = 0x8B5E
+_SAMPLERS = frozenset(
+    {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
+)
+"""GL_SAMPLER_1D to GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY."""
 _COLOR_LOGIC_OP = 0x0BF2
 
 
@@ -123,6 +125,8 @@ class Kernels:
                 choices.append(
                     (f"{MATCHES}{name}", int(texture is not None and texture.size == job.step.size))
                 )
+        if reads_unwired(kernel):
+            choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         return self.programs.get(kernel, driver, (*choices, *more))
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
@@ -146,18 +150,28 @@ class Kernels:
         step, kernel = job.step, job.step.kernel
         driver = COMPUTE if kernel.kind == "plain_compute" else FRAGMENT
         program = self.programs.get(kernel, driver)
-        for name, value in step.values.items():
-            program.set(name, value)
+        unit = 0
+        for parameter in kernel.parameters:
+            value = step.values[parameter.name]
+            if parameter.widget.kind != "file":
+                program.set(parameter.name, value)
+            elif parameter.name in program:
+                unit = self.binder.file(program, parameter, value, unit, encoded=True)
         if step.window is not None:
             program.set(WINDOW, step.window.origin)
         for meaning, values in usual.items():
             for name in PLAIN_UNIFORMS[meaning]:
                 if name in program:
                     _set_fitting(program, name, values)
-        unit = 0
+        fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         for name, uniform in program.uniforms.items():
-            if getattr(uniform, "gl_type", 0) == _SAMPLER_2D:  # a channel that nothing feeds
-                unit = self.binder.texture(program, name, unit, self.binder.constant("black"), Sampling())
+            if name in fed or getattr(uniform, "gl_type", 0) not in _SAMPLERS:
+                continue
+            # A channel that nothing feeds. Two kinds of samplers may not share a unit, used or not.
+            count = int(getattr(uniform, "array_length", 1))
+            uniform.value = unit if count == 1 else [*range(unit, unit + count)]
+            for _ in range(count):
+                unit = self.binder.unit(unit, self.binder.constant("black"), Sampling())
         result = self.empty(step)
         if driver == COMPUTE:
             self.images(result, read=True)

@@ -48,11 +48,16 @@ class Keys:
 class KeyMaker:
     """Makes the keys of plans; remembers what kernels' texts say.
 
-    ``text`` gives what counts of a kernel's text.
+    ``text`` gives what counts of a kernel's text, ``content`` what tells a file's contents from others.
     """
 
-    def __init__(self, text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical) -> None:
+    def __init__(
+        self,
+        text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical,
+        content: Callable[[Path], str] = content_hash,
+    ) -> None:
         self._text = text
+        self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
 
     def keys_of(
@@ -67,7 +72,7 @@ class KeyMaker:
         ``form`` chooses what runs, ``given`` says what the engine gives a kernel beside its
         parameters, ``continued`` are the paths of draws that a later draw goes on from.
         """
-        made = _Made(self.text_of, form, given, continued)
+        made = _Made(self.text_of, self._content, form, given, continued)
         for node in plan.nodes:
             made.add(node, "", {}, {})
         return made.keys
@@ -124,6 +129,7 @@ class _Made:
     def __init__(
         self,
         text_of: Callable[[Kernel], _Text],
+        content: Callable[[Path], str],
         form: Callable[[Step], Form],
         given: Callable[[Kernel, Step], Mapping[str, Any]],
         continued: frozenset[str],
@@ -133,6 +139,7 @@ class _Made:
             str, frozenset[str]
         ] = {}  # loops that a step changes with, as its next reader sees it
         self.text_of = text_of
+        self.content = content
         self.form = form
         self.given = given
         self.continued = continued
@@ -151,7 +158,7 @@ class _Made:
             value = node.values[parameter.name]
             if parameter.widget.kind == "file":
                 path = Path(str(value))
-                parts.append((parameter.name, parameter.sampling, path.suffix, content_hash(path)))
+                parts.append((parameter.name, parameter.sampling, path.suffix, self.content(path)))
             elif parameter.name in text.used:
                 parts.append((parameter.name, value))
         parts += [(name, self._source(source, fed)) for name, source in node.inputs]

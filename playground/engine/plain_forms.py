@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from playground.errors import PlainFormWarning
 from playground.sketch.model import VARIANTS, Sketch
@@ -27,9 +27,9 @@ class PlainForms:
         self.kinds = tuple(kind for kind in VARIANTS if compute or kind != "compute")
         self._told: set[str] = set()
 
-    def tell(self, sketch: Sketch) -> None:
-        """Tell what is new of a sketch that is drawn."""
-        for sentence in left_out(sketch, self.kinds):
+    def tell(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
+        """Tell what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
+        for sentence in (*left_out(sketch, self.kinds), *lacking):
             if sentence not in self._told:
                 self._told.add(sentence)
                 self.notice(sentence)

@@ -9,7 +9,9 @@ from numbers import Integral, Real
 
 from playground.engine.between import Between, between_of
 from playground.engine.files import find_file
+from playground.engine.placing import placed
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
@@ -95,6 +97,7 @@ class Plan:
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
+    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without compute shaders
 
     def walk(self) -> Iterator[Step]:
         """Yield every step, those inside loops included."""
@@ -171,10 +174,11 @@ def make_plan(
 
     ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
     those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-    path (that of a technique will do where one pass inside it repeats). What a stopped pass has
-    not reached is ``interpolated`` in pictures and not in what is ``wanted``, unless told (see
-    ``between``). Raises ``SketchError`` or ``DataError`` at the pass that is wrong,
-    ``ShaderError`` at a kernel's header.
+    path (that of a technique will do where one pass inside it repeats), and no later than they
+    end unless their number grows with time. What a stopped pass has not reached is
+    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
+    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
+    kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
     sketch = sketch.at(seconds)
@@ -182,7 +186,7 @@ def make_plan(
     opened = (wanted,) if wanted else ()
     flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
     fills = not wanted if interpolated is None else interpolated
-    return _Planner(sketch, flat, size, seconds, stopped, fills=fills).plan()
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute="compute" in variants).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -205,21 +209,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
         if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
-
-
-def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
-    """Return an error of a data file at the pass that names it, the file in the sentence.
-
-    Where a file was set for the pass from outside, the sketch's text is not at fault, and
-    the error stays as it is.
-    """
-    by_hand = any(
-        path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
-    )
-    if by_hand or not spec.file:
-        return error
-    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
-    return DataError(found, file=spec.file, line=spec.line)
 
 
 def _pixels(size: object, largest: int) -> tuple[int, int]:
@@ -268,6 +257,7 @@ class _Planner:
         steps: dict[str, int],
         *,
         fills: bool,
+        compute: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -275,6 +265,8 @@ class _Planner:
         self.time = time
         self.steps = steps
         self.fills = fills
+        self.compute = compute
+        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
@@ -286,13 +278,18 @@ class _Planner:
         assert extent is not None and relief is not None
         eye = look(self.sketch.camera, extent, relief, self.frame_size)
         seen = self.frame_size, self.time, self.steps, self.fills
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen)
+        lacking = tuple(
+            f"{path or 'the sketch'} does without compute shaders, which are not here: "
+            f"see {shown(self.flat.graphs[path].path)}"
+            for path in self.lacking
+        )
+        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen, lacking)
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
             whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
-            count = min(whole, self.steps.get(node.path, whole))
+            count = self._stopped(node.path, whole, node.repeat)
             return Turns(
                 node.path, count, whole, tuple(self._node(n) for n in node.body), node.feedback, node.spec
             )
@@ -305,9 +302,16 @@ class _Planner:
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         whole = self._count(kernel.repeat, node.path, kernel, names)
         # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
-        repeat = whole if node.spec.repeat else min(whole, self.steps.get(node.path, whole))
+        repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
         between = between_of(node, repeat, whole, names) if self.fills else None
         return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec, between=between)
+
+    def _stopped(self, path: str, whole: int, repeat: str) -> int:
+        """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
+        asked = self.steps.get(path, whole)
+        if asked > whole and "time" not in expressions.names_in(repeat):
+            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
+        return min(asked, whole)
 
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
@@ -449,7 +453,11 @@ class Names:
         try:
             target = resolve(graph, name)[0].path
         except PlaygroundError:
-            raise KeyError(name) from None
+            if name != "compute":
+                raise KeyError(name) from None
+            if not planner.compute:
+                planner.lacking[self.prefix] = None
+            return int(planner.compute)
         value = planner.flat.values[f"{self.prefix}.{target}" if self.prefix else target]
         if not isinstance(value, int | float):
             raise KeyError(name)

@@ -6,13 +6,14 @@ that the driver dropped does nothing.
 
 from __future__ import annotations
 
+import struct
 import time
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 from playground.gpu.program import compile_wrapped
 from playground.gpu.triangle import TRIANGLE
-from playground.gpu.wrap import with_choices, wrap
+from playground.gpu.wrap import CORNER, with_choices, wrap
 from playground.sketch.model import Kernel
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Choices = tuple[tuple[str, int], ...]
 """Checkboxes and menus with their values."""
 
+_CORNERS = struct.pack("6f", -1.0, -1.0, 3.0, -1.0, -1.0, 3.0)  # of a triangle over the whole picture
 _SPARE = 64  # programs kept beyond those of the current frame
 
 
@@ -33,6 +35,7 @@ class Program:
         self.uniforms: dict[str, Any] = {name: compiled[name] for name in compiled}
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
         self.frame = 0  # when it was last used
+        self._corners: moderngl.Buffer | None = None
 
     def __contains__(self, name: str) -> bool:
         return name in self.uniforms
@@ -47,7 +50,11 @@ class Program:
         """Draw one triangle over the whole of the bound framebuffer."""
         array = self.arrays.get(None)
         if array is None:
-            array = self.arrays[None] = self.ctx.vertex_array(self.compiled, [])
+            content: list[tuple[Any, ...]] = []
+            if CORNER in self.uniforms:  # an old version, which cannot make corners of vertices' numbers
+                self._corners = self.ctx.buffer(_CORNERS)
+                content = [(self._corners, "2f", CORNER)]
+            array = self.arrays[None] = self.ctx.vertex_array(self.compiled, content)
         array.render(self.ctx.TRIANGLES, vertices=3)
 
     def run(self, x: int, y: int) -> None:
@@ -60,6 +67,8 @@ class Program:
         for array in self.arrays.values():
             array.release()
         self.arrays.clear()
+        if self._corners is not None:
+            self._corners.release()
         self.compiled.release()
 
 

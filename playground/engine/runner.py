@@ -14,15 +14,17 @@ from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
 from playground.engine.fill import filled
 from playground.engine.kernels import Job, Kernels, usual_of
-from playground.engine.plan import Plan, Step, placed
+from playground.engine.painted import Painted, PaintedFiles, PaintedTextures
+from playground.engine.placing import placed
+from playground.engine.plan import Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.gpu.textures import write_texture
+from playground.gpu.textures import split_format, write_texture
 from playground.sketch.model import Kernel
 from playground.sketch.words import GIVEN
-from playground.terrain.sources import source_kind
+from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
     import moderngl
@@ -31,7 +33,9 @@ if TYPE_CHECKING:
 class Runner:
     """Runs steps on one context."""
 
-    def __init__(self, ctx: moderngl.Context, info: ContextInfo, pool: Pool) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, info: ContextInfo, pool: Pool, painted: PaintedFiles | None = None
+    ) -> None:
         self.ctx = ctx
         self.info = info
         self.pool = pool
@@ -45,6 +49,8 @@ class Runner:
         self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
         self.compute_variants = ComputeVariants(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
+        self.painted = PaintedFiles() if painted is None else painted
+        self.paint = PaintedTextures(ctx)
         self.tell: Callable[[Step], None] | None = None  # called before each step runs
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
@@ -79,6 +85,7 @@ class Runner:
 
     def release(self) -> None:
         """Give back every program, mesh and texture kept."""
+        self.paint.release()
         self.draws.release()
         self.compute_variants.release()
         self.binder.release()
@@ -156,14 +163,29 @@ class Runner:
         return self.kernels.run(job, driver)
 
     def _source(self, step: Step) -> Result:
-        arrays = source_kind(step.kernel.registry).make(step.values, step.size)
+        kind = source_kind(step.kernel.registry)
         result = self.pool.take(step.size, step.kernel.outputs)
+        painted = self._painted_for(step, kind)
+        if painted is not None:
+            output = step.kernel.outputs[0]
+            self.copy(result.textures[output.name], self.paint.texture_of(painted, output.format))
+            return result
+        arrays = kind.make(step.values, step.size)
         for output in step.kernel.outputs:
             if output.name not in arrays:
                 given = ", ".join(arrays)
                 raise step.spec.error(f"source '{step.kernel.registry}' gives {given}, not '{output.name}'")
             write_texture(result.textures[output.name], arrays[output.name])
         return result
+
+    def _painted_for(self, step: Step, kind: SourceKind) -> Painted | None:
+        """Return the picture whose pixels are a source's texels as they are, if it is painted here."""
+        path = kind.picture(step.values, step.size)
+        painted = self.painted.of(path) if path is not None else None
+        outputs = step.kernel.outputs
+        if painted is None or len(outputs) != 1 or split_format(outputs[0].format)[0] != 4:
+            return None
+        return painted if painted.pixels.shape[1::-1] == step.size else None
 
     def _usual(self, step: Step) -> dict[str, tuple[float, ...]]:
         width, height = step.whole_size

@@ -40,7 +40,11 @@ def stage(technique: Technique, subject: str, folder: Path, picture: Path, *, se
     passes.append(PassSpec(subject, subject, technique, file=shown(technique.path), line=line))
     passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
     graph = Graph(subject, technique.path, tuple(passes))
-    sketch = Sketch(Path(technique.path).stem, technique.path, str(folder), graph)
+    return with_pictures(Sketch(Path(technique.path).stem, technique.path, str(folder), graph), picture)
+
+
+def with_pictures(sketch: Sketch, picture: Path) -> Sketch:
+    """Return a sketch whose files that nothing names are a picture, made where it is not there yet."""
     unnamed = _unnamed_files(sketch)
     if unnamed and not picture.exists():
         ramp = np.linspace(0.0, 1.0, 33, dtype=np.float32)

@@ -5,6 +5,9 @@ compiler. The child keeps its own headless context warm, draws one small frame, 
 killed when it takes too long or too much memory. Parent and child share the driver's
 shader cache, so what the child compiled compiles at once for the parent.
 
+The limit on time is for each pass, in all its turns: whichever exceeds it is named. A sketch of
+many slow passes is tried to its end.
+
 A child that died is replaced at once, and one that takes suspiciously long has a spare
 beside it, warm by the time that it is needed. Whoever hands over something newer does
 not wait for a child that hangs: it is killed, and the spare takes its place.
@@ -180,12 +183,13 @@ class Trial:
             self._hand_over(self._waiting)
             return None
         limit = self.limit_seconds
-        if spent < limit:
+        if child.pass_seconds < limit:
             return None
         what, file = (child.doing.subject, Path(child.doing.file)) if child.doing else ("the trial", "")
+        by = f" by the {child.doing.driver} driver" if child.doing and child.doing.driver else ""
         self._replace()
         message = (
-            f"{what} took longer than {limit:g} s in the trial and was stopped; is there an endless loop?"
+            f"{what} took longer than {limit:g} s{by} in the trial and was stopped; is there an endless loop?"
         )
         return self._told(TrialReport(False, TrialTimeout(message, file=file), seconds=limit))
 

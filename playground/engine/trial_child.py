@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -16,7 +17,7 @@ from typing import IO, TYPE_CHECKING
 from playground.engine.engine import Engine
 from playground.engine.mistakes import all_mistakes
 from playground.engine.plain_forms import silent
-from playground.engine.plan import smallest_land
+from playground.engine.plan import Step, smallest_land
 from playground.engine.trial import Request, TrialReport, TryLibrary, TrySketch
 from playground.engine.trial_process import Doing, Ready, receive_bytes, send
 from playground.engine.trial_wire import Reader
@@ -35,16 +36,18 @@ _FINEST = 33  # vertices a side of the trial's meshes
 
 
 class Teller:
-    """Tells the parent what is about to be done."""
+    """Tells the parent what is about to be done, and ends this process where that takes too long."""
 
-    def __init__(self, answers: IO[bytes]) -> None:
+    def __init__(self, answers: IO[bytes], longest: float) -> None:
         self._answers = answers
+        self._longest = longest
         self.subject = "this"
 
-    def __call__(self, path: str, file: str) -> None:
+    def __call__(self, path: str, file: str, driver: str = "") -> None:
         """Say that a pass is about to run, or a file alone to be compiled."""
-        doing = Doing(path, file)
+        doing = Doing(path, file, driver=driver)
         self.subject = doing.subject
+        _end_yourself_after(self._longest)
         send(self._answers, doing)
 
 
@@ -62,7 +65,7 @@ def main() -> None:
     except ContextError as error:
         failure = error
     _limit(memory)
-    tell = Teller(answers)
+    tell = Teller(answers, longest)
     engines: dict[str, Engine] = {}
     send(answers, Ready())
     reader = Reader()
@@ -99,7 +102,7 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request, te
                 engines[driver] = Engine(ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
                 # A mesh's fineness proves nothing more, and takes longer than all the rest.
                 engines[driver].runner.draws.finest = _FINEST
-                engines[driver].runner.tell = lambda step: tell(step.path, step.kernel.path)
+            engines[driver].runner.tell = _teller(ctx, tell, driver if len(request.drivers) > 1 else "")
             try:
                 _draw(engines[driver], request)
             except ShaderError as error:
@@ -114,6 +117,16 @@ def _try(ctx: moderngl.Context, engines: dict[str, Engine], request: Request, te
     except Exception as error:  # a fault of ours: it must reach the parent as words
         return TrialReport(False, PlaygroundError(f"{type(error).__name__}: {error}"), tuple(skipped))
     return TrialReport(True, None, tuple(skipped))
+
+
+def _teller(ctx: moderngl.Context, tell: Teller, driver: str) -> Callable[[Step], None]:
+    """Return what is called before each step: the one before ends first, so that its time is its own."""
+
+    def told(step: Step) -> None:
+        ctx.finish()
+        tell(step.path, step.kernel.path, driver)
+
+    return told
 
 
 def _draw(engine: Engine, request: TrySketch) -> None:

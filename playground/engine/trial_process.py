@@ -18,21 +18,19 @@ import sys
 import tempfile
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Generic, TypeVar
 
+from playground.engine.pass_clock import PassClock
 from playground.engine.trial_wire import Writer
-from playground.engine.waiting import Waits, waited_since, waits_of
+from playground.engine.waiting import Waits, waits_of, worked
 
 Answer = TypeVar("Answer")
 
 _WINDOWS = {0xC0000005: "an access violation", 0xC00000FD: "a stack overflow", 0xC0000409: "an abort"}
 _CRASHES = ("SIGSEGV", "SIGBUS", "SIGILL", "SIGFPE", "SIGABRT", "SIGTRAP", *_WINDOWS.values())
 _NO_MEMORY = ("out of memory", "bad_alloc", "memoryerror", "cannot allocate")
-
-
-_SLOWEST = 8.0  # times longer that something may take on a busy machine
 
 
 @dataclass(frozen=True)
@@ -46,6 +44,7 @@ class Doing:
 
     path: str  # of the pass; empty for a file alone
     file: str  # absolute path of its text
+    driver: str = field(default="", kw_only=True)  # where one of several was asked for
 
     @property
     def subject(self) -> str:
@@ -64,6 +63,7 @@ class Process(Generic[Answer]):
         self._ready_at: float | None = None
         self._handed_at = 0.0
         self._waits: Waits = {}  # when it began with what it was handed
+        self._clock = PassClock(lambda: waits_of(self.pid))
         self._requests: queue.Queue[object | None] = queue.Queue()
         self._errors = tempfile.TemporaryFile()  # closed in kill
         # -P: what lies in the user's folder is no module of ours, whatever its name.
@@ -97,16 +97,21 @@ class Process(Generic[Answer]):
     def seconds(self) -> float:
         """How long it has worked on what it was handed, from when it was ready for it [s].
 
-        What it waited for a processor does not count, but for a share: its own threads wait for
-        each other too, and what never ends must be stopped on the busiest machine.
+        What it waited for a processor does not count, but for a share.
         """
         if not self.busy or self._ready_at is None:
             return 0.0
         passed = time.monotonic() - max(self._handed_at, self._ready_at)
-        return max(passed - waited_since(self._waits, waits_of(self.pid)), passed / _SLOWEST)
+        return worked(passed, self._waits, waits_of(self.pid))
+
+    @property
+    def pass_seconds(self) -> float:
+        """How long what it is doing has taken, of what it was handed, as ``seconds`` [s]."""
+        return self._clock.seconds if self.busy and self._ready_at is not None else 0.0
 
     def hand_over(self, request: object) -> None:
         """Give it a request; never waits."""
+        self._clock.clear()
         self.busy, self.doing, self._handed_at = True, None, time.monotonic()
         self._waits = waits_of(self.pid)
         self._requests.put(request)
@@ -165,8 +170,10 @@ class Process(Generic[Answer]):
     def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
         writer = Writer()
         while (request := self._requests.get()) is not None:
+            self._clock.begin(None)
             send_bytes(requests, writer.write(request))
             while isinstance(answer := receive(answers), Doing):
+                self._clock.begin((answer.path, answer.file, answer.driver))
                 self.doing = answer
             if answer is None:
                 return

@@ -125,6 +125,14 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     return verdict
 
 
+def compared(engine: Engine, place: Place) -> Verdict:
+    """Compare both forms of a technique in one sketch as it is; no drawings where the variant steps back."""
+    contents = (content_of(place.technique), content_of(place.variant.technique))
+    verdict = Verdict(place.variant, contents)
+    _compare(engine, place, place.sketch, "its own values", verdict)
+    return verdict
+
+
 def difference(found: NDArray[np.float32], wanted: NDArray[np.float32], bound: Bound) -> float:
     """Return how far numbers are apart, as a bound counts it; 0 where every bit is the same."""
     if found.shape != wanted.shape:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+_SLOWEST = 8.0  # times longer that something may take on a busy machine
+
 Waits = dict[str, int]
 """Nanoseconds that each thread of a process has waited for a processor since it began."""
 
@@ -35,3 +37,12 @@ def waited_since(before: Waits, now: Waits) -> float:
     Of threads that work side by side, as a renderer's, the slowest says when all are done.
     """
     return max((wait - before.get(thread, 0) for thread, wait in now.items()), default=0) * 1e-9
+
+
+def worked(passed: float, before: Waits, now: Waits) -> float:
+    """Return the seconds of those that passed in which a process did not wait for a processor.
+
+    A share of them counts however long it waited: its own threads wait for each other too, and
+    what never ends must be stopped on the busiest machine.
+    """
+    return max(passed - waited_since(before, now), passed / _SLOWEST)

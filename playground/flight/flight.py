@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
@@ -54,6 +54,7 @@ class Flight:
         self.scene = Scene(engine.ctx, self.plot, max(min(wanted, engine.info.max_samples), 1))
         self.craft = self._placed(start)
         self._first, self._first_hour = self.craft, self.parts.hour
+        self._coming: _Coming | None = None
         self._look()
         self._take_daylight()
 
@@ -65,6 +66,7 @@ class Flight:
 
     def release(self) -> None:
         """Give every texture of the flight's own back."""
+        self.drop_change()
         self.parts.release()
         self.scene.release()
 
@@ -119,6 +121,65 @@ class Flight:
         """Make every part that is wanted here; return how many."""
         return self.parts.tend(self.parts.limit)
 
+    # ── another sketch ───────────────────────────────────────────────────────
+
+    @property
+    def changing(self) -> bool:
+        """Whether another sketch is being made ready."""
+        return self._coming is not None
+
+    def change(self, sketch: Sketch) -> None:
+        """Begin to go on over another sketch, from the same place; what is seen stays until it is ready.
+
+        The time of day stays, unless the sketch says another than the one before did. Raises
+        ``SketchError`` where it cannot be flown over: then nothing changes.
+        """
+        self.drop_change()
+        plot = plot_of(sketch, self.engine)
+        parts = Parts(self.engine, plot, self.parts.radius)
+        try:
+            scene = Scene(self.engine.ctx, plot, self.scene.samples)
+        except Exception:
+            parts.release()
+            raise
+        parts.hour = self.hour if plot.first_hour() == self.plot.first_hour() else plot.first_hour()
+        self._coming = _Coming(sketch, plot, parts, scene)
+
+    def tend_change(self, seconds: float) -> bool:
+        """Go on making the other sketch's parts for so long; say whether it has taken the place of this one.
+
+        Raises ``PlaygroundError`` where a part cannot be made: then this one stays.
+        """
+        coming = self._coming
+        if coming is None:
+            return False
+        try:
+            coming.parts.look(self.craft.east, self.craft.north, self.craft.heading)
+            coming.parts.tend_for(seconds)
+            if coming.parts.missing:
+                return False
+            _take_daylight(self.engine, coming.plot, coming.parts.hour, coming.scene)
+        except Exception:
+            self.drop_change()
+            raise
+        self._coming = None
+        self.parts.release()
+        self.scene.release()
+        self.sketch, self.plot, self.parts, self.scene = coming
+        self._first_hour = self.plot.first_hour()
+        floor = self.floor(self.craft.east, self.craft.north) + CLEARANCE
+        self.craft = replace(self.craft, up=max(self.craft.up, floor))
+        return True
+
+    def drop_change(self) -> None:
+        """Leave the other sketch, if one is being made ready."""
+        coming, self._coming = self._coming, None
+        if coming is not None:
+            coming.parts.release()
+            coming.scene.release()
+
+    # ── pictures ─────────────────────────────────────────────────────────────
+
     def draw(self, size: tuple[int, int], *, bare: bool = False) -> moderngl.Texture:
         """Draw what is seen and return its texture, rgba8; it lives until the next."""
         craft = self.craft
@@ -147,9 +208,21 @@ class Flight:
         return Craft(start[0], start[1], up, math.radians(start[3]) % math.tau)
 
     def _take_daylight(self) -> None:
-        if self.plot.has_daylight:
-            sketch = self.plot.at((0, 0), self.parts.hour)
-            self.scene.take_daylight(self.engine.texture(sketch, "daylight"))
+        _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
+
+
+class _Coming(NamedTuple):
+    """What a flight goes on over, once it is ready."""
+
+    sketch: Sketch
+    plot: Plot
+    parts: Parts
+    scene: Scene
+
+
+def _take_daylight(engine: Engine, plot: Plot, hour: float, scene: Scene) -> None:
+    if plot.has_daylight:
+        scene.take_daylight(engine.texture(plot.at((0, 0), hour), "daylight"))
 
 
 def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:

@@ -8,7 +8,7 @@ from functools import cache
 
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import GIVEN, GLSL_WORDS
+from playground.sketch.words import GIVEN, GIVEN_INSTEAD, GLSL_WORDS
 
 _Q = "[`'\"]"
 _UNKNOWN = re.compile(
@@ -40,11 +40,6 @@ ELSEWHERE = {
 }  # fmt: skip
 """Names of HLSL and C, with GLSL's for the same."""
 
-GIVEN_ELSEWHERE = {
-    "iTime": "time", "u_time": "time", "iGlobalTime": "time", "iResolution": "size", "u_resolution": "size",
-}  # fmt: skip
-"""Names that plain shaders are given, with what a kernel is given for the same."""
-
 
 def guess(message: str, source: SourceText, line: Line | None) -> str:
     """Say in one sentence what an unknown name was meant to be; "" where that is not sure.
@@ -67,8 +62,8 @@ def guess(message: str, source: SourceText, line: Line | None) -> str:
     if name == "saturate" and called:
         return "GLSL knows no `saturate`: write `clamp(x, 0.0, 1.0)`."
     own = any(text.pragma for text in source.lines)
-    if own and name in GIVEN_ELSEWHERE:
-        return f"`{name}` is given to plain shaders; a kernel is given `{GIVEN_ELSEWHERE[name]}`."
+    if own and name in GIVEN_INSTEAD:
+        return f"`{name}` is given to plain shaders; a kernel is given `{GIVEN_INSTEAD[name]}`."
     files = library().get(name, ())
     if files:
         which = " or ".join(f'`#include "{file}"`' for file in files[:3])

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.logs import LogEntry, hint, parse_log, source_column, split_moderngl
 from playground.gpu.names import guess
-from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, wrap_library
+from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, version_line, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
-from playground.sketch.source import SourceText
+from playground.sketch.source import Line, SourceText
+from playground.sketch.words import FETCHES
 
 if TYPE_CHECKING:
     import moderngl
@@ -48,7 +50,12 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
     stage_name, log = split_moderngl(text)
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
     found: dict[tuple[str, int, str], Diagnostic] = {}
+    foreign = None if stage.first else version_line(stage.source)
     for entry in parse_log(log):
+        if foreign is not None:
+            # Of a plain shader the vertex stage is ours, and the version is all that it takes from the file.
+            found[("", 0, "")] = foreign.diagnostic(f"this driver refuses the version: {entry.message}")
+            break
         diagnostic = diagnostic_of(entry, stage, wrapped)
         found.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
     if not any(d.severity == "error" for d in found.values()):
@@ -59,7 +66,9 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
 
 def diagnostic_of(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
     """Return one complaint of a driver in the kernel's own files, with its hint."""
-    line = stage.locate(entry.line) if entry.line else None
+    for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
+        entry = replace(entry, message=entry.message.replace(ours, name))
+    line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
     more = guess(entry.message, stage.source, line) or hint(entry.message)
     message = f"{entry.message}; {more}" if more else entry.message
     if line is not None:
@@ -74,6 +83,29 @@ def diagnostic_of(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic
             f"{entry.message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
         )
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
+
+
+def _defined(message: str, source: SourceText) -> Line | None:
+    """Return the line on which the function is defined that a message without a line speaks of, as Mesa does.
+
+    "function `float f(float)' has static recursion".
+    """
+    match = _FUNCTION.search(message)
+    if match is None:
+        return None
+    wanted = [words.split()[0] for words in match.group(3).split(",") if words.split()]
+    code, near = source.code, None
+    for found in re.finditer(rf"\b{match.group(1)}\s+{match.group(2)}\s*\(([^)]*)\)\s*\{{", code):
+        line = source.lines[code.count("\n", 0, found.start())]
+        near = near or line
+        given = [[w for w in part.split() if w not in _QUALIFIERS] for part in found.group(1).split(",")]
+        if [words[0] for words in given if words] == wanted:
+            return line
+    return near
+
+
+_FUNCTION = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
+_QUALIFIERS = frozenset({"const", "in", "out", "inout", "lowp", "mediump", "highp"})
 
 
 def _column_of(message: str, code: str) -> int:

@@ -103,6 +103,16 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     r8 and r16 formats take 0..1, or whole numbers of their own kind; what is not a number
     becomes 0 there. Half floats stop at their largest.
     """
+    texture.write(_bytes_for(texture, values), alignment=1)
+
+
+def write_texels(texture: moderngl.Texture, corner: tuple[int, int], values: NDArray[Any]) -> None:
+    """Write a block of texels, as ``write_texture`` writes all; ``corner`` is its south-west texel."""
+    block = (*corner, values.shape[1], values.shape[0])
+    texture.write(_bytes_for(texture, values), viewport=block, alignment=1)
+
+
+def _bytes_for(texture: moderngl.Texture, values: NDArray[Any]) -> bytes:
     wanted = _NUMPY[texture.dtype]
     if values.dtype.kind == "f":
         if wanted.kind == "u":
@@ -111,8 +121,7 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
         elif wanted == np.float16:
             values = np.clip(values, -_LARGEST_HALF, _LARGEST_HALF)
     with np.errstate(under="ignore"):
-        data = np.ascontiguousarray(values.astype(wanted)).tobytes()
-    texture.write(data, alignment=1)
+        return np.ascontiguousarray(values.astype(wanted)).tobytes()
 
 
 def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from playground.errors import ShaderError
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import GIVEN, MATCHES, TOWARDS, WINDOW, WIRED, ZOOM
+from playground.sketch.words import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -25,8 +25,17 @@ void main() {
     gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
 }
 """
+CORNER = "k_corner"
+"""What a vertex shader is handed where its version has no numbers of vertices: a vec2 in clip space."""
+
+_OLD_QUAD = f"""#version 330
+attribute vec2 {CORNER};
+void main() {{ gl_Position = vec4({CORNER}, 0.0, 1.0); }}
+"""
 _VERSION = re.compile(r"\s*#\s*version\b")
+_NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
+_FETCH = re.compile(rf"\b(?:{'|'.join(FETCHES)})\b")
 _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 
 
@@ -119,7 +128,13 @@ def previous_name(kernel: Kernel, output: Output) -> str:
 
 
 def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
-    return Stage(_QUAD.replace("#version 330", version), 0, kernel.source, "")
+    """Return the vertex shader that covers the picture, in the version of the fragment shader.
+
+    Versions differ in their words, and those of OpenGL ES link with their own kind only.
+    """
+    number = _NUMBER.match(version)
+    is_old = number is not None and int(number.group(1)) < 130
+    return Stage((_OLD_QUAD if is_old else _QUAD).replace("#version 330", version), 0, kernel.source, "")
 
 
 def _whole(kernel: Kernel) -> Stage:
@@ -130,11 +145,35 @@ def _whole(kernel: Kernel) -> Stage:
     return Stage(text, 1, kernel.source, "void main()")
 
 
+def version_line(source: SourceText) -> Line | None:
+    """Return the line of a plain shader that says its version; None for what has none."""
+    return next((line for line in source.lines if _VERSION.match(line.code)), None)
+
+
 def _version(kernel: Kernel) -> str:
-    return next(line.code.strip() for line in kernel.source.lines if _VERSION.match(line.code))
+    line = version_line(kernel.source)
+    assert line is not None  # or it would be no plain shader
+    return line.code.strip()
+
+
+def reads_unwired(kernel: Kernel) -> bool:
+    """Say whether a kernel fetches texels while some input of it may stay unwired."""
+    return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
 def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
+    if reads_unwired(kernel):
+        # OpenGL gives 0 outside a texture, and what stands for an unwired input has one texel.
+        fetch, shifted = FETCHES.values()
+        place = f"{UNWIRED} && textureSize(k_s, k_l) == ivec2(1) ? ivec2(0) : k_p"
+        before = [
+            *before,
+            f"uniform bool {UNWIRED};",
+            f"vec4 {fetch}(sampler2D k_s, ivec2 k_p, int k_l) {{ return texelFetch(k_s, {place}, k_l); }}",
+            f"vec4 {shifted}(sampler2D k_s, ivec2 k_p, int k_l, ivec2 k_o) "
+            f"{{ return {fetch}(k_s, k_p + k_o, k_l); }}",
+        ]
+        code = _FETCH.sub(lambda match: FETCHES[match.group()], code)
     text = "\n".join(before) + "\n" + code + "\n".join(after) + "\n"
     return Stage(text, len(before) + 1, kernel.source, expected)
 

@@ -79,7 +79,7 @@ def broken(block: Break) -> Scene:
     sketch = block.scene.sketch
     if path not in {file for _, kernel in kernels_of(sketch.graph) for file in kernel.files}:
         raise _error(block, f"sketch {sketch.name} does not use {block.file}")
-    return replace(block.scene, sketch=with_texts(sketch, {path: faulty(block)}), plain=False)
+    return replace(block.scene, sketch=with_texts(sketch, {path: faulty(block)}).plainly(), plain=False)
 
 
 def faulty(block: Break, text: str | None = None) -> str:

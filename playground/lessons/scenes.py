@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
-from playground.errors import PlaygroundError, nearest
+from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.lessons.model import Scene
 from playground.paths import SKETCHES
 from playground.sketch.find import shipped_sketches
@@ -88,6 +88,13 @@ def read_scene(
         raise file.error("range: there is no view, whose lowest and highest value it is", *place, "range")
     time = file.take(whole, "time", float, shot.time, *place)
     size = _pixels(file, whole, place, shot.size if shot.name else pixels)
+    try:
+        if steps:
+            from playground.engine.plan import make_plan  # it needs what is loaded by then only
+
+            make_plan(made, frame_size=size, time=time, steps=steps)
+    except ParameterError as error:
+        raise file.error(error.diagnostics[0].message, *place, "steps") from None
     plain = bool(shot.name) and whole.keys() <= {"sketch", "shot"}
     return Scene(made, size, time, tuple(steps.items()), shot.name, preset, values, view, plain)
 

@@ -12,6 +12,7 @@ from playground.live.capturing import Capturing
 from playground.live.editors import Opener
 from playground.live.edits import Edits
 from playground.live.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
+from playground.live.interface_size import InterfaceSize
 from playground.live.painting import Painting
 from playground.live.pictures import save_new
 from playground.live.problems import Problems
@@ -49,6 +50,8 @@ class Actions:
     saved: Path | None = None  # the last picture
     history: History = field(default_factory=History)
     keymap_shown: bool = False
+    interface: InterfaceSize = field(default_factory=InterfaceSize)
+    sign_held: Callable[[], str] = lambda: ""  # "+" or "-" where this keyboard's key for it is down
     full_screen: Callable[[], None] = lambda: None  # fills the screen, or no longer
     fills_screen: Callable[[], bool] = lambda: False
     dropped: list[Path] = field(default_factory=list)  # images that wait to be put somewhere
@@ -129,6 +132,16 @@ class Actions:
     def toggle_keymap(self) -> None:
         """Show what every key does, or no longer."""
         self.keymap_shown = not self.keymap_shown
+
+    def resize(self, by: int) -> None:
+        """Draw text and panels larger, smaller, or with 0 as large as the screen says."""
+        if by:
+            self.interface.step(by)
+        else:
+            self.interface.choose(1.0)
+        what = "text and panels at"
+        self.notices = [notice for notice in self.notices if not notice.text.startswith(what)]
+        self.say(f"{what} {self.interface.size:.0%}")
 
     def rewind(self) -> None:
         """Go back to time 0."""

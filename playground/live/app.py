@@ -8,7 +8,7 @@ is drawn. Each part of a turn has a guard: one that fails is left out, and the w
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from datetime import datetime
 from pathlib import Path
@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.plain_forms import silent
 from playground.engine.trial import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
@@ -34,23 +33,25 @@ from playground.live.finite import FiniteWatch, draw_not_finite
 from playground.live.follow import Follower
 from playground.live.guard import Guard
 from playground.live.hand import Hand
+from playground.live.interface_size import remembered_size
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.lesson.beside import Lessons
 from playground.live.memory import Remembered
 from playground.live.overlay import Area, draw_notices, draw_trial, draw_waiting, trial_text
 from playground.live.panel import Panel
+from playground.live.part_labels import draw_part_labels
 from playground.live.picture import Painter
 from playground.live.place import Place
 from playground.live.problems import Warnings
 from playground.live.remember import QUIET, Rememberer, memory_of
-from playground.live.see.ab import drag_line, paint_both
+from playground.live.see.ab import below_bar, drag_line, paint_both
 from playground.live.see.timeline import height_of_timeline
 from playground.live.see.view import draw_see
 from playground.live.session import REST, Session
 from playground.live.status import Status
 from playground.live.storing import Storing
-from playground.live.terminal_errors import TerminalErrors
+from playground.live.terminal_errors import TerminalErrors, to_log
 from playground.live.watch import Watcher
 from playground.live.window import Window, wake
 from playground.sketch.find import find
@@ -82,6 +83,7 @@ def run(
     beside: bool = False,
     keeps: int = 0,
     time_limit: float | None = None,
+    tell: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -90,6 +92,7 @@ def run(
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
     unless the reader has closed the lessons. Expensive land is kept on disk, in at most
     ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``tell`` is told of each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -107,7 +110,7 @@ def run(
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
-        engine = Engine(window.ctx, driver=driver, notice=silent)
+        engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
             path,
@@ -122,7 +125,7 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, Storing(session, keeps))
+        live = Live(window, session, watcher, rememberer, Storing(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
         live.lessons.begin(lesson, language, beside=beside)
@@ -167,7 +170,13 @@ class Live:
     """The window, the session and the watcher, turn by turn."""
 
     def __init__(
-        self, window: Window, session: Session, watcher: Watcher, rememberer: Rememberer, storing: Storing
+        self,
+        window: Window,
+        session: Session,
+        watcher: Watcher,
+        rememberer: Rememberer,
+        storing: Storing,
+        tell: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
@@ -179,8 +188,10 @@ class Live:
         self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
         self.actions.fills_screen = lambda: self.place.full
         self.actions.opener = Opener(wake)
+        self.actions.interface = remembered_size()
+        self.actions.sign_held = lambda: window.sign_held
         self.guard = Guard(self.actions.say)
-        self.terminal = TerminalErrors()
+        self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
@@ -242,7 +253,7 @@ class Live:
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
         self.window.reopen()
-        self.session.rebuild(Engine(self.window.ctx, driver=driver, notice=silent))
+        self.session.rebuild(Engine(self.window.ctx, driver=driver))
         self.storing.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
@@ -287,6 +298,7 @@ class Live:
         look = window.theme
         window.call(title_of(self.session.path))
         guard.run("taking in what was dropped", lambda: take_dropped(actions, self.place.dropped()), None)
+        window.zoom = actions.interface.size
         window.begin()
         actions.see.begin()
         left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
@@ -327,7 +339,7 @@ class Live:
         self.storing.turn(actions, self.finite)
         self._say_reload()
         actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch), session.sketch)
+        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
         self.terminal.take(actions.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
@@ -343,6 +355,9 @@ class Live:
             draw_waiting(trial_text(subject, seconds), look, area)
         else:
             draw_trial(session, look, area)
+        if picture is not None and session.sketch is not None and session.map is None:
+            parted, free = session.sketch, below_bar(actions, look, area)
+            draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = actions, picture, look, area, self.window.density
         draw("what is shown beside the picture", lambda: draw_see(*view), None)
         draw("the notices", lambda: draw_notices(actions, look, area), None)

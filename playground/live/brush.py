@@ -59,8 +59,8 @@ def stroke(
     end: tuple[float, float],
     extent: tuple[float, float],
     brush: Brush,
-) -> None:
-    """Paint from one place to another on a mask (ny, nx, 4), 0..1, in place.
+) -> tuple[slice, slice]:
+    """Paint from one place to another on a mask (ny, nx, 4), 0..1, in place; return its rows and columns.
 
     The layer takes what it covers from the others: sums stay at most 1 where they were.
     """
@@ -70,3 +70,4 @@ def stroke(
     part *= 1 - amount
     if brush.layer != ERASER:
         part[..., brush.layer] += amount[..., 0]
+    return rows, columns

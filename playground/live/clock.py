@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Graph, Sketch, Technique, kernels_of
+from playground.sketch.words import PLAIN_UNIFORMS
 
 _MOVING = frozenset(n for meaning in ("time", "frame", "delta", "date") for n in PLAIN_UNIFORMS[meaning])
 

@@ -31,6 +31,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.places import Signature, noting_places
 from playground.sketch.reread import with_texts
+from playground.sketch.shadowed import newly_shadowed
 from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
 
@@ -156,6 +157,8 @@ class Drafts(ABC):
             if self._trial is not None and self._reads_anew(self.shown.sketch):
                 self._propose(self.shown, [])
             return
+        if self.shown is not None and not self._another:
+            notes = [*notes, *map(str, newly_shadowed(self.shown.file, draft.sketch))]
         known = () if old is None else left_out(old.base, self._variants)
         plain_forms = [note for note in left_out(draft.base, self._variants) if note not in known]
         self._propose(draft, [*notes, *plain_forms])

@@ -22,16 +22,19 @@ from imgui_bundle import imgui
 import glfw
 
 from playground.engine.engine import Engine
+from playground.engine.trial import Trial
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
+from playground.live.fly_follow import SaveFollower
 from playground.live.hands import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
+from playground.live.interface_size import remembered_size
 from playground.live.picture import Painter
 from playground.live.status import VARIABLE
-from playground.live.window import Window
+from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 
 MAKING = 0.005  # [s] of each picture for parts
@@ -79,6 +82,7 @@ def run(
         prefer_software()
     with ExitStack() as stack:
         window = stack.enter_context(Window(f"{sketch.name} – flight", size))
+        window.zoom = remembered_size().size
         engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
         header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
         # A processor draws four samples in four times the time of one.
@@ -91,7 +95,13 @@ def run(
             recorder = stack.enter_context(
                 Recorder(Path(record).expanduser(), replace(header, values=dict(values or {})))
             )
-        live = Fly(window, flight, recorder, iter(replay) if replay else None)
+        saves = None
+        if replay is None:  # a recorded flight is over the terrain that it was recorded over
+            trial = stack.enter_context(Trial(software=software))
+            trial.start()
+            path = Path(flight.sketch.file)
+            saves = stack.enter_context(SaveFollower(path, sketch, values or {}, trial, driver, wake))
+        live = Fly(window, flight, recorder, iter(replay) if replay else None, saves)
         stack.callback(live.painter.release)
         try:
             live.run(time_limit)
@@ -104,16 +114,23 @@ class Fly:
     """The window and the flight, turn by turn."""
 
     def __init__(
-        self, window: Window, flight: Flight, recorder: Recorder | None, replay: Iterator[Moment] | None
+        self,
+        window: Window,
+        flight: Flight,
+        recorder: Recorder | None,
+        replay: Iterator[Moment] | None,
+        saves: SaveFollower | None = None,
     ) -> None:
         self.window = window
         self.flight = flight
         self.recorder = recorder
         self.replay = replay
+        self.saves = saves
         self.painter = Painter(window.ctx)
         self.instruments = Instruments(recording=recorder is not None, replaying=replay is not None)
         self.paused = False
         self.draws = 0
+        self.changes = 0  # saves that are flown over by now
         self._ready = False
         self._owed = 0.0  # [s] that have passed and were not flown yet
         self._last = time.perf_counter()
@@ -128,7 +145,8 @@ class Fly:
         """Go on until the window is closed, or so many seconds have passed."""
         end = math.inf if time_limit is None else time.perf_counter() + time_limit
         while self.window.open and time.perf_counter() < end:
-            resting = self._ready and self.paused and not self.flight.parts.missing
+            busy = self.flight.changing or (self.saves is not None and self.saves.waits)
+            resting = self._ready and self.paused and not self.flight.parts.missing and not busy
             self.window.wait(_IDLE if resting else 0.0)
             if self.window.pixels == (0, 0):
                 self.window.wait(_IDLE)
@@ -142,10 +160,11 @@ class Fly:
         self._take_keys()
         now = time.perf_counter()
         passed, self._last = now - self._last, now
+        self._take_saves()
         if not self._ready:
             flight.parts.tend_for(OPENING)
             self._ready = flight.parts.missing == 0
-        else:
+        elif not flight.changing:
             if not self.paused:
                 self._fly(passed)
             flight.parts.tend_for(MAKING)
@@ -160,6 +179,23 @@ class Fly:
             self.painter.paint(picture, window.screen, (0, 0, *size))
         window.end()
         self._write_status()
+
+    def _take_saves(self) -> None:
+        """Go on over what was saved, once its parts are made; until then time stands still."""
+        saves, flight = self.saves, self.flight
+        if saves is None:
+            return
+        try:
+            coming = saves.turn()
+            if coming is not None:
+                flight.change(coming)
+            if flight.changing and self._ready and flight.tend_change(OPENING):
+                self.changes += 1
+                self._last = time.perf_counter()
+        except Exception as error:
+            saves.refuse(error)
+        self.instruments.error = saves.error
+        self.instruments.changing = flight.changing
 
     def _drawn(self, size: tuple[int, int]) -> tuple[int, int]:
         """Return how large the picture is drawn that fills a window of that size [pixels]."""
@@ -271,6 +307,8 @@ class Fly:
             "throttle": craft.throttle,
             "parts": len(self.flight.parts),
             "missing": self.flight.parts.missing,
+            "changes": self.changes,
+            "error": str(self.saves.error) if self.saves is not None and self.saves.error else "",
         }
         with self._status.open("a", encoding="utf-8") as file:
             file.write(json.dumps(line) + "\n")

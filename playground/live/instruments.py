@@ -6,10 +6,12 @@ import math
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import PlaygroundError, counted
 from playground.flight.flight import Flight
 from playground.live.theme import ALARM, DIM, INK, WARM, Theme, packed
 
 _MARGIN = 14.0
+_ERRORS = 6  # lines of what is wrong that are shown
 _WINDS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
 HELP: tuple[tuple[str, str], ...] = (
@@ -37,6 +39,8 @@ class Instruments:
         self.replaying = replaying
         self.ended = False  # a replay has come to its end
         self.trouble = ""  # why nothing is recorded any more
+        self.error: PlaygroundError | None = None  # of what was saved
+        self.changing = False  # what was saved is being made
 
     def draw(self, flight: Flight, theme: Theme, *, ready: bool, paused: bool) -> None:
         """Draw everything for this turn."""
@@ -52,6 +56,10 @@ class Instruments:
         self._box(
             "   ".join([*state, hint]), theme, room.x - _MARGIN, room.y - _MARGIN, right=True, from_below=True
         )
+        if self.error is not None:
+            self._draw_error(self.error, theme, room)
+        elif self.changing:
+            self._box("taking in what was saved", theme, room.x / 2, _MARGIN, centred=True)
         if self.help:
             self._draw_help(theme, room)
 
@@ -99,6 +107,22 @@ class Instruments:
             over.add_rect_filled(ImVec2(left, top), ImVec2(left + wide, top + high), plate, 6.0)
             colour = ALARM if text.startswith("end") else INK
             over.add_text(ImVec2(left + pad, top + pad), packed(colour), text)
+
+    def _draw_error(self, error: PlaygroundError, theme: Theme, room: ImVec2) -> None:
+        """Write what is wrong in what was saved along the upper edge, its first lines."""
+        lines = str(error).split("\n")
+        more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
+        text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"
+        with theme.font(theme.code):
+            pad = 8.0
+            wide = max(room.x - 2 * (_MARGIN + pad), 80.0)
+            size = imgui.calc_text_size(text, False, wide)
+            low = ImVec2(_MARGIN, _MARGIN)
+            corner = ImVec2(low.x + size.x + 2 * pad, low.y + size.y + 2 * pad)
+            over = imgui.get_foreground_draw_list()
+            over.add_rect_filled(low, corner, packed((0.04, 0.05, 0.06), 0.85), 6.0)
+            place, font, points = ImVec2(low.x + pad, low.y + pad), imgui.get_font(), imgui.get_font_size()
+            over.add_text(font, points, place, packed(ALARM), text, wide)
 
     def _draw_help(self, theme: Theme, room: ImVec2) -> None:
         with theme.font(theme.text):

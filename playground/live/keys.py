@@ -30,6 +30,7 @@ class Key:
     act: Callable[[Actions], None]
     ctrl: bool = False
     shift: bool = False
+    sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
     letter: str = ""  # what it types, for one that is elsewhere on every keyboard
 
 
@@ -67,9 +68,32 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
+    Key(imgui.Key.none, "Ctrl++", "larger text and panels", "", lambda a: a.resize(1), ctrl=True, sign="+"),
+    Key(imgui.Key.none, "Ctrl+-", "smaller text and panels", "", lambda a: a.resize(-1), ctrl=True, sign="-"),
+    Key(imgui.Key._0, "Ctrl+0", "text and panels at their first size", "", lambda a: a.resize(0), ctrl=True),
     Key(imgui.Key.escape, "Esc", "close what is open, one thing at a time", "", close_one),
     Key(imgui.Key.q, "Ctrl+Q", "quit", "quit", lambda a: a.quit(), ctrl=True),
 )
+
+
+def _sign(actions: Actions) -> str:
+    """Return "+" or "-" where a key for it was pressed since the last frame; else nothing."""
+    for key in _SIGN_KEYS:
+        if imgui.is_key_pressed(key, repeat=True):
+            # In a slow turn it may be up again: then it is taken for what it is on an English keyboard.
+            return actions.sign_held() or _SIGN_KEYS[key]
+    return ""
+
+
+_SIGN_KEYS: dict[imgui.Key, str] = {
+    imgui.Key.keypad_add: "+",
+    imgui.Key.keypad_subtract: "-",
+    imgui.Key.equal: "+",
+    imgui.Key.minus: "-",
+    imgui.Key.right_bracket: "",
+    imgui.Key.slash: "",
+    imgui.Key.backslash: "",
+}
 
 
 def _step(actions: Actions) -> None:
@@ -98,7 +122,12 @@ def act_on_keys(actions: Actions) -> None:
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
     typed = {chr(letter) for letter in io.input_queue_characters}
+    sign = _sign(actions) if ctrl else ""
     for key in KEYS:
+        if key.sign:
+            if key.sign == sign:
+                key.act(actions)
+            continue
         if key.letter:
             if key.letter in typed and not ctrl:
                 key.act(actions)

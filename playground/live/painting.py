@@ -16,20 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.files import find_file
+from playground.engine.plan import Step
 from playground.engine.seen import height_seen
 from playground.errors import DataError, PlaygroundError
 from playground.live.brush import Brush
-from playground.live.canvas import Canvas
+from playground.live.canvas import MOST_BY_FILE, MOST_TEXELS, Canvas
 from playground.live.session import Session
 from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
 from playground.terrain.pick import ground_under, seen_from
+from playground.terrain.sources import source_kind
 
 NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
 """A brush's radius, in shares of the land's longer side."""
 
 SAVES_EVERY = 0.1
-"""[s] The file, and so the picture, follows a stroke; it is written once more when the stroke ends."""
+"""[s] Where the picture can follow a stroke by its file only; any file is written when the stroke ends."""
 
 
 class Painting:
@@ -110,13 +112,15 @@ class Painting:
 
     def press(self, place: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
-        if self.canvas is not None and not self.canvas.path.exists():
-            self._saved(self.canvas.save)  # somebody took the file away
+        if self.canvas is not None and not self.canvas.holds():
+            # Somebody has taken the file away, or painted on it.
+            self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
         if self._land() is None:
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
         canvas = self._begun() if self._last is not None else None
         if canvas is not None:
+            self._hand_over(canvas)
             canvas.begin()
             self._saved_at = -SAVES_EVERY
             self.move(place)
@@ -129,7 +133,9 @@ class Painting:
         now = self.ground(place)
         if now is not None:
             canvas.paint(self._last or now, now, plan.land.extent, self.brush)
-            if self._now() - self._saved_at >= SAVES_EVERY:
+            if canvas.path in self.session.engine.painted:
+                self.session.look_again()
+            elif self._now() - self._saved_at >= SAVES_EVERY:
                 self._saved(canvas.save)
                 self._saved_at = self._now()
         self._last = now
@@ -163,22 +169,43 @@ class Painting:
             self.session.notes.append(str(error))
         self.session.look_again()
 
+    def _shows(self, step: Step, path: Path, size: tuple[int, int]) -> bool:
+        """Say whether the picture can show a canvas from memory: a source reads it, texel for texel."""
+        if step.kernel.kind != "source" or size != step.size:
+            return False
+        name = self.target.rpartition(".")[2]
+        return source_kind(step.kernel.registry).picture({**step.values, name: str(path)}, size) == path
+
+    def _hand_over(self, canvas: Canvas) -> None:
+        """Have the picture show a canvas from memory, where it can."""
+        step, painted = self._step_of(self.target), self.session.engine.painted
+        painted.pop(canvas.path, None)
+        ny, nx = canvas.mask.shape[:2]
+        if step is not None and self._shows(step, canvas.path, (nx, ny)):
+            painted[canvas.path] = canvas
+
+    def _step_of(self, path: str) -> Step | None:
+        """Return the step of the plan whose parameter has a path."""
+        sketch, plan = self.session.sketch, self.session.plan
+        if not path or sketch is None or plan is None:
+            return None
+        return plan.step(resolve(sketch.graph, path)[0].path.rpartition(".")[0])
+
     def _begun(self) -> Canvas | None:
         """Return the mask that is painted on, begun anew where the sketch names another file."""
         if self.canvas is not None:
             return self.canvas
-        path, sketch, plan = self.target, self.session.sketch, self.session.plan
-        if not path or sketch is None or plan is None:
+        path, sketch = self.target, self.session.sketch
+        step = self._step_of(path)
+        if sketch is None or step is None:
             return None
         leaf = resolve(sketch.graph, path)[0]
-        step = plan.step(leaf.path.rpartition(".")[0])
-        if step is None:
-            return None
         name = re.sub(r"[^\w.-]+", "-", f"{sketch.name}-{path}").strip("-.")
         try:
             file = str(value_of(sketch, path, values_of(sketch)))
             of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
-            canvas = Canvas.begun(self.folder, name, of, step.size)
+            most = MOST_TEXELS if self._shows(step, self.folder, step.size) else MOST_BY_FILE
+            canvas = Canvas.begun(self.folder, name, of, step.size, most)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None

@@ -9,13 +9,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from playground.engine.plan import Plan
+from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.live.files import path_named
 from playground.paths import GLSL
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.places import root_of
 from playground.sketch.techniques import read_kernel
-from playground.sketch.unread import unread
+from playground.sketch.warnings import warnings_of_kernel
 
 AROUND = 2
 """Lines shown above and below the one that is wrong."""
@@ -143,7 +145,7 @@ class Problems:
 
 
 class Warnings:
-    """The warnings of the sketch that is shown: the driver's, and parameters that nothing reads.
+    """The warnings of the sketch that is shown: the driver's, its texts', and of the files that it reads.
 
     The library's own files are left out. A kernel is looked at once, one at a call: the driver
     takes some milliseconds for each.
@@ -155,9 +157,11 @@ class Warnings:
         self._found: dict[str, tuple[Diagnostic, ...]] = {}  # by the kernel's text
         self._kernels: dict[str, Kernel] = {}
         self.waiting: list[str] = []  # not looked at yet
+        self._plan: Plan | None = None
+        self._of_sources: tuple[Diagnostic, ...] = ()
 
-    def of(self, sketch: Sketch | None) -> list[Diagnostic]:
-        """Return what is known of a sketch's warnings so far."""
+    def of(self, sketch: Sketch | None, plan: Plan | None = None) -> list[Diagnostic]:
+        """Return what is known of a sketch's warnings so far; ``plan`` is that of its last picture."""
         if sketch is None:
             return []
         if self._of is not sketch.graph:
@@ -166,13 +170,15 @@ class Warnings:
             self._kernels = {f"{k.path}\n{k.source.code}": k for k in own}
             self._found = {text: self._found[text] for text in self._kernels if text in self._found}
             self.waiting = [text for text in self._kernels if text not in self._found]
-        return [d for text in self._kernels for d in self._found.get(text, ())]
+        if self._plan is not plan:
+            self._plan, self._of_sources = plan, source_warnings(plan) if plan is not None else ()
+        return [*(d for text in self._kernels for d in self._found.get(text, ())), *self._of_sources]
 
     def look(self) -> None:
         """Look at one kernel that has not been looked at yet."""
         if self.waiting:
             text = self.waiting.pop()
-            self._found[text] = (*unread(self._kernels[text]), *self._review(self._kernels[text]))
+            self._found[text] = (*warnings_of_kernel(self._kernels[text]), *self._review(self._kernels[text]))
 
 
 def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:

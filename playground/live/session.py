@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan, repeats_of
 from playground.errors import ContextError, PlaygroundError
 from playground.live.clock import is_animated, reads_mouse
@@ -74,6 +75,7 @@ class Session(Drafts):
             now=now,
         )
         self.engine = engine
+        engine.plain_forms.notice = silent  # ``notes`` say it
         self.map: Map | None = None  # what is shown instead of the sketch's own view
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.interpolated = True  # what a stopped repeat has not reached is filled
@@ -244,6 +246,8 @@ class Session(Drafts):
         then it waits until something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.painted.update(self.engine.painted)
+        engine.plain_forms.notice = silent
         self.engine, self.plan, self.hasty = engine, None, False
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)

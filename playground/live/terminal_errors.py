@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 from collections.abc import Callable, Iterable
 
 from playground.errors import Diagnostic
-from playground.terminal import complain
+
+to_log = logging.getLogger("playground.live").error
+"""For who has no command line: Python's log ends on standard error."""
 
 
 class TerminalErrors:
-    """What the terminal has been told of the errors that the window shows."""
+    """What the terminal has been told of the errors that the window shows; ``tell`` prints there."""
 
-    def __init__(self, tell: Callable[[str], None] = complain) -> None:
+    def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
         self._told: frozenset[Diagnostic] = frozenset()
 
     def take(self, errors: Iterable[Diagnostic]) -> None:
-        """Tell of the errors that were not there the last time; one that was fixed may come again."""
+        """Tell of the errors that were not there the last time; one that was fixed may come again.
+
+        Where the terminal is gone, nobody is told; the window shows them all the same.
+        """
         now = dict.fromkeys(errors)
-        for diagnostic in now:
-            if diagnostic not in self._told:
-                self._tell(str(diagnostic))
+        with contextlib.suppress(OSError, ValueError):
+            for diagnostic in now:
+                if diagnostic not in self._told:
+                    self._tell(str(diagnostic))
         self._told = frozenset(now)

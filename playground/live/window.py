@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
 _SMALLEST = (480, 320)
+_SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
+_SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
 _ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
 
 
@@ -45,6 +47,7 @@ class Window:
         self._clicks = Clicks()
         self._screen_size = (0, 0)
         self._screen: moderngl.Framebuffer | None = None
+        self.zoom = 1.0  # of text and margins, over the screen's own scale
         try:
             self._open(size)
             self.theme = self._start_imgui()
@@ -101,6 +104,16 @@ class Window:
             self._screen, self._screen_size = self.ctx.detect_framebuffer(0), self.pixels
         return self._screen
 
+    @property
+    def sign_held(self) -> str:
+        """What a key that is held down types, "+" or "-", wherever this keyboard has it; else nothing."""
+        for code in _SIGN_KEYS:
+            if glfw.get_key(self._handle, code) == glfw.PRESS:
+                name = glfw.get_key_name(code, 0) or ""
+                if name in _SIGNS:
+                    return _SIGNS[name]
+        return ""
+
     def call(self, title: str) -> None:
         """Give it another title."""
         if title != self._title:
@@ -126,7 +139,7 @@ class Window:
 
     def begin(self) -> None:
         """Begin a turn of the interface."""
-        self.theme.rescale(self.scale)
+        self.theme.rescale(self.scale * self.zoom)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         io, longest = imgui.get_io(), self._clicks.longest()

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from playground.engine.plain_forms import PlainForms, warn
+from playground.engine.plain_forms import PlainForms, silent
 from playground.errors import (
     ContextError,
     DataError,
@@ -81,6 +81,7 @@ class Checker:
         renderer = "any" if not software else "either" if self.any_renderer else "software"
         self.studio = Studio(config.getoption("--shots-timeout"), renderer)
         self.recorder = Recorder(config)
+        self._plain_forms: PlainForms | None = None
         self._written: dict[Path, tuple[str, NDArray[np.uint8]]] = {}  # by whom, and what
 
     def close(self) -> None:
@@ -92,7 +93,7 @@ class Checker:
         start = time.perf_counter()
         case = replace(case, sketch=case.sketch.plainly(self.plain))
         renderer = self.renderer(node, case)
-        PlainForms(warn, renderer.compute).tell(case.sketch)
+        self._say_plain_forms(node, case, renderer)
         taken: Taken | PlaygroundError
         try:
             taken = self.studio.take(case)
@@ -148,6 +149,13 @@ class Checker:
         if renderer.slug != self.expected and not self.any_renderer:
             self._without(node, case, f"OpenGL gave {renderer.renderer}")
         return renderer
+
+    def _say_plain_forms(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> None:
+        """Say, once in this process, which fast variants do not run."""
+        if self._plain_forms is None:
+            self._plain_forms = PlainForms(silent, renderer.compute)
+        self._plain_forms.notice = lambda sentence: node.user_properties.append((SAID, sentence))
+        self._plain_forms.tell(case.sketch)
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
         """Add what the child printed to the test's report, where pytest shows it if the test fails."""

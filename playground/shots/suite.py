@@ -13,6 +13,7 @@ from pathlib import Path
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.placing import told_at
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
@@ -127,7 +128,9 @@ def take(engine: Engine, case: ShotCase) -> Taken:
     fails and there is no frame.
     """
     shot = case.shot
-    frame = engine.render(case.sketch.for_shot(shot), size=shot.size, time=shot.time, steps=dict(shot.steps))
+    with told_at(case.sketch, shot):
+        sketch = case.sketch.for_shot(shot)
+        frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
     found = engine.not_finite()
     return Taken(

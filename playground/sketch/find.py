@@ -6,7 +6,7 @@ from pathlib import Path
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.places import SHADERS, TECHNIQUES, TEXTS, is_file, is_inside, is_variant
+from playground.sketch.places import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
 from playground.sketch.unpack import is_pack, unpacked
 
 
@@ -37,6 +37,8 @@ def find(name: str | Path) -> Path:
             return candidate
     if is_folder:
         raise SketchError("this folder holds no sketch.toml", file=shown(path))
+    if exists(path):
+        raise SketchError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")
 
 

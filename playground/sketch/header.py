@@ -15,13 +15,14 @@ from playground.sketch.model import Buffer, Kernel, Output
 from playground.sketch.places import SHADERS
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import check_name, is_given, read_uniforms
-from playground.sketch.words import DRIVER_BOUND
+from playground.sketch.words import DRIVER_BOUND, PLAIN_UNIFORMS
 
 FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
 
 _PRAGMA = re.compile(r"#\s*pragma\s+(\w+)\s*(.*)", re.DOTALL)
 _OTHER_PRAGMA = re.compile(r"\s*#\s*pragma\s+(\w+)\s*\(")
 _DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
+_UNIFORM = re.compile(r"uniform\b[^;]*;$")
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
@@ -45,16 +46,6 @@ _EXAMPLES = {
 }
 _SIZE = ("size.x", "size.y")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
-
-PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
-    "time": ("iTime", "iGlobalTime", "u_time", "time", "uTime"),
-    "resolution": ("iResolution", "u_resolution", "resolution", "uResolution"),
-    "mouse": ("iMouse", "u_mouse", "mouse", "uMouse"),
-    "frame": ("iFrame", "u_frame", "frame", "uFrame"),
-    "delta": ("iTimeDelta", "u_delta", "u_time_delta", "uDelta"),
-    "date": ("iDate", "u_date"),
-}
-"""What a plain shader is given, under the names that such shaders use."""
 
 
 def parse_kernel(name: str, source: SourceText) -> Kernel | None:
@@ -97,6 +88,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     if kind == "source":
         if not options.get("name"):
             raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
+        _refuse_code(source)
         return replace(kernel, registry=options["name"])
     numbers = _numbers(kernel)
     repeat = options.get("repeat", "1")
@@ -318,6 +310,15 @@ def _refuse_redefined(source: SourceText) -> None:
         match = _DEFINE.match(line.code)
         if match and is_given(match.group(1)):
             check_name(match.group(1), line, "macro")
+
+
+def _refuse_code(source: SourceText) -> None:
+    """Refuse code in a source's file: no driver is given it, so that a mistake in it would never show."""
+    for line in source.lines:
+        code = line.code.strip()
+        if code and not code.startswith("#") and not _UNIFORM.match(code):
+            message = "a source's file has parameters only, and nothing runs this code; take it out"
+            raise line.error(message, len(line.code) - len(line.code.lstrip()) + 1)
 
 
 def _refuse_driver_bound(source: SourceText) -> None:

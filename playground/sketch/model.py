@@ -207,6 +207,7 @@ class PassSpec:
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     file: str = ""
     line: int = 0
+    set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
 
     def error(self, message: str) -> SketchError:
         """Return an error that points at this pass."""

@@ -124,6 +124,14 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def exists(path: Path) -> bool:
+    """Say whether anything is there, a file or not, also for names that nothing can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
 def is_variant(path: Path) -> bool:
     """Say whether a file is a fast variant by its name; a ``.comp`` with its own ``#version`` is none."""
     return path.name.endswith(FAST)

@@ -2,7 +2,8 @@
 
 The driver is given ``SourceText.code``: comments, ``#include`` and the project's
 pragmas are blanked (quotes and anything beyond ASCII are outside GLSL 3.30), lines
-are kept, and ``#line`` is never used, because drivers differ in what they make of it.
+are kept, and ``#line`` is never used, because drivers differ in what they make of it;
+one in a file is left out. A macro's call that spans lines is joined: see ``macro_calls``.
 
 A backslash at a line's end joins it to the next, comments included, as GLSL 4.20 has it;
 the driver gets the joined line in the first one's place, since 3.30 knows no such thing.
@@ -11,17 +12,20 @@ the driver gets the joined line in the first one's place, since 3.30 knows no su
 from __future__ import annotations
 
 import re
+import stat
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch.macro_calls import with_calls_joined
 from playground.sketch.places import is_file, is_inside, names_below, note, real
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
+_LINE = re.compile(r"\s*#\s*line\b")
 _MARK = re.compile(r'"(?:[^"\\]|\\.)*(?:"|\Z)|//|/\*')
 _NOT_TAB = re.compile(r"[^\t]")
 _WHITE = str.maketrans({"\v": " ", "\f": " "})
@@ -43,6 +47,7 @@ class Line:
     number: int  # from 1, in that file
     chain: tuple[str, ...] = ()  # "file:line" of the includes that led here
     pragma: str = ""  # one of the project's own pragmas, whole; "" elsewhere
+    left_out: bool = False  # a #line, which the driver is not given
 
     def diagnostic(self, message: str, column: int = 0, severity: str = "error") -> Diagnostic:
         """Return a diagnostic that points at this line."""
@@ -129,26 +134,44 @@ def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tupl
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
     reader = _Reader(own, GLSL.resolve(), instead)
     reader.flatten(path, reader.read(path), (), (str(path),))
-    source = SourceText(str(path), tuple(reader.lines), tuple(reader.texts))
+    codes = with_calls_joined([line.code for line in reader.lines])
+    lines = tuple(
+        line if line.code == code else replace(line, code=code)
+        for line, code in zip(reader.lines, codes, strict=True)
+    )
+    source = SourceText(str(path), lines, tuple(reader.texts))
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()))
 
 
 def read_text(path: Path) -> str:
     """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read."""
     note(path)
+    data = b""
     try:
-        if path.stat().st_size > _MAX_BYTES:
+        state = path.stat()
+        if not (stat.S_ISREG(state.st_mode) or stat.S_ISDIR(state.st_mode)):  # reading it may never end
+            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
+        if state.st_size > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
-        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        data = path.read_bytes()
+        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except FileNotFoundError:
         raise SketchError("there is no such file", file=shown(path)) from None
     except IsADirectoryError:
         raise SketchError("this is a folder; a file was expected", file=shown(path)) from None
     except UnicodeDecodeError as error:
-        raise SketchError(f"not UTF-8 text (byte {error.start})", file=shown(path)) from None
+        line, column = _place_in(data, data.find(error.object) + error.start)
+        message = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
+        raise SketchError(message, file=shown(path), line=line, column=column) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SketchError(f"cannot be read: {reason}", file=shown(path)) from None
+
+
+def _place_in(data: bytes, position: int) -> tuple[int, int]:
+    """Return the line and the column, from 1, of a byte after text that is UTF-8."""
+    lines = data[:position].decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return len(lines), len(lines[-1]) + 1
 
 
 class _Reader:
@@ -173,8 +196,10 @@ class _Reader:
             code, comment, in_block = _split_comments(joined, in_block)
             include = _INCLUDE.match(code)
             pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
-            code = "" if include or pragma else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
-            line = Line(physical[number - 1], code, comment, str(path), number, chain, pragma)
+            left_out = bool(_LINE.match(code))
+            blank = include or pragma or left_out
+            code = "" if blank else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
+            line = Line(physical[number - 1], code, comment, str(path), number, chain, pragma, left_out)
             self.lines.append(line)
             rest = physical[number : number + count - 1]
             self.lines += [Line(raw, "", "", str(path), number + i, chain) for i, raw in enumerate(rest, 1)]
@@ -206,7 +231,11 @@ class _Reader:
             try:
                 self.texts[key] = self.read(target)
             except SketchError as error:
-                raise line.error(f"'{name}': {error.diagnostics[0].message}") from None
+                found = error.diagnostics[0]
+                if found.line:
+                    via = (*chain, f"{shown(path)}:{line.number}")
+                    raise ShaderError(diagnostics=[replace(found, chain=via)]) from None
+                raise line.error(f"'{name}': {found.message}") from None
         place = f"{shown(path)}:{line.number}"
         self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
 

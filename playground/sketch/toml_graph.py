@@ -115,17 +115,20 @@ def read_pass(
         if output not in wiring.output_names(technique):
             hint = nearest(output, wiring.output_names(technique))
             raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", *wanted.split("."))
+    values = _values(file, table, place, name, technique)
+    given = table.get("set", {})
     return PassSpec(
         name,
         use,
         technique,
         inputs,
-        _values(file, table, place, name, technique),
+        values,
         _size(file, table, place),
         repeat,
         feedback,
         shown(file.path),
         file.line(*place),
+        tuple((path, file.line(*_place_of_value(place, given, path))) for path, _ in values),
     )
 
 
@@ -148,8 +151,7 @@ def read_values(
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
     for path, raw in flat.items():
-        # A path may stand in quotes, as one key, or without, as several.
-        at = (*place, "set", *([path] if path in given else path.split(".")))
+        at = _place_of_value(place, given, path)
         try:
             value, parameter = read_value(path, raw)
         except ParameterError as error:
@@ -160,6 +162,11 @@ def read_values(
                 raise file.error(message, *at)
         found.append((path, value))
     return tuple(found)
+
+
+def _place_of_value(place: Place, given: Mapping[str, Any], path: str) -> Place:
+    """Return where a table's ``set`` has a path: in quotes, as one key, or without, as several."""
+    return (*place, "set", *([path] if path in given else path.split(".")))
 
 
 def read_set(

@@ -11,18 +11,30 @@ import re
 from collections.abc import Collection
 from dataclasses import replace
 
-from playground.errors import ParameterError, nearest
+from playground.errors import Diagnostic, ParameterError, nearest
 from playground.sketch import values
 from playground.sketch.annotation import calls as read_calls
 from playground.sketch.follows import read_follows
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
-from playground.sketch.words import GIVEN, GLSL_WORDS, MATCHES, PREFIX, RESERVED, TOWARDS, WIRED
+from playground.sketch.words import (
+    GIVEN,
+    GIVEN_INSTEAD,
+    GLSL_WORDS,
+    MATCHES,
+    PLAIN_UNIFORMS,
+    PREFIX,
+    RESERVED,
+    TOWARDS,
+    WIRED,
+)
 
 _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
 )
+_LAYOUT = re.compile(r"^\s*layout\s*\([^)]*\)(?=\s*uniform\b)")
+_SAMPLERS = re.compile(r"\buniform\s+(?:(?:lowp|mediump|highp)\s+)?([iu]?sampler\w+)\s+([^;]*);")
 _WORD_UNIFORM = re.compile(r"\buniform\b")
 _IMAGE = re.compile(r"\b[iu]?image[123]D\b")
 _FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
@@ -43,26 +55,29 @@ def read_uniforms(
 ) -> tuple[tuple[Parameter, ...], tuple[Input, ...]]:
     """Return the parameters and the inputs of a file with its includes, in the order of their lines.
 
-    Of a ``plain`` shader only what can be understood is taken, ``skip`` left out; in any
-    other, raises ``ShaderError`` for a declaration that cannot be.
+    Of a ``plain`` shader only what can be understood is taken, ``skip`` left out, and of its
+    samplers those that an image file feeds; in any other, raises ``ShaderError`` for a
+    declaration that cannot be.
     """
     parameters: list[Parameter] = []
     inputs: list[Input] = []
     seen: dict[str, Line] = {}
     following: list[tuple[int, list[str], Line]] = []  # which parameter, what it follows
     for line in source.lines:
-        match = _UNIFORM.match(line.code)
+        match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
         if not plain:
             _check_declaration(line, match)
         if not match:
             continue
         glsl_type, name, array, initial = match.groups()
-        if name in skip or (plain and (array or glsl_type not in _TYPES)):
+        feeds = plain and glsl_type == "sampler2D" and line.comment.startswith("!")
+        if name in skip or (plain and not feeds and (array or glsl_type not in _TYPES)):
             continue
         if array:
             raise line.error(f"'{name}' is an array; parameters are scalars and vectors")
         if not plain:
             check_name(name, line, "parameter")
+            _refuse_given_elsewhere(name, initial, line)
         if name in seen:
             # A file that is included twice stands here twice; its guard leaves one to the driver.
             if (seen[name].file, seen[name].number) == (line.file, line.number):
@@ -73,6 +88,9 @@ def read_uniforms(
         calls, tooltip = read_calls(note, line, _ROLES | _MODIFIERS, _BARE)
         if glsl_type == "sampler2D":
             item = _sampler(name, calls, tooltip, line)
+            if isinstance(item, Input) and plain:
+                example = f'uniform sampler2D {name};  //! file("picture.png")'
+                raise line.error(f"a plain shader has no inputs, but may read an image file: {example}")
             if isinstance(item, Input):
                 inputs.append(item)
             else:
@@ -87,6 +105,25 @@ def read_uniforms(
         found = read_follows(parameters[index], words, parameters, line)
         parameters[index] = replace(parameters[index], follows=found)
     return tuple(parameters), tuple(inputs)
+
+
+def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
+    """Return a warning for each sampler of a plain shader that no image file feeds: it reads black."""
+    fed = {p.name for p in read_uniforms(source, plain=True)[0] if p.type == "sampler2D"}
+    found: list[Diagnostic] = []
+    for line in source.lines:
+        for match in _SAMPLERS.finditer(line.code):
+            kind, names = match.groups()
+            for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
+                name, column = one.group(1), match.start(2) + one.start() + 1
+                example = f'uniform sampler2D {name};  //! file("picture.png")'
+                more = (
+                    f"an image file does: {example}" if kind == "sampler2D" else "only a sampler2D may be fed"
+                )
+                message = f"nothing feeds '{name}', so it reads black; {more}"
+                if name not in fed:
+                    found.append(line.diagnostic(message, column, "warning"))
+    return tuple(dict.fromkeys(found))
 
 
 def is_given(name: str) -> bool:
@@ -104,6 +141,22 @@ def check_name(name: str, line: Line, what: str) -> None:
         raise line.error(f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved", column)
     if name in GLSL_WORDS:
         raise line.error(f"'{name}' is a word of GLSL itself; name the {what} something else", column)
+
+
+def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
+    """Refuse a uniform that only plain shaders are given: here it would keep its default for ever.
+
+    One with an annotation is meant as a parameter, and so is a plain word with a default.
+    """
+    meaning = next((m for m, names in PLAIN_UNIFORMS.items() if name in names), "")
+    if not meaning or line.comment.startswith("!") or (name == meaning and initial is not None):
+        return
+    column = line.code.index(name) + 1
+    said = f"'{name}' is given to plain shaders only, and here nothing would set it"
+    if name in GIVEN_INSTEAD:
+        given = GIVEN_INSTEAD[name]
+        raise line.error(f"{said}; did you mean '{given}'? It is given: take this line out", column)
+    raise line.error(f"{said}; an annotation makes it a parameter, as //! point for a vec2", column)
 
 
 def _check_declaration(line: Line, match: re.Match[str] | None) -> None:

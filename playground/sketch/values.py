@@ -9,9 +9,8 @@ from __future__ import annotations
 import math
 import os
 import reprlib
+import struct
 from collections.abc import Mapping, Sequence
-
-import numpy as np
 
 from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
@@ -122,9 +121,14 @@ def write(parameter: Parameter, value: Value) -> str:
 
 def tidied(value: float) -> float:
     """Return the shortest decimal number that a shader cannot tell from it: 0.37 for 0.3700000048."""
-    with np.errstate(all="ignore"):
-        single = np.float32(value)
-    return float(str(single)) if np.isfinite(single) else value
+    try:
+        (single,) = struct.unpack("f", struct.pack("f", value))
+    except OverflowError:  # no single-precision number is so large
+        return value
+    if not math.isfinite(single):
+        return value
+    decimals = (float(f"{single:.{digits}g}") for digits in range(1, 10))
+    return next((d for d in decimals if struct.unpack("f", struct.pack("f", d))[0] == single), single)
 
 
 def shortest(value: Value) -> Value:

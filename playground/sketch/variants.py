@@ -59,7 +59,7 @@ def why_not(technique: Technique, variant: Variant) -> str:
         return 'it does not say how closely it agrees, as agrees = "1e-5"'
     if variant.verified is None:
         return f"it was never verified against {beside}; {renew}"
-    if variant.verified[1] != content_of(variant.technique):
+    if variant.verified[0] == content_of(technique):
         return f"it has changed since it was verified against {beside}; {renew}"
     what = f"{beside}, or what it is made of," if isinstance(technique, Graph) else beside
     return f"{what} has changed since the two were found to agree; {renew} anew"

@@ -132,7 +132,7 @@ def _check_expressions(graph: Graph, spec: PassSpec) -> None:
 
 
 def _is_number(graph: Graph, name: str) -> bool:
-    if name in ("time", "size.x", "size.y"):
+    if name in ("time", "compute", "size.x", "size.y"):
         return True
     head, _, axis = name.rpartition(".")
     if axis in ("x", "y") and head.endswith(".size"):
@@ -147,7 +147,7 @@ def _is_number(graph: Graph, name: str) -> bool:
 
 def _numbers(graph: Graph) -> Iterable[str]:
     """Return names that an expression may well mean, for a hint."""
-    yield from ("time", "size.x", "size.y")
+    yield from ("time", "compute", "size.x", "size.y")
     for spec in graph.passes:
         yield from (f"{spec.name}.size.x", f"{spec.name}.size.y")
     for name in input_names(graph):

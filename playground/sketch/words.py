@@ -34,11 +34,35 @@ WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
 """What begins a given name for each input (bool: something is wired to it; it has the size of this
 pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""
 
+UNWIRED = "k_unwired"
+"""Whether any input that may stay unwired is, a bool; declared where a text fetches texels."""
+
+FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
+"""What stands for GLSL's own functions, as long as these, where an input may stay unwired: the one
+texel of its white or black answers for every place."""
+
 WINDOW = "k_window"
 """Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
 
 ZOOM = "k_zoom"
 """What stretches a draw's clip space to a window, a vec4: factors, then what is added."""
+
+PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
+    "time": ("iTime", "iGlobalTime", "u_time", "time", "uTime"),
+    "resolution": ("iResolution", "u_resolution", "resolution", "uResolution"),
+    "mouse": ("iMouse", "u_mouse", "mouse", "uMouse"),
+    "frame": ("iFrame", "u_frame", "frame", "uFrame"),
+    "delta": ("iTimeDelta", "u_delta", "u_time_delta", "uDelta"),
+    "date": ("iDate", "u_date"),
+}
+"""What a plain shader is given, under the names that such shaders use."""
+
+GIVEN_INSTEAD: dict[str, str] = {
+    name: given
+    for meaning, given in {"time": "time", "frame": "time", "delta": "time", "resolution": "size"}.items()
+    for name in PLAIN_UNIFORMS[meaning]
+}
+"""Names that a plain shader is given, with what a kernel is given in their place; the rest has nothing."""
 
 _KEYWORDS = """
 attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly

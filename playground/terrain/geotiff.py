@@ -10,7 +10,7 @@ import logging
 import math
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,7 +68,7 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         void = None if void is None else void[..., 0]
         if found.void is not None:
             void = found.void if void is None else void | found.void
-        values, code_range = found.values, found.code_range
+        values, code_range, notes = found.values, found.code_range, notes + found.notes
     elif packing == "rgb":
         raise DataError("packed heights need three channels of 8 bits; found one", file=path)
     else:
@@ -106,22 +106,32 @@ def _without_log(name: str) -> Iterator[None]:
 def _tiff_values(page: tifffile.TiffPage, path: Path) -> NDArray[Any]:
     try:
         return np.asarray(page.asarray())
-    except (ValueError, KeyError, ImportError) as error:
+    except ImportError:  # zstd, of which Python knows from 3.14 on
+        pass
+    except (ValueError, KeyError) as error:
         if "imagecodecs" not in str(error):
             raise
-    # tifffile alone lacks LZW and the floating-point predictor; Pillow's libtiff has them.
+    # tifffile alone lacks LZW and the floating-point predictor too; Pillow's libtiff has them.
     import PIL.Image
 
     assert page.dtype is not None
     modes = {"u1": ("L", "RGB", "RGBA", "LA"), "u2": ("I;16",), "i2": ("I",), "i4": ("I",), "f4": ("F",)}
-    with suppress(PIL.UnidentifiedImageError), PIL.Image.open(path, formats=("TIFF",)) as picture:
-        if picture.mode in modes.get(page.dtype.str[1:], ()):
-            values = np.array(picture)
-            if values.shape == page.shape:
-                return values.astype(page.dtype.newbyteorder("="))
+    compression = getattr(page.compression, "name", page.compression)
+    install = "the package imagecodecs reads it: python -m pip install imagecodecs"
+    try:
+        with PIL.Image.open(path, formats=("TIFF",)) as picture:
+            if picture.mode in modes.get(page.dtype.str[1:], ()):
+                values = np.array(picture)
+                if values.shape == page.shape:
+                    return values.astype(page.dtype.newbyteorder("="))
+    except PIL.UnidentifiedImageError:
+        pass
+    except OSError as error:
+        message = f"its compression {compression} cannot be undone ({error}): it is damaged, or {install}"
+        raise DataError(message, file=path) from error
     raise DataError(
-        f"its {page.dtype} numbers under compression {getattr(page.compression, 'name', page.compression)} "
-        "cannot be read here; expected no compression or deflate, or the package imagecodecs installed",
+        f"its {page.dtype} numbers under compression {compression} cannot be read here; "
+        f"expected no compression or deflate; {install}",
         file=path,
     )
 

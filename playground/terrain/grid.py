@@ -55,7 +55,8 @@ def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
     channels = samples.shape[2]
     code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(samples.dtype.str[1:])
     void = None
-    if channels in (2, 4) and samples.dtype.kind == "u":
+    pictured = samples.dtype.kind == "u"  # as greys and colours are, and bands of measured numbers are not
+    if channels in (2, 4) and pictured:
         void = samples[..., -1] == 0
     if packing == "rgb":
         if channels < 3 or samples.dtype != np.uint8:
@@ -66,8 +67,9 @@ def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
         red, green, blue = (samples[..., k].astype(np.float32) for k in range(3))  # exact: below 2**24
         return Found(red * 65536.0 + green * 256.0 + blue, code_range=PACKED, void=void)
     grey = samples[..., 0]
-    if channels >= 3 and not all(np.array_equal(grey, samples[..., k]) for k in (1, 2)):
+    if pictured and channels >= 3 and not all(np.array_equal(grey, samples[..., k]) for k in (1, 2)):
         raise DataError(
             "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels", file=path
         )
-    return Found(grey, code_range=code_range, void=void)
+    notes = () if pictured or channels == 1 else (f"the first of its {channels} bands was read",)
+    return Found(grey, code_range=code_range, void=void, notes=notes)

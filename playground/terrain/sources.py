@@ -6,7 +6,8 @@ of its land before any texel is made (``describe``), then makes the texels (``ma
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -43,6 +44,9 @@ class SourceKind:
     make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
+    notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
+    picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
+    # the image whose channels, where it has this size, are the texels of the one output as they are
 
 
 def source_kind(name: str) -> SourceKind:
@@ -65,6 +69,14 @@ def _read(
     return fill_no_data(elevation, voids)
 
 
+@contextmanager
+def _memory_explained(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except MemoryError:
+        raise DataError("there is not enough memory to read it", file=shown(path)) from None
+
+
 def _elevation(values: Mapping[str, Value]) -> Elevation:
     path = Path(str(values["elevation"]))
     try:
@@ -76,7 +88,8 @@ def _elevation(values: Mapping[str, Value]) -> Elevation:
     packing: Packing = "rgb" if values["packing"] == 1 else "grey"
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
-    return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
+    with _memory_explained(path):
+        return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
 
 
 def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
@@ -110,14 +123,20 @@ def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[
     elevation = _elevation(values)
     low, high = _span(elevation)
     span = high - low
-    heights = (
-        (elevation.heights - np.float32(low)) / np.float32(span)
-        if span > 0
-        else np.zeros_like(elevation.heights)
-    )
-    if size != elevation.size:
-        heights = resample(heights, size, within=(0.0, 1.0))
+    with _memory_explained(Path(str(values["elevation"]))):
+        heights = (
+            (elevation.heights - np.float32(low)) / np.float32(span)
+            if span > 0
+            else np.zeros_like(elevation.heights)
+        )
+        if size != elevation.size:
+            heights = resample(heights, size, within=(0.0, 1.0))
     return {"height": heights}
+
+
+def _notes_of_elevation(values: Mapping[str, Value]) -> tuple[str, ...]:
+    elevation = _elevation(values)
+    return tuple(f"{elevation.name}: {note}" for note in elevation.notes)
 
 
 def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
@@ -141,6 +160,10 @@ def _make_mask(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, 
     return {"mask": read_mask(Path(str(values["image"])), size, (int(stated[0]), int(stated[1])))}
 
 
+def _mask_picture(values: Mapping[str, Value], size: tuple[int, int]) -> Path | None:
+    return Path(str(values["image"])) if values["texels"] in ((0, 0), size) else None
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -153,6 +176,7 @@ SOURCES: dict[str, SourceKind] = {
         _make_elevation,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
+        notes=_notes_of_elevation,
     ),
     "delaunay": SourceKind(
         lambda _: Land(),
@@ -160,6 +184,8 @@ SOURCES: dict[str, SourceKind] = {
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
     ),
-    "mask_file": SourceKind(lambda _: Land(), _make_mask, ("image",), ("image", "texels")),
+    "mask_file": SourceKind(
+        lambda _: Land(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
+    ),
 }
 """Name → what it does."""

@@ -128,6 +128,21 @@ def test_a_shipped_sketch_and_a_shader_alone_pack_too(tmp_path: Path) -> None:
     assert Path(load(pack(load(shader), tmp_path / "p.zip")).file).name == "plasma.frag"
 
 
+def test_the_images_of_a_plain_shader_go_with_it(any_engine: Engine, tmp_path: Path) -> None:
+    write_values(tmp_path / "x.png", np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(3, 4))
+    shader = tmp_path / "look.frag"
+    shader.write_text(
+        '#version 330\nuniform sampler2D tex;  //! file("x.png")\nuniform vec2 u_resolution;\nout vec4 c;\n'
+        "void main() { c = texture(tex, gl_FragCoord.xy / u_resolution); }\n"
+    )
+    packed = pack(load(shader), tmp_path / "look.zip")
+    (tmp_path / "elsewhere").mkdir()
+    there = load(packed.rename(tmp_path / "elsewhere/look.zip"))
+    here = any_engine.render(load(shader), size=(4, 3)).array
+    assert here[..., 0].std() > 50
+    np.testing.assert_array_equal(any_engine.render(there, size=(4, 3)).array, here)
+
+
 def test_what_was_changed_in_the_cache_is_made_anew(folder: Path, tmp_path: Path) -> None:
     path = pack(load(folder), tmp_path / "lesson.zip")
     land = unpacked(path).parent / "parts/land.glsl"

@@ -62,9 +62,9 @@ def test_no_turn_at_all_gives_zeros(engine, folder):
 def test_stopping_early_gives_the_state_on_the_way(engine, folder):
     """``iterations`` stays the count of all turns: a picture on the way is one of the way."""
     sketch = folder.one(COUNT)
-    for turn in (0, 1, 3, 5, 9, 2):
+    for turn in (0, 1, 3, 5, 2):
         found = engine.read(sketch, "a", steps={"a": turn})
-        assert found[3, 4] == counted(min(turn, 5), whole=5)
+        assert found[3, 4] == counted(turn, whole=5)
 
 
 def test_steps_go_on_from_turn_to_turn(engine, folder):
@@ -290,7 +290,7 @@ def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(c
             sketch = folder.one(text, size=f"size = {size}")
             turns = [values.copy() for _, values in engine.steps(sketch, "a")]
         with Engine(ctx, driver=driver) as engine:
-            turns += [engine.read(sketch, "a", steps={"a": turn}).copy() for turn in (2, 1)]
+            turns += [engine.read(sketch, "a", steps={"a": turn}).copy() for turn in (len(turns) - 1, 1)]
         with Engine(ctx, driver=driver) as engine:
             turns.append(engine.read(sketch, "a").copy())
             found.append(turns)

@@ -105,3 +105,22 @@ def test_a_compute_variant_has_the_size_of_the_pass_it_stands_for(engine: Engine
 def test_a_pass_that_a_compute_variant_stands_for_can_still_be_looked_at(engine: Engine, folder: Path):
     (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     assert engine.read(load(folder), "sum.rows").shape == (12, 1)
+
+
+def test_a_size_may_ask_for_compute_shaders(ctx, tmp_path: Path):
+    (tmp_path / "flat.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "sketch.toml").write_text(
+        'format = 1\n[[pass]]\nname = "height"\nuse = "./flat"\nsize = "17 if compute else 9"\n',
+        encoding="utf-8",
+    )
+    for driver in ("fragment", "auto"):
+        said: list[str] = []
+        with Engine(ctx, driver=driver, notice=said.append) as engine:
+            has = engine.info.compute and driver != "fragment"
+            for _ in range(2):
+                assert engine.read(load(tmp_path), "height").shape == ((17, 17) if has else (9, 9))
+        assert len(said) == (0 if has else 1)
+        assert has or said[0].startswith("the sketch does without compute shaders, which are not here: see ")

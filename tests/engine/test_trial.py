@@ -213,6 +213,27 @@ def test_what_takes_too_long_is_stopped(folder):
         assert trial.run(TrySketch(folder.one(GOOD))).ok
 
 
+def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
+    """A driver draws later than it is told to: the quick passes after a slow one are not to blame."""
+    reads = "uniform sampler2D from; //! input\n"
+    after = GOOD.replace("float kernel", f"{reads}float kernel").replace(
+        "float(texel.x)", "texelFetch(from, texel, 0).r"
+    )
+    folder.write("slow.glsl", SLOW.replace("1000", "1"))  # one draw, which is only queued
+    folder.write("after.glsl", after)
+    sketch = folder.sketch(
+        '[[pass]]\nname = "slow"\nuse = "./slow"\nsize = 257\n'
+        '[[pass]]\nname = "after"\nuse = "./after"\ninputs = { from = "slow" }\n'
+    )
+    with Trial(limit_seconds=PATIENCE) as trial:
+        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        trial.limit_seconds = 0.7
+        report = trial.run(TrySketch(sketch, drivers=("fragment", "auto")))
+    assert isinstance(report.error, TrialTimeout)
+    assert "pass 'slow' took longer than 0.7 s by the fragment driver" in str(report.error)
+    assert report.error.diagnostics[0].file.endswith("slow.glsl")
+
+
 def test_submit_never_waits_and_the_newest_wins(folder):
     # Large requests: a pipe that nobody reads would fill.
     padding = "\n".join(f"// {i} {'x' * 100}" for i in range(3000))

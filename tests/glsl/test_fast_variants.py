@@ -2,16 +2,22 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.verify import verify
+from playground.engine.verify import compared, places_in, verify
 from playground.engine.verify_what import subjects
 from playground.paths import GLSL
 from playground.sketch.canonical import content_of
+from playground.sketch.find import shipped_sketches
+from playground.sketch.model import Graph, PassSpec, Sketch, kernels_of
 from playground.sketch.places import is_variant
+from playground.sketch.reread import with_texts
 from playground.sketch.variant_record import NAME, read, written
 from playground.sketch.variants import is_verified, why_not
+
+from ..loading import load
 
 
 def name_of(variant):
@@ -51,3 +57,58 @@ def test_it_agrees_within_its_bound(ctx, tmp_path, name):
         pytest.skip(found.skipped)
     assert found.ok, found.words
     assert found.drawings >= 20
+
+
+def with_edit(text):
+    """Return a kernel's text that gives a fifth of what it gave."""
+    head, _, value = text.rpartition("return ")
+    return f"{head}return 0.2 * ({value.replace(';', ');', 1)}"
+
+
+@pytest.mark.parametrize(
+    ("sketch", "file"),
+    [("diamond_square", "generation/diamond_square/raw.glsl"), ("fourier", "generation/fourier/filter.glsl")],
+)
+def test_an_edit_of_a_shipped_kernel_shows(ctx, sketch, file):
+    told = []
+    path = str(GLSL / file)
+    small = load(sketch).with_values({"size": 33})
+    edited = with_texts(small, {path: with_edit(Path(path).read_text(encoding="utf-8"))})
+    with Engine(ctx, notice=told.append) as engine:
+        before = engine.read(small, "height:height", size=(64, 36))
+        engine.render(small, size=(64, 36))
+        assert told == []
+        after = engine.read(edited.with_values({"height.normalise": "none"}), "height:height", size=(64, 36))
+        plain = engine.read(
+            edited.with_values({"height.normalise": "none"}).plainly(), "height:height", size=(64, 36)
+        )
+    assert (after != before).any()
+    np.testing.assert_array_equal(after, plain)
+    assert len(told) == (ctx.version_code >= 430)
+
+
+@pytest.mark.parametrize("name", sorted(SUBJECTS))
+def test_an_edit_of_any_file_of_the_plain_form_drops_it(name):
+    subject = SUBJECTS[name]
+    files = {f for _, kernel in kernels_of(subject.technique) for f in kernel.source.files}
+    sketch = Sketch("s", "", str(GLSL), Graph("s", "", (PassSpec("t", "t", subject.technique),)))
+    for file in sorted(files):
+        text = Path(file).read_text(encoding="utf-8")
+        for more, stays in (("// a comment\n", True), ("float an_edit() { return 1.0; }\n", False)):
+            head, guard, tail = text.rpartition("#endif\n")
+            changed = with_texts(sketch, {file: f"{head}{more}{guard}{tail}" if guard else text + more})
+            technique = changed.graph.passes[0].technique
+            (variant,) = (v for v in technique.variants if v.path == subject.variant.path)
+            assert is_verified(technique, variant) == stays, (file, more)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
+    """At the sketch's own sizes, with its own values."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    with Engine(ctx) as engine:
+        for place in places_in(load(name), GLSL):
+            found = compared(engine, place)
+            assert not found.wrong, f"{place.path}: {found.words}"

@@ -387,10 +387,33 @@ def test_both_drivers_sweep_alike(ctx, lit):
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
         for azimuth in (0, 12.3, 45, 90, 100, 135, 161, 180, 225, 230, 270, 301, 315, 317, 359.99999):
-            sketch = lit(HILLS, "sun_disc", (azimuth, 9.0), form="sweep", size=[49, 65], relief=300.0)
-            found = [engine.read(sketch, "light.horizon") for engine in (plain, swept)]
+            shape = {"shape": "disc", "spread": 0.53}
+            sketch = lit(HILLS, "sun_sweep", (azimuth, 9.0), size=[49, 65], relief=300.0, **shape)
+            found = [engine.read(sketch, "light") for engine in (plain, swept)]
             np.testing.assert_array_equal(found[0], found[1])
-        assert swept.ran[:2] != [] and "light.horizon" in swept.ran
+        assert swept.plan.step("light").kernel.kind == "compute"
+
+
+@pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
+def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(ctx, lit, method):
+    """A fragment has to sweep its texel's whole band: 36 s on 1537 texels a side, the march 2 s."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    said = []
+    values = {"size": 65, "relief": 300.0, "light_size": 33}
+    with Engine(ctx, driver="fragment", notice=said.append) as plain, Engine(ctx) as swept:
+        march, sweep = (lit(HILLS, method, (100, 9), form=form, **values) for form in ("march", "sweep"))
+        sweep_on_grid = visible(plain, sweep)
+        assert plain.plan.step("light.horizon").size == (1, 1)
+        assert said == [
+            f"light does without compute shaders, which are not here: see glsl/lighting/{method}.toml"
+        ]
+        assert visible(swept, sweep).shape == sweep_on_grid.shape == (65, 65), (
+            "a texel for each of the land's"
+        )
+        assert swept.plan.step("light.horizon").size == (65, 65)
+        np.testing.assert_array_equal(sweep_on_grid[::2, ::2], visible(plain, march))
+        assert len(said) == 1 and plain.plan.step("light.tops").size == (5, 5)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 180.0, 270.0, 45.0, 225.0])

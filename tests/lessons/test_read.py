@@ -84,6 +84,12 @@ def test_a_texture_from_above(make_lesson, engine):
             "did you mean 'height.smoothing'?",
         ),
         ('passes  = ["height.raw", "phase"]', 'passes = ["height.smooth"]', 27, "height.smooth"),
+        (
+            'shot    = "figure-1-11"',
+            'shot = "figure-1-11"\nsteps = { phase = 99 }',
+            16,
+            "steps: 'phase' stops after 99 steps, but it has 5 in all",
+        ),
         ("frames    = 3", "frames = 1", None, "from, to and frames (2 to 64)"),
         ("to        = 0.9", "to = 7.0", None, "height.smoothing"),
         ('labels  = ["even", "uneven"]', 'labels = ["even"]', None, "labels: 1 for 2 variants"),

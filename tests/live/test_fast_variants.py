@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.plain_forms import silent
 from playground.live.session import Session
 from playground.paths import GLSL
 from playground.sketch.variant_record import NAME
@@ -47,7 +46,7 @@ def folder(tmp_path: Path) -> Path:
 def session(ctx, folder):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    with Engine(ctx, notice=silent) as engine:
+    with Engine(ctx) as engine:
         made = Session(engine, folder)
         made.frame(SIZE)
         yield made
@@ -98,7 +97,7 @@ def test_a_save_of_the_plain_text_shows_and_is_told_once(session, folder):
 
 def test_what_is_wrong_from_the_beginning_is_told(ctx, folder):
     (folder / NAME).unlink()
-    with Engine(ctx, notice=silent) as engine:
+    with Engine(ctx) as engine:
         session = Session(engine, folder)
         session.frame(SIZE)
         assert len([note for note in session.notes if "was never verified" in note]) == 1
@@ -129,7 +128,7 @@ def test_the_switch_runs_the_plain_form_and_outlives_a_save(session, folder):
 
 
 def test_plain_from_the_beginning(ctx, folder):
-    with Engine(ctx, notice=silent) as engine:
+    with Engine(ctx) as engine:
         session = Session(engine, folder, plain=True)
         session.frame(SIZE)
         assert not runs_fast(session) and not session.notes

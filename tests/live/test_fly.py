@@ -142,3 +142,25 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
     assert now["steps"] == 70 and now["hour"] == 16.0 and now["roll"] > 0.3
     app.screen.do("keydown", "ctrl", "sleep", 0.2, "key", "q", "keyup", "ctrl")
     assert app.ended() == 0, app.complaint()
+
+
+@pytest.mark.slow
+def test_a_save_is_flown_over_from_the_same_place_and_a_wrong_one_is_said(
+    open_app: Callable[..., App], tmp_path: Path
+) -> None:
+    app = open_app("sketch.toml", "--radius", "1.5")
+    app.wait(lambda now: now["ready"])
+    app.screen.do("mousemove", WIDTH // 2, HEIGHT // 2, "key", "p")
+    before = app.wait(lambda now: now["paused"] and not now["missing"])
+    seen = app.screen.pixels()
+    file = tmp_path / "sketch.toml"
+    file.write_text(SKETCH.replace("generation/endless", "generation/endles"), encoding="utf-8")
+    wrong = app.wait(lambda now: now["error"])
+    assert "endles" in wrong["error"] and "sketch.toml" in wrong["error"]
+    assert (app.screen.pixels() != seen).any(), "it is said over the picture"
+    file.write_text(SKETCH.replace("relief = 900.0", "relief = 300.0"), encoding="utf-8")
+    after = app.wait(lambda now: now["changes"] == 1 and not now["missing"])
+    assert not after["error"] and after["heading"] == before["heading"]
+    assert after["up"] == before["up"], "the terrain is lower: the craft stays where it was"
+    app.screen.do("key", "ctrl+q")
+    assert app.ended() == 0, app.complaint()

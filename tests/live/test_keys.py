@@ -8,5 +8,5 @@ from playground.live.keys import KEYS
 
 
 def test_no_two_meanings_share_a_key() -> None:
-    struck = Counter((key.key, key.letter, key.ctrl, key.shift) for key in KEYS)
+    struck = Counter((key.key, key.letter, key.sign, key.ctrl, key.shift) for key in KEYS)
     assert [keys for keys, count in struck.items() if count > 1] == []

@@ -83,9 +83,12 @@ def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
     assert read_image(first.path).size == SIZE
 
 
-def test_a_large_one_is_held_to_what_can_be_written_while_painting(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049))
-    assert read_image(canvas.path).size == (MOST_TEXELS, MOST_TEXELS // 2)
+def test_a_canvas_has_the_land_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "usual", None, (1025, 513))
+    assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
+    canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049), most=1024)
+    assert read_image(canvas.path).size == (1024, 512)
+    assert MOST_TEXELS == 2**12 + 1
 
 
 def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
@@ -329,21 +332,117 @@ def test_without_its_mask_the_brush_is_not_in_the_hand(session: Session, tmp_pat
     assert session.error is None and not painting.on
 
 
-def test_a_stroke_is_saved_now_and_then_and_at_its_end(session: Session, tmp_path: Path) -> None:
-    clock = [0.0]
-    painting = Painting(session, tmp_path, lambda: clock[0])
+def weights(session: Session) -> np.ndarray:
+    session.frame((160, 120))
+    assert session.error is None
+    return session.engine.read(session.sketch, "painted")
+
+
+def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
+    session: Session, tmp_path: Path
+) -> None:
+    painting = Painting(session, tmp_path)
     painting.toggle()
     painting.press((0.4, 0.5))
     canvas = painting.canvas
-    assert canvas is not None and canvas.saved
-    painting.move((0.45, 0.5))
-    assert not canvas.saved
-    clock[0] = 1.0
-    painting.move((0.5, 0.5))
-    assert canvas.saved
-    painting.move((0.55, 0.5))
+    assert canvas is not None and canvas.mask.shape[:2] == (128, 128), "the size of the pass that reads it"
+    begun = weights(session)
+    file = canvas.path.read_bytes()
+    for place in ((0.45, 0.5), (0.5, 0.5), (0.55, 0.52)):
+        painting.move(place)
+        np.testing.assert_array_equal(weights(session), canvas.pixels / np.float32(255))
+    assert not canvas.saved and canvas.path.read_bytes() == file
+    assert (weights(session) != begun).any()
     painting.release()
     assert canvas.saved
+    seen = weights(session)
+    np.testing.assert_array_equal(seen, read_mask(canvas.path, (128, 128)), "as the file says")
+    with Engine(session.engine.ctx, driver=session.engine.driver) as another:
+        np.testing.assert_array_equal(another.read(session.sketch, "painted"), seen, "and any other reader")
+
+
+def test_only_the_part_that_changed_goes_to_the_graphics_card(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.brush = Brush(layer=1, radius=40.0, strength=1.0, softness=0.0)
+    painting.press((0.45, 0.5))
+    weights(session)
+    paint, whole = session.engine.runner.paint, 128 * 128
+    before = paint.uploaded
+    painting.move((0.47, 0.5))
+    weights(session)
+    once = paint.uploaded - before
+    assert 0 < once < 0.05 * whole
+    weights(session)
+    assert paint.uploaded - before == once, "nothing changed"
+    painting.move((0.5, 0.5))
+    painting.move((0.53, 0.5))  # two between two pictures
+    painting.release()
+    np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+    for act in (painting.undo, painting.redo, painting.clear, painting.undo):
+        act()
+        np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+
+
+def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.45, 0.5))
+    painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    weights(session)
+    theirs = np.zeros((128, 128, 4), np.uint8)
+    theirs[:, :, 2] = 255
+    write_png(canvas.path, theirs)
+    session.look_again()
+    np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
+    painting.press((0.45, 0.5))
+    painting.release()
+    found = weights(session)
+    assert (found[..., 2] == 1).mean() > 0.9 and found[..., 3].max() > 0.5
+    np.testing.assert_array_equal(found, canvas.pixels / np.float32(255))
+
+
+def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
+    tmp_path: Path, any_engine: Engine
+) -> None:
+    text = SKETCH.replace('set = { image = "none.png" }', 'set = { image = "none.png", texels = [4, 4] }')
+    session = shown(tmp_path, any_engine, text)
+    clock = [0.0]
+    try:
+        painting = Painting(session, tmp_path, lambda: clock[0])
+        painting.toggle()
+        painting.press((0.4, 0.5))
+        canvas = painting.canvas
+        assert canvas is not None and canvas.saved and not session.engine.painted
+        painting.move((0.45, 0.5))
+        assert not canvas.saved
+        clock[0] = 1.0
+        painting.move((0.5, 0.5))
+        assert canvas.saved
+        painting.move((0.55, 0.5))
+        painting.release()
+        assert canvas.saved
+    finally:
+        session.release()
+
+
+def test_changes_since_a_version_are_a_rectangle_around_them(tmp_path: Path) -> None:
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    small = Brush(layer=0, radius=20.0, strength=1.0, softness=0.0)
+    assert canvas.changed_since(canvas.version) == (slice(0, 0), slice(0, 0))
+    rng = np.random.default_rng(3)
+    versions = []
+    for _ in range(300):
+        versions.append((canvas.version, canvas.pixels.copy()))
+        place = tuple(rng.uniform(-0.2, 1.2, 2))
+        canvas.paint(place, place, EXTENT, small)
+    for version, before in versions[::17]:
+        rows, columns = canvas.changed_since(version)
+        copy = before.copy()
+        copy[rows, columns] = canvas.pixels[rows, columns]
+        np.testing.assert_array_equal(copy, canvas.pixels)
 
 
 def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import ContextError, SketchError, TrialTimeout
+from playground.images.files import write_png
 from playground.live.files import files_of
 from playground.live.framing import framed
 from playground.live.session import Session, Stage
@@ -511,3 +512,24 @@ def test_an_eye_under_the_terrain_is_told_of_once(tmp_path: Path, any_engine: En
         assert session.plan is not None and session.plan.eye.position[2] > 0
     finally:
         session.release()
+
+
+PLAIN = """#version 330
+uniform sampler2D tex;  //! file("x.png")
+out vec4 colour;
+void main() { colour = texelFetch(tex, ivec2(0), 0); }
+"""
+
+
+def test_the_image_of_a_plain_shader_is_watched_and_its_change_shows(any_engine: Engine, tmp_path: Path):
+    for level in (50, 200):
+        write_png(tmp_path / "x.png", np.full((2, 2, 4), level, np.uint8))
+        if level == 50:
+            (tmp_path / "look.frag").write_text(PLAIN)
+            session = Session(any_engine, tmp_path / "look.frag")
+            assert tmp_path / "x.png" in session.files
+        session.reload()
+        session.frame(SIZE)
+        frame = session.read()
+        assert frame is not None and frame.array[0, 0, 0] == level
+    session.release()

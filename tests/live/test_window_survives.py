@@ -9,8 +9,10 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from ..images.test_bounds import npz
 from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 900, 600
@@ -19,21 +21,29 @@ import os, sys, time
 from playground.live.app import run
 from playground.live.session import Session
 from imgui_bundle import imgui
-from playground.live import widgets
-slide = widgets._SLIDE[1]
+slide = imgui.slider_float
 def noting(label, *rest):
     answer = slide(label, *rest)
-    low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
-    with open("slider.txt", "w") as file:
-        file.write(f"{label} {low.x + 0.3 * size.x:.0f} {low.y + size.y / 2:.0f}")
+    if label.startswith("##height.level"):
+        low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
+        with open("slider.txt", "w") as file:
+            file.write(f"{label} {low.x + 0.3 * size.x:.0f} {low.y + size.y / 2:.0f}")
     return answer
-widgets._SLIDE[1] = lambda label, *rest: (noting if label == "##height.level" else slide)(label, *rest)
+imgui.slider_float = noting
 if slow := float(os.environ.get("SLOW", "0")):
     draw = Session._draw
     def slowly(*arguments, **named):
         time.sleep(slow)
         return draw(*arguments, **named)
     Session._draw = slowly
+if os.environ.get("BROKEN"):
+    from playground.live import errors_list
+    def broken(*_):
+        imgui.push_style_color(imgui.Col_.text, (1.0, 0.0, 0.0, 1.0))
+        imgui.begin_group()
+        imgui.tree_node_ex("###")
+        raise IndexError("no such row")
+    errors_list._headline = broken
 sys.exit(run(sys.argv[1], size=(900, 600), time_limit=300))
 """
 LAND = """// land.glsl -- hills
@@ -78,12 +88,17 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def window(screen: Screen, tmp_path: Path, folder: Path) -> Iterator[Program]:
-    made = Program(screen, tmp_path, [sys.executable, "-c", RUN, str(folder)], tmp_path)
-    made.wait(lambda now: now["draws"] > 0)
+def window(screen: Screen, folder: Path) -> Iterator[Program]:
+    made = opened(screen, folder)
     screen.do("mousemove", 600, 100)
     yield made
     made.close()
+
+
+def opened(screen: Screen, folder: Path) -> Program:
+    made = Program(screen, folder.parent, [sys.executable, "-c", RUN, str(folder)], folder.parent)
+    made.wait(lambda now: now["draws"] > 0)
+    return made
 
 
 def look(screen: Screen, name: str) -> None:
@@ -151,6 +166,62 @@ def test_a_double_click_on_a_slow_renderer_opens_a_field_and_no_key_is_lost(
         assert not now["layers"] and not now["map"] and not now["saved"], "no letter was a shortcut"
     finally:
         window.close()
+
+
+@pytest.mark.slow
+def test_a_list_that_cannot_be_drawn_is_left_out(
+    screen: Screen, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BROKEN", "1")
+    window = opened(screen, folder)
+    try:
+        first = window.now()["picture"]
+        (folder / "land.glsl").write_text(LAND.replace("sin", "sine"), encoding="utf-8")
+        window.wait(lambda now: now["error"] and any("list of errors failed" in n for n in now["notices"]))
+        time.sleep(0.5)
+        look(screen, "left-out")
+        (folder / "land.glsl").write_text(LAND.replace("0.3", "0.4"), encoding="utf-8")
+        window.wait(lambda now: not now["error"] and now["picture"] != first)
+        assert window.complaint().count("Traceback") == 1, "the terminal is told once"
+    finally:
+        window.close()
+
+
+@pytest.mark.slow
+def test_a_bomb_costs_the_window_nothing(screen: Screen, folder: Path) -> None:
+    (folder / "sketch.toml").write_text(
+        SKETCH.replace("./land", "generation/heightmap").replace(
+            "[view]", 'set = { elevation = "land.npz" }\n[view]'
+        ),
+        encoding="utf-8",
+    )
+    np.savez_compressed(folder / "land.npz", elevation=np.eye(65, dtype=np.float32))
+    window = opened(screen, folder)
+    try:
+        first, before = window.now()["picture"], most_memory(window)
+        npz(folder / "land.npz")
+        window.wait(lambda now: "would become 1024 MiB" in now["error"])
+        look(screen, "bomb")
+        with (folder / "land.npy").open("wb") as file:  # 2 GiB, all of it holes; no ratio tells
+            np.lib.format.write_array_header_1_0(
+                file, {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
+            )
+            file.truncate(file.tell() + 8 * 16384**2)
+        text = (folder / "sketch.toml").read_text(encoding="utf-8")
+        (folder / "sketch.toml").write_text(text.replace("land.npz", "land.npy"), encoding="utf-8")
+        window.wait(lambda now: "not enough memory to read it" in now["error"])
+        screen.do("mousemove", 600, 100, "click", 4)  # nearer: the picture is not drawn with what failed
+        time.sleep(1.0)
+        assert window.now()["picture"] == first, "the last good picture stays"
+        assert most_memory(window) - before < 200 * 2**20
+    finally:
+        window.close()
+
+
+def most_memory(window: Program) -> int:
+    """Return the most memory that a window has had so far [bytes]."""
+    status = Path(f"/proc/{window.process.pid}/status").read_text()
+    return int(status.partition("VmHWM:")[2].split()[0]) * 1024
 
 
 @pytest.mark.slow

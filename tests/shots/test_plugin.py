@@ -18,6 +18,8 @@ from playground.images.files import read_png
 from playground.shots.references import write_reference
 from playground.sketch.load import load
 
+from ..variants import trust
+
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]
 
@@ -265,3 +267,33 @@ def test_another_renderer_may_be_allowed_and_is_then_said_to_be_compared_loosely
     result.stdout.fnmatch_lines(["slope/plain: structure: *", f"    accept it   {update}"])
     accepted(*asked, "-k", "plain", "--shots-update").assert_outcomes(passed=1, deselected=2)
     assert FOLDER.joinpath("plain.png").exists()  # llvmpipe's own, from now on
+
+
+FAST = """agrees = "1e-4"
+[[pass]]
+name = "height"
+use = "./twin"
+[parameters]
+gain = "height.gain"
+"""
+
+
+def test_a_fast_variant_that_is_left_out_is_told_and_may_be_left_out(accepted: Run, edit: Edit) -> None:
+    shutil.copyfile("land.glsl", "twin.glsl")
+    edit("twin.glsl", "return gain *", "return 0.9999 * gain *")
+    Path("land.fast.toml").write_text(FAST)
+    trust(Path.cwd())
+    for options in ((), ("--shots-plain",)):
+        result = accepted("slope.toml", *options)
+        result.assert_outcomes(passed=3)
+    edit("land.glsl", "return gain *", "return 0.95 * gain *")
+    result = accepted("slope.toml")
+    result.assert_outcomes(failed=2, passed=1)
+    result.stdout.fnmatch_lines(["*= shots =*", "land.fast.toml is left out, the plain form runs: *"])
+    assert result.stdout.str().count("is left out") == 1
+    result = accepted("slope.toml", "--shots-plain")
+    result.assert_outcomes(failed=2, passed=1)
+    result.stdout.no_fnmatch_line("*accept it*")
+    result = accepted("slope.toml", "--shots-plain", "--shots-update")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*--shots-plain compares with references*"])

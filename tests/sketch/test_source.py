@@ -274,7 +274,9 @@ def test_files_that_cannot_be_read_are_sentences(write, tmp_path):
     ):
         with pytest.raises(SketchError, match=words):
             read(path)
-    refused(write("main.glsl", 'x\n#include "latin.glsl"\n'), "'latin.glsl': not UTF-8", "main.glsl", 2)
+    refused(write("main.glsl", 'x\n#include "large.glsl"\n'), "'large.glsl': larger than", "main.glsl", 2)
+    error = refused(write("main.glsl", 'x\n#include "latin.glsl"\n'), "not UTF-8", "latin.glsl", 1)
+    assert [Path(place).name for place in error.diagnostics[0].chain] == ["main.glsl:2"]
 
 
 # Values

@@ -159,9 +159,46 @@ def test_what_neither_library_unpacks_is_a_sentence(tmp_path, monkeypatch):
     tifffile.imwrite(tmp_path / "b.tif", LAND, compression="zlib")
     monkeypatch.setattr(tifffile.TiffPage, "asarray", lacking)
     refused(
-        tmp_path / "a.tif", "float64 numbers under compression ADOBE_DEFLATE .* package imagecodecs installed"
+        tmp_path / "a.tif",
+        "float64 numbers under compression ADOBE_DEFLATE .* python -m pip install imagecodecs",
     )
     assert_land(read_elevation(tmp_path / "b.tif"), LAND)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.int32])
+def test_zstd_is_read_or_named_and_never_called_damage(tmp_path, dtype):
+    path, land = tmp_path / "a.tif", LAND.astype(dtype)
+    try:
+        PillowImage.fromarray(land).save(path, compression="zstd")
+    except OSError:
+        pytest.skip("this Pillow cannot write zstd")
+    assert_land(read_elevation(path), land)
+
+
+def test_a_compression_that_nothing_here_undoes_says_which_and_what_to_install(tmp_path):
+    path = tmp_path / "a.tif"
+    for code, name in ((50000, "ZSTD"), (34887, "LERC")):  # of 64 bits, which Pillow has no mode for
+        tifffile.imwrite(path, LAND.astype(np.float64))
+        with tifffile.TiffFile(path, mode="r+") as tif:
+            tif.pages[0].tags[259].overwrite(code)
+        with pytest.raises(DataError) as caught:
+            read_elevation(path)
+        if "damaged" in str(caught.value):
+            pytest.skip("this Python undoes zstd itself")
+        assert f"float64 numbers under compression {name} cannot be read here" in str(caught.value)
+        assert "python -m pip install imagecodecs" in str(caught.value)
+
+
+@pytest.mark.parametrize("bands", [2, 3, 5])
+def test_of_several_bands_the_first_is_read_and_said(tmp_path, bands):
+    land = np.stack([LAND.astype(np.float32) + 100 * k for k in range(bands)])
+    tifffile.imwrite(tmp_path / "a.tif", land, planarconfig="separate", photometric="minisblack")
+    if bands > 4:
+        refused(tmp_path / "a.tif", "has 5 channels")
+        return
+    found = read_elevation(tmp_path / "a.tif")
+    assert_land(found, LAND)
+    assert found.notes == (f"the first of its {bands} bands was read",)
 
 
 def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):

@@ -22,7 +22,7 @@ uniform sampler2D range;                 //! input
 uniform sampler2D horizon;               //! input
 uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same
+uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same; without compute shaders the sweep is slow, and a march is made instead
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
 uniform int reading = 0;                 //! menu("interpolated", "cut down") group("March") Heights between texels, or of the texel that a place is cut down to, as in the thesis
 
@@ -47,7 +47,9 @@ float kernel(ivec2 texel) {
     vec2 metres = spacing_of(grid, extent);
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
-    if (form == 1) return texelFetch(horizon, texel, 0).r * length(light.xy) > light.z ? 0.0 : 1.0;
+    // A horizon of one texel was not swept: there are no compute shaders.
+    bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    if (swept) return texelFetch(horizon, texel, 0).r * length(light.xy) > light.z ? 0.0 : 1.0;
     vec2 place = place_on(grid, texel, size);
     Walk walk = walk_from(place, height_at(height, place) * relief, light, grid, metres, stride, size == grid);
     int count = steps_below(walk, walk.climb, texelFetch(range, ivec2(0), 0).g * relief);

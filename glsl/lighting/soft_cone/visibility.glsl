@@ -30,7 +30,7 @@ uniform sampler2D daylight;              //! input("black")
 uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
 uniform float delta_r = 0.01;            //! slider(0, 2) step(0.001) group("Cone") label("Δr") What the cone's radius grows over one unit of path. The real sun's is 0.0046
 uniform int growth = 0;                  //! menu("per unit of path", "per step") group("Cone") What delta_r is counted by; the thesis counts steps, however long they are
-uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same
+uniform int form = 0;                    //! menu("march", "sweep") group("March") Walk from every texel, or sweep the land once along lines, which is faster and nearly the same; without compute shaders the sweep is slow, and a march is made instead
 uniform float stride = 1.0;              //! slider(0.25, 4) step(0.25) group("March") unit("texels") Length of a step, along the axis that the ray follows more. Long steps jump over ridges
 uniform int reach = 0;                   //! slider(0, 4096) group("March") unit("texels") In the march, land farther than this throws no shadow, and in the last quarter less of one; 0: all of it does
 uniform int reading = 0;                 //! menu("interpolated", "cut down") group("March") Heights between texels, or of the texel that a place is cut down to, as in the thesis
@@ -71,7 +71,9 @@ float kernel(ivec2 texel) {
     vec2 metres = spacing_of(grid, extent);
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
-    if (form == 1) return free_part(light.z - texelFetch(horizon, texel, 0).r * length(light.xy), delta_r);
+    // A horizon of one texel was not swept: there are no compute shaders.
+    bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    if (swept) return free_part(light.z - texelFetch(horizon, texel, 0).r * length(light.xy), delta_r);
     vec2 place = place_on(grid, texel, size);
     Walk walk = walk_from(place, height_at(height, place) * relief, light, grid, metres, stride, size == grid);
     float grows = delta_r * walk.path / (growth == 1 ? stride : 1.0);

@@ -109,8 +109,9 @@ class NotebookLesson:
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no fault to mend")
         text = region(block).with_lines(lines)
         path = str((GLSL / block.file).resolve())
-        tried = replace(block.scene, sketch=with_texts(block.scene.sketch, {path: text}), plain=False)
-        frame, whole = self._frame(tried), self._frame(block.scene)
+        sketch = block.scene.sketch.plainly()  # what is compared is the text, not a fast variant
+        tried = replace(block.scene, sketch=with_texts(sketch, {path: text}), plain=False)
+        frame, whole = self._frame(tried), self._frame(replace(block.scene, sketch=sketch))
         same = bool((frame.array == whole.array).all())
         return Mended(frame.array, frame.sketch, frame.time, self.words["mended" if same else "not_yet"])
 

@@ -94,6 +94,12 @@ def draw_ab(actions: Actions, look: Theme, area: Area) -> None:
     imgui.pop_style_var()
 
 
+def below_bar(actions: Actions, look: Theme, area: Area) -> Area:
+    """Return what the bar leaves free of an area."""
+    taken = 52 * look.scale if actions.see.compare.on else 0.0
+    return area[0], area[1] + taken, area[2], max(area[3] - taken, 1.0)
+
+
 def _bar(actions: Actions, look: Theme) -> None:
     compare, now = actions.see.compare, actions.now()
     letters = {

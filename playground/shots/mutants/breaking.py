@@ -15,11 +15,11 @@ from playground.errors import DataError, ParameterError
 from playground.paths import GLSL, shown
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.header import PLAIN_UNIFORMS
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.reread import with_texts
 from playground.sketch.source import read_text
 from playground.sketch.wiring import input_names
+from playground.sketch.words import PLAIN_UNIFORMS
 
 _CAMERA = "camera."
 

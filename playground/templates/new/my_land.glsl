@@ -8,9 +8,9 @@
 
 // Each uniform with a //! comment is a parameter: a widget with its range, then its
 // tooltip. The panel shows it, and so does  --set height.frequency=8.
-uniform float frequency = 4.0;  //! log_slider(1, 64) Hills from west to east
+uniform float frequency = 5.0;  //! log_slider(1, 64) Hills from west to east
 uniform int   layers    = 8;    //! slider(1, 12)     How many layers, each twice as fine
-uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Strength of each layer beside the one before
+uniform float roughness = 0.42; //! slider(0, 1) step(0.01) Strength of each layer beside the one before
 uniform float ridges    = 0.6;  //! slider(0, 1) step(0.01) 0 gives round hills, 1 gives sharp crests
 uniform uint  seed      = 7u;   //! slider(0, 9999)   Which land
 

@@ -1,0 +1,98 @@
+"""Pictures that are painted in this process: they stand for their files, and only what changed goes over.
+
+A file's contents are hashed, decoded and uploaded whole, which is too much for every step of a
+stroke. What is painted has a version in place of a hash, and a texture that is kept and written to
+where the brush has been.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.files import content_hash
+from playground.gpu.textures import make_texture, split_format, write_texels, write_texture
+
+if TYPE_CHECKING:
+    import moderngl
+
+_MOST = 4  # textures kept
+
+
+class Painted(Protocol):
+    """One picture."""
+
+    @property
+    def token(self) -> str:
+        """A name that no other has, in no process."""
+
+    @property
+    def pixels(self) -> NDArray[np.uint8]:
+        """(ny, nx, 4), row 0 south."""
+
+    @property
+    def version(self) -> int:
+        """How often it was changed."""
+
+    def holds(self) -> bool:
+        """Say whether it is what its file holds, or newer; not where others have written the file."""
+
+    def changed_since(self, version: int) -> tuple[slice, slice]:
+        """Return the rows and columns of all that was changed since then."""
+
+
+class PaintedFiles(dict[Path, Painted]):
+    """What is painted, by the file that it stands for."""
+
+    def of(self, path: Path) -> Painted | None:
+        """Return what stands for a file; None where the file itself is read."""
+        painted = self.get(path)
+        return painted if painted is not None and painted.holds() else None
+
+    def content(self, path: Path) -> str:
+        """Return what tells a file's contents from others: see ``content_hash``."""
+        painted = self.of(path)
+        return content_hash(path) if painted is None else f"painted {painted.token} {painted.version}"
+
+
+class PaintedTextures:
+    """A texture of each picture, on one context."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._kept: dict[tuple[str, str], tuple[moderngl.Texture, int]] = {}  # and the version it shows
+        self.uploaded = 0  # texels so far
+
+    def texture_of(self, painted: Painted, form: str) -> moderngl.Texture:
+        """Return the texture of a picture in a format of four channels, its changes written to it."""
+        key, pixels = (painted.token, form), painted.pixels
+        known = self._kept.pop(key, None)
+        if known is None:
+            while len(self._kept) >= _MOST:
+                self._kept.pop(next(iter(self._kept)))[0].release()
+            texture = make_texture(self._ctx, (pixels.shape[1], pixels.shape[0]), form)
+            write_texture(texture, _as_told(pixels, form))
+            self.uploaded += pixels.shape[0] * pixels.shape[1]
+        else:
+            texture, version = known
+            rows, columns = painted.changed_since(version)
+            part = pixels[rows, columns]
+            if part.size:
+                write_texels(texture, (columns.start, rows.start), _as_told(part, form))
+                self.uploaded += part.shape[0] * part.shape[1]
+        self._kept[key] = texture, painted.version
+        return texture
+
+    def release(self) -> None:
+        """Give the textures back."""
+        for texture, _ in self._kept.values():
+            texture.release()
+        self._kept.clear()
+
+
+def _as_told(pixels: NDArray[np.uint8], form: str) -> NDArray[np.uint8] | NDArray[np.float32]:
+    """Return pixels as a texture's format takes them: bytes for bytes, else 0..1."""
+    return pixels if split_format(form)[1] == "f1" else np.asarray(pixels / np.float32(255), np.float32)

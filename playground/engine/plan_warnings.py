@@ -1,0 +1,59 @@
+"""Tell what a plan's texts and files leave to be known, though they can be drawn: each warning once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from playground.engine.plan import Plan
+from playground.errors import DataError, Diagnostic
+from playground.paths import GLSL, shown
+from playground.sketch.model import Graph, Kernel, kernels_of
+from playground.sketch.warnings import unheeded, warnings_of_kernel
+from playground.terrain.sources import source_kind
+
+
+class PlanWarnings:
+    """Tells whoever wants to know each warning of what is drawn, once."""
+
+    def __init__(self) -> None:
+        self.tell: Callable[[Diagnostic], None] | None = None  # nobody wants to know
+        self._told: set[tuple[str, str]] = set()  # message and file: a line moves as the file is edited
+        self._graph: Graph | None = None  # whose kernels were looked at last
+
+    def look(self, plan: Plan) -> None:
+        """Tell the warnings of a plan that were not told yet."""
+        if self.tell is None:
+            return
+        found = list(source_warnings(plan))
+        if plan.sketch.graph is not self._graph:
+            self._graph = plan.sketch.graph
+            found += kernel_warnings(plan.sketch.graph, unheeded)
+        for warning in found:
+            if (key := (warning.message, warning.file)) not in self._told:
+                self._told.add(key)
+                self.tell(warning)
+
+
+def kernel_warnings(
+    graph: Graph, of: Callable[[Kernel], tuple[Diagnostic, ...]] = warnings_of_kernel
+) -> list[Diagnostic]:
+    """Return the warnings of a sketch's own kernels; those that ship are left out."""
+    own = [kernel for _, kernel in kernels_of(graph) if not Path(kernel.path).is_relative_to(GLSL)]
+    return list(dict.fromkeys(warning for kernel in own for warning in of(kernel)))
+
+
+def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
+    """Return what a plan's sources assumed of their files, or lost, at the pass that names each file."""
+    found: dict[str, Diagnostic] = {}
+    for step in plan.walk():
+        if step.kernel.kind == "source":
+            spec = plan.flat.user(step.path)
+            notes: tuple[str, ...] = ()
+            with suppress(DataError):  # the file has gone since; whoever draws says so
+                notes = source_kind(step.kernel.registry).notes(step.values)
+            for note in notes:
+                file = spec.file or shown(step.kernel.path)
+                found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
+    return tuple(found.values())

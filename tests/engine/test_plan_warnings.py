@@ -1,0 +1,131 @@
+"""What is drawn though something is amiss is told once: to a program, at the terminal, in a check."""
+
+from __future__ import annotations
+
+import warnings
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+
+import playground
+from playground import cli
+from playground.engine import trial
+from playground.engine.check import check_file
+from playground.engine.trial import Trial
+from playground.live.problems import Warnings
+from playground.sketch.load import load
+
+SKETCH = """format = 1
+size = 9
+[[pass]]
+name = "height"
+use = "generation/heightmap"
+set = { elevation = "turned.tif" }
+[[pass]]
+name = "other"
+use = "./mine"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+KERNEL = """#pragma kernel(output = "height:r32f")
+uniform float idle = 1.0;  //! slider(0, 2)
+#line 7
+float kernel(ivec2 texel) { return 1.0; }
+"""
+TURNED = "turned.tif: its grid is turned against north, so no spacing"
+
+
+@pytest.fixture
+def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A sketch of an elevation file that lies aslant, and a kernel with an idle parameter."""
+    land = np.arange(72, dtype=np.float32).reshape(8, 9)
+    slant = (1.0, 0.5, 0, 0, -0.5, 1.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.0)
+    tags = [(34264, "d", 16, slant), (34735, "H", 8, (1, 1, 0, 1, 1024, 0, 1, 1))]
+    tifffile.imwrite(folder.path / "turned.tif", land, extratags=tags)
+    folder.write("mine.glsl", KERNEL)
+    path = folder.write("sketch.toml", SKETCH)
+    monkeypatch.chdir(folder.path)
+    monkeypatch.setattr(trial, "Trial", partial(trial.Trial, limit_seconds=120.0))
+    return path
+
+
+def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
+    told: list[tuple[str, str]] = []
+    any_engine.warnings.tell = lambda found: told.append((found.place, found.message))
+    for size in ((8, 8), (9, 9)):
+        any_engine.render(load(sketch), size=size)
+    place = next(place for place, message in told if message == TURNED)
+    assert len(told) == 2 and place.endswith("sketch.toml:3")
+    assert sum("#line is left out" in message for _, message in told) == 1
+
+
+def test_a_program_is_told_by_python_s_own_warnings(sketch):
+    with playground.headless() as engine, pytest.warns(playground.PlaygroundWarning) as caught:
+        engine.render(sketch, size=(8, 8))
+        engine.render(sketch, size=(9, 9))
+    assert sorted(TURNED in str(w.message) for w in caught) == [False, True]
+
+
+def test_render_and_export_print_each_once(sketch, capsys):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for command in (["render", ".", "--size", "16x9", "-o", "a.png"], ["export", ".", "--to", "b.npy"]):
+            assert cli.main(command) == 0
+            said = capsys.readouterr().err
+            assert said.count(TURNED) == 1, said
+            assert f"warning: sketch.toml:3: {TURNED}" in said
+
+
+def test_check_shows_them_and_fails_for_none(sketch, capsys):
+    assert cli.main(["check", "."]) == 0
+    out = capsys.readouterr().out
+    assert out.count(f"warning: sketch.toml:3: {TURNED}") == 1
+    assert out.count("nothing reads 'idle'") == 1  # of the kernel, and again of the sketch
+    assert "2 files checked, none failed, 3 warnings" in out
+    with Trial() as made:
+        report = check_file(sketch, made).as_json()
+    assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
+
+
+def test_the_window_lists_them(any_engine, sketch):
+    known = Warnings(lambda kernel: ())
+    loaded = load(sketch)
+    any_engine.render(loaded, size=(8, 8))
+    assert [w.message for w in known.of(loaded, any_engine.plan)] == [TURNED]
+    while known.waiting:
+        known.look()
+    assert [w.line for w in known.of(loaded, any_engine.plan)] == [2, 3, 3]
+
+
+def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
+    loaded = load(sketch)
+    any_engine.render(loaded, size=(8, 8))
+    (sketch.parent / "turned.tif").unlink()
+    assert Warnings(lambda kernel: ()).of(loaded, any_engine.plan) == []
+
+
+def test_a_hidden_default_is_told_by_render_and_check(folder, monkeypatch, capsys):
+    folder.one(
+        KERNEL.replace("return 1.0", "return idle").replace("#line 7\n", ""), more="set = { idle = 2.0 }"
+    )
+    monkeypatch.chdir(folder.path)
+    said = "the default is 1; sketch.toml:6 sets 2"
+    assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png"]) == 0
+    assert capsys.readouterr().err.splitlines() == [f"a.idle: {said}"]
+    assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png", "--set", "a.idle=0.5"]) == 0
+    assert "default" not in capsys.readouterr().err
+    assert cli.main(["check", "sketch.toml"]) == 0
+    assert f"warning: one.glsl:2: {said} in pass 'a'" in capsys.readouterr().out
+
+
+def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
+    more = '[[shot]]\nname = "end"\nsteps = { a = 99 }\n'
+    folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("#line 7\n", ""), more=more)
+    monkeypatch.chdir(folder.path)
+    assert cli.main(["render", ".", "--shot", "end", "-o", "a.png"]) == 2
+    said = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
+    assert capsys.readouterr().err == said
