@@ -22,7 +22,7 @@ from playground.engine.drawn import Drawn
 from playground.engine.execution import Execution, would_run
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
-from playground.engine.ground import Ground
+from playground.engine.ground import Ground, PlanOf
 from playground.engine.keys import Form, KeyMaker, Keys
 from playground.engine.painted import PaintedFiles
 from playground.engine.plain_forms import PlainForms, warn
@@ -208,17 +208,8 @@ class Engine:
         """
         return self._over_ground(sketch, lambda seen: self.plan_for_window(seen, window, time, steps))
 
-    def _over_ground(
-        self, sketch: Sketch | str | Path, plan_of: Callable[[Sketch], Plan]
-    ) -> moderngl.Texture:
-        """Draw a picture; where the eye stood under the terrain, again from just above it."""
-        found = opened(sketch)
-        plan = plan_of(found)
-        shown = next(iter(plan.flat.outputs["view"].values()))
-        texture = self._texture(plan, shown)
-        with self.borrowed():
-            camera = self.ground.over(plan, self.results, self.ctx)
-        return texture if camera is None else self._texture(plan_of(found.with_camera(camera)), shown)
+    def _over_ground(self, sketch: Sketch | str | Path, plan_of: PlanOf) -> moderngl.Texture:
+        return self.ground.draw(self, self._texture, opened(sketch), plan_of)
 
     def plan_for_window(
         self,

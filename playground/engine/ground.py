@@ -8,7 +8,7 @@ terrain is left where it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,10 +18,14 @@ from numpy.typing import NDArray
 from playground.engine.plan import Plan, Step
 from playground.engine.results import Result
 from playground.sketch.flatten import Ref
-from playground.sketch.model import Camera
+from playground.sketch.model import Camera, Sketch
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.engine.engine import Engine
+
+PlanOf = Callable[[Sketch], Plan]
 
 CLEARANCE = 0.002  # over the ground, as a share of the eye's distance from its target: see ``terrain.camera``
 _TURNED = 89.0  # [degrees] of elevation, at most
@@ -40,6 +44,21 @@ class Ground:
         if not self.raised:
             return ""
         return f"the eye stood under the terrain and was raised by {self.raised:.0f} m, to just above it"
+
+    def draw(
+        self,
+        engine: Engine,
+        texture_of: Callable[[Plan, Ref], moderngl.Texture],
+        sketch: Sketch,
+        plan_of: PlanOf,
+    ) -> moderngl.Texture:
+        """Draw a sketch's picture; where the eye stood under the terrain, again from just above it."""
+        plan = plan_of(sketch)
+        shown = next(iter(plan.flat.outputs["view"].values()))
+        texture = texture_of(plan, shown)
+        with engine.borrowed():
+            camera = self.over(plan, engine.results, engine.ctx)
+        return texture if camera is None else texture_of(plan_of(sketch.with_camera(camera)), shown)
 
     def over(self, plan: Plan, results: Mapping[str, Result], ctx: moderngl.Context) -> Camera | None:
         """Return a camera whose eye is over the terrain, or None where the plan's own is.

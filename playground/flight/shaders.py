@@ -51,7 +51,8 @@ void main() {
     sun = length(sun) > 1e-9 ? normalize(sun) : vec2(0.0, 1.0);
     float aside = (gl_FragCoord.x - 0.5) / (AIRS - 1.0) * 2.0 - 1.0;
     vec2 towards = aside * sun + sqrt(max(1.0 - aside * aside, 0.0)) * vec2(-sun.y, sun.x);
-    frame = vec4(air_between(daylight, Backdrop(natural, zenith, horizon, altitude), vec3(towards, 0.03)), 1.0);
+    Backdrop sky = Backdrop(natural, zenith, horizon, altitude);
+    frame = vec4(air_between(daylight, sky, vec3(towards, 0.03)), 1.0);
 }
 """
 )

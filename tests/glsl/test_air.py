@@ -315,7 +315,7 @@ def test_all_of_it_is_dark_long_after_sunset(engine, make_sketch):
 
 
 def sky(rise, aside, elevation, turbidity, table, height=0.0):
-    """Return the light from one direction, times pi, for an eye at a height [km]: the aerosol's, and all the rest.
+    """Return the light from one direction, times pi, from a height [km]: the aerosol's, and all the rest.
 
     The way is followed by Gauss's rule; what is left of light on it is a difference of
     columns. ``table`` is the shader's own of light scattered often, which was held against
@@ -411,7 +411,7 @@ def test_the_sky_may_be_read_in_any_direction(engine, make_sketch, elevation):
 @pytest.mark.parametrize("elevation", [40.0, 4.0])
 @pytest.mark.parametrize("height", [0.1, 0.606, 1.5, 4.0, 9.0])
 def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height, elevation):
-    """From the eye's own horizon, which lies below the level, to the zenith; between the tables as on them."""
+    """From the eye's own horizon, below the level, to the zenith; between the tables as on them."""
     given = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
     seen = f'[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\nset = {{ height = {height} }}\n'
     sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", from_above=FROM_ABOVE)
