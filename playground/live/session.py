@@ -98,6 +98,7 @@ class Session(Drafts):
         # Images and elevation files that were drawn with: what they were, and a hash of it.
         self._read: dict[Path, tuple[Signature | None, str]] = {}
         self._read_for: Sketch | None = None  # the sketch that these are the files of
+        self._told_of_ground = False  # that the eye stood under it
         self.reload()
 
     @property
@@ -351,6 +352,9 @@ class Session(Drafts):
         seen = self._framed(chosen, size)
         steps, now = self._steps_for(sketch), self.clock.time
         texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
+        if self.engine.ground.message and not self._told_of_ground:
+            self._told_of_ground = True
+            self.notes.append(self.engine.ground.message)
         if self._read_for is not sketch:
             self._note_read(sketch)
         self.hasty = chosen is not sketch
