@@ -21,6 +21,7 @@ struct Backdrop {
     bool natural;   // the sky of lighting/daylight, which then there must be, or the two colours
     vec3 zenith;
     vec3 horizon;
+    float height;   // of the eye over the sea  [km]
 };
 
 // Around the sun the sky is ten times as bright as elsewhere, and would wash out all land below
@@ -31,7 +32,7 @@ vec3 eased(vec3 light) {
 
 // What air far away adds on the way there.
 vec3 air_between(sampler2D daylight, Backdrop sky, vec3 towards) {
-    return sky.natural ? eased(air_towards(daylight, towards)) : sky.horizon;
+    return sky.natural ? eased(air_towards(daylight, towards, sky.height)) : sky.horizon;
 }
 
 // The sky, with the sun in it where there is daylight; below the horizon, the air there. A
@@ -41,12 +42,12 @@ vec3 backdrop_towards(sampler2D daylight, Backdrop sky, vec3 towards, float pixe
         return mix(sky.horizon, sky.zenith, 1.0 - exp(-3.0 * max(towards.z, 0.0)));
     }
     // A little above the horizon is what the air is taken from: there they meet.
-    vec3 seen = towards.z < 0.03 ? air_towards(daylight, towards) : sky_towards(daylight, towards);
+    vec3 seen = towards.z < air_rise(sky.height) ? air_towards(daylight, towards, sky.height) : sky_towards(daylight, towards, sky.height);
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     float disc = clamp((radians(0.2665) - distance(towards, from.direction)) / pixel + 0.5, 0.0, 1.0);
     float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
     vec3 sun = max(from.sun * min(46750.0, 60.0 / max(lit, 1e-9)), seen);
-    return mix(eased(seen), sun, towards.z < 0.0 ? 0.0 : disc);
+    return mix(eased(seen), sun, towards.z < horizon_rise(sky.height) ? 0.0 : disc);
 }
 
 // How much of what lies so far away the air hides; all of it from `end` on.

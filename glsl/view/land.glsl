@@ -99,7 +99,7 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
     }
     if (mark > 0.0) shown = cut_of_land(earth, share, mark);
     if (mark < BROKEN || !is_number(shown.r + shown.g + shown.b)) shown = NOT_A_NUMBER;
-    vec3 air = sky == 1 && wired_daylight ? horizon_of(daylight) : horizon;
+    vec3 air = sky == 1 && wired_daylight ? horizon_of(daylight, 0.001 * (base_elevation + eye.z)) : horizon;
     if (haze > 0.0) shown = mix(air, shown, exp(-haze * distance(eye, position) / max(extent.x, extent.y)));
     return vec4(shown, 1.0);
 }

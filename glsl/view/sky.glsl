@@ -26,16 +26,17 @@ vec3 direction_of(vec2 pixel) {
 }
 
 // How much of a pixel the sun's disc covers.
-float disc_in(vec3 towards, vec3 sun, float pixel) {
-    return towards.z < 0.0 ? 0.0 : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
+float disc_in(vec3 towards, vec3 sun, float pixel, float height) {
+    return towards.z < horizon_rise(height) ? 0.0 : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
 }
 
 vec3 daylight_in(vec3 towards, float pixel) {
-    vec3 seen = sky_towards(daylight, towards);
+    float height = 0.001 * max(base_elevation + eye.z, 0.0);
+    vec3 seen = sky_towards(daylight, towards, height);
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
     vec3 disc = from.sun * min(46750.0, BRIGHTEST / max(lit, 1e-9));
-    seen = mix(seen, max(disc, seen), disc_in(towards, from.direction, pixel));
+    seen = mix(seen, max(disc, seen), disc_in(towards, from.direction, pixel, height));
     vec3 below = nadir * level_light(daylight);
     return towards.z < 0.0 ? mix(seen, below, 1.0 - exp(3.0 * towards.z)) : seen;
 }

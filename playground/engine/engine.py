@@ -22,6 +22,7 @@ from playground.engine.drawn import Drawn
 from playground.engine.execution import Execution, would_run
 from playground.engine.finite import FiniteCheck, NotFinite
 from playground.engine.frame import Frame
+from playground.engine.ground import Ground, PlanOf
 from playground.engine.keys import Form, KeyMaker, Keys
 from playground.engine.painted import PaintedFiles
 from playground.engine.plain_forms import PlainForms, warn
@@ -85,6 +86,7 @@ class Engine:
         self.warnings = PlanWarnings()
         self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
         self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
+        self.ground = Ground()  # under the last frame's eye
         self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
         self._keys = KeyMaker(content=self.painted.content)
         self._drawn = Drawn()
@@ -187,9 +189,9 @@ class Engine:
         interpolated: bool = True,
     ) -> moderngl.Texture:
         """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
-        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
-        view = plan.flat.outputs["view"]
-        return self._texture(plan, next(iter(view.values())))
+        return self._over_ground(
+            sketch, lambda seen: self.plan_for(seen, size, time, steps, interpolated=interpolated)
+        )
 
     def draw_window(
         self,
@@ -204,9 +206,10 @@ class Engine:
         The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
-        plan = self.plan_for_window(sketch, window, time, steps)
-        view = plan.flat.outputs["view"]
-        return self._texture(plan, next(iter(view.values())))
+        return self._over_ground(sketch, lambda seen: self.plan_for_window(seen, window, time, steps))
+
+    def _over_ground(self, sketch: Sketch | str | Path, plan_of: PlanOf) -> moderngl.Texture:
+        return self.ground.draw(self, self._texture, opened(sketch), plan_of)
 
     def plan_for_window(
         self,

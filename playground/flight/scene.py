@@ -90,10 +90,17 @@ class Scene:
         self._take_air()
 
     def _take_air(self) -> None:
-        """Work out the air's colour on the horizon, by the angle from the sun: the land needs no more."""
+        """Find the sun's side: the land needs the air's colour by the angle from it alone."""
         east, north = (float(n) for n in np.frombuffer(self._daylight.read(alignment=1), self._form)[:2])
         level = float(np.hypot(east, north))
         self._towards_sun = (east / level, north / level) if level > 1e-9 else (0.0, 1.0)
+
+    def _altitude(self, eye: tuple[float, float, float]) -> float:
+        """Return how high the eye is over the sea [km]."""
+        return max(eye[2] + self.plot.base, 0.0) / 1000
+
+    def _draw_air(self, eye: tuple[float, float, float]) -> None:
+        """Work out the air's colour on the horizon as the eye sees it."""
         self._ring.use()
         self._ring.viewport = (0, 0, shaders.AIRS, 1)
         self.ctx.enable_only(0)
@@ -101,6 +108,7 @@ class Scene:
         self._daylight.use(2)
         view = self.plot.view
         _set(self._airs, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
+        _set(self._airs, altitude=self._altitude(eye))
         self._arrays[self._airs.glo].render(self.ctx.TRIANGLES, vertices=3)
 
     def draw(
@@ -117,6 +125,7 @@ class Scene:
         ``bare`` leaves out sky, air and what stands in for missing parts, and puts magenta
         there, to look for holes.
         """
+        self._draw_air(eye)
         surface = self._surface_of(size)
         surface.many.use()
         surface.many.viewport = (0, 0, *size)
@@ -130,7 +139,7 @@ class Scene:
         if not bare:
             # After the land: of the sky, only what is seen is worked out.
             self.ctx.depth_func = "<="
-            self._set_sky(self._sky, lens)
+            self._set_sky(self._sky, lens, eye)
             self._arrays[self._sky.glo].render(self.ctx.TRIANGLES, vertices=3)
             self.ctx.depth_func = "<"
         self.ctx.enable_only(0)
@@ -159,7 +168,7 @@ class Scene:
 
     def _draw_land(self, parts: Parts, eye: tuple[float, float, float], lens: Lens, *, bare: bool) -> None:
         plot, program = self.plot, self._land
-        self._set_sky(program, lens)
+        self._set_sky(program, lens, eye)
         view = plot.view
         _set(program, heights=0, ground=1, spacing=plot.spacing, relief=plot.relief)
         _set(program, width=plot.width, end=sight(parts.radius) * plot.width, clear=bare)
@@ -219,9 +228,10 @@ class Scene:
         )
         return array, len(indices) // 3
 
-    def _set_sky(self, program: moderngl.Program, lens: Lens) -> None:
+    def _set_sky(self, program: moderngl.Program, lens: Lens, eye: tuple[float, float, float]) -> None:
         view = self.plot.view
         _set(program, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
+        _set(program, altitude=self._altitude(eye))
         _set(program, pixel=lens.pixel, clip_from_near=lens.clip_from_near.T.ravel().tolist())
         _set(program, near_from_clip=lens.near_from_clip.T.ravel().tolist())
 

@@ -16,6 +16,7 @@ uniform sampler2D daylight;
 uniform bool natural;
 uniform vec3 zenith;
 uniform vec3 horizon;
+uniform float altitude;  // of the eye over the sea [km]
 uniform float pixel;
 uniform mat4 clip_from_near;
 uniform mat4 near_from_clip;
@@ -34,7 +35,7 @@ in vec2 place;
 out vec4 frame;
 void main() {
     vec4 away = near_from_clip * vec4(place, 1.0, 1.0);
-    Backdrop sky = Backdrop(natural, zenith, horizon);
+    Backdrop sky = Backdrop(natural, zenith, horizon, altitude);
     frame = vec4(backdrop_towards(daylight, sky, normalize(away.xyz / away.w), pixel), 1.0);
 }
 """
@@ -50,7 +51,8 @@ void main() {
     sun = length(sun) > 1e-9 ? normalize(sun) : vec2(0.0, 1.0);
     float aside = (gl_FragCoord.x - 0.5) / (AIRS - 1.0) * 2.0 - 1.0;
     vec2 towards = aside * sun + sqrt(max(1.0 - aside * aside, 0.0)) * vec2(-sun.y, sun.x);
-    frame = vec4(air_between(daylight, Backdrop(natural, zenith, horizon), vec3(towards, 0.03)), 1.0);
+    Backdrop sky = Backdrop(natural, zenith, horizon, altitude);
+    frame = vec4(air_between(daylight, sky, vec3(towards, 0.03)), 1.0);
 }
 """
 )

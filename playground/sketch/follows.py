@@ -1,4 +1,4 @@
-"""Angles that follow a direction: ``follows("sun")``, the azimuth of the parameter ``sun`` until they are set.
+"""Angles that follow a direction: ``follows("sun")``, the azimuth of ``sun`` until they are set.
 
 A parameter is set when its value is not its default, so the default of one that follows should
 be a value that nobody needs, as -360 degrees. With ``follows("sun", "measured", "on its arc")``
@@ -52,7 +52,8 @@ def read_follows(
     choices = menus[words[1]]
     if words[2] not in choices:
         raise line.error(
-            f"follows of '{parameter.name}': '{words[1]}' has no choice '{words[2]}'{nearest(words[2], choices)}"
+            f"follows of '{parameter.name}': '{words[1]}' has no choice '{words[2]}'"
+            f"{nearest(words[2], choices)}"
         )
     return Follows(words[0], words[1], choices.index(words[2]))
 

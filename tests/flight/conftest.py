@@ -43,7 +43,7 @@ set = { hour = 9.0 }
 
 @pytest.fixture
 def small_engine(ctx: moderngl.Context) -> Iterator[Engine]:
-    with Engine(ctx, cache_bytes=2 * 2**20) as made:
+    with Engine(ctx, cache_bytes=4 * 2**20) as made:
         yield made
 
 

@@ -252,16 +252,13 @@ def test_no_crack_shows_between_levels_and_without_skirts_some_would(
     """Rough land, seen from low over many borders of two levels; heights 0 to 900 m over 60 m of spacing."""
     if skirt is not None:
         monkeypatch.setattr("playground.flight.scene.SKIRT", skirt)
-    # A seed whose ground lies below the eye: from inside a mountain there is no ground to see.
-    rough = {"height.rough": 1.0, "height.valleys": 1.0, "height.gain": 0.9, "height.seed": 8}
+    rough = {"height.rough": 1.0, "height.valleys": 1.0, "height.gain": 0.9}
     cracks = 0
     with Flight(small_engine, land_of(**rough), radius=3.0) as flight:
         flight.make_all()
         for turn in range(6):
-            flight.craft = replace(
-                flight.craft, up=700.0 + 150 * (turn % 3), heading=turn * 1.05, pitch=-0.25
-            )
-            assert flight.above_ground > 20.0
+            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (turn % 3)
+            flight.craft = replace(flight.craft, up=up, heading=turn * 1.05, pitch=-0.25)
             picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
             magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
             cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))

@@ -314,8 +314,8 @@ def test_all_of_it_is_dark_long_after_sunset(engine, make_sketch):
 # ── the sky ──────────────────────────────────────────────────────────────────
 
 
-def sky(rise, aside, elevation, turbidity, table):
-    """Return the light from one direction, times pi: the aerosol's, and all the rest.
+def sky(rise, aside, elevation, turbidity, table, height=0.0):
+    """Return the light from one direction, times pi, from a height [km]: the aerosol's, and all the rest.
 
     The way is followed by Gauss's rule; what is left of light on it is a difference of
     columns. ``table`` is the shader's own of light scattered often, which was held against
@@ -324,14 +324,15 @@ def sky(rise, aside, elevation, turbidity, table):
     extinct = coefficients(turbidity)
     sun = np.sin(np.radians(elevation))
     together = rise * sun + np.sqrt((1 - rise**2) * (1 - sun**2)) * aside
-    nearest = RADIUS * np.sqrt(1 - rise**2)
-    whole = np.sqrt((RADIUS + TOP) ** 2 - nearest**2) - RADIUS * rise
+    start = RADIUS + height
+    nearest = start * np.sqrt(1 - rise**2)
+    whole = np.sqrt((RADIUS + TOP) ** 2 - nearest**2) - start * rise
     share = (GAUSS[0] + 1) / 2
     way, long = whole * share**2, whole * GAUSS[1] * share
-    there = np.clip(np.hypot(RADIUS * rise + way, nearest) - RADIUS, 0, TOP)
-    rise_there = np.clip((RADIUS * rise + way) / (RADIUS + there), 0, 1)
-    sun_there = np.clip((RADIUS * sun + way * together) / (RADIUS + there), -1, 1)
-    passed = column(0.0, rise)[:, None] - column(there, rise_there)
+    there = np.clip(np.hypot(start * rise + way, nearest) - RADIUS, 0, TOP)
+    rise_there = np.clip((start * rise + way) / (RADIUS + there), -1, 1)
+    sun_there = np.clip((start * sun + way * together) / (RADIUS + there), -1, 1)
+    passed = column(height, rise)[:, None] - column(there, rise_there)
     amounts = profile(there)
     with np.errstate(under="ignore"):
         seen = np.exp(-np.clip(passed.T, 0, None) @ extinct) * long[:, None]
@@ -357,7 +358,7 @@ def test_the_sky_is_what_its_air_scatters(engine, make_sketch, elevation):
     sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n")
     found = engine.read(sketch, "daylight.dome").astype(np.float64)[..., :3]
     table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
-    ny, nx = found.shape[0], found.shape[1] // 2
+    ny, nx = found.shape[0] // 9, found.shape[1] // 2  # the eye by the sea
     for x, y in ((0, 0), (0, 5), (31, 2), (12, 12), (20, 8), (5, 25), (16, 31)):
         rise, aside = (y / (ny - 1)) ** 2, 1 - 2 * (x / (nx - 1)) ** 2
         aerosol, rest, _ = sky(rise, aside, elevation, 3.0, table)
@@ -373,7 +374,20 @@ vec4 kernel(ivec2 texel) {
     float azimuth = radians(float(texel.x) * 7.3);
     float rise = 0.01 + 0.98 * float(texel.y) / float(size.y);
     vec2 level = sqrt(1.0 - rise * rise) * vec2(sin(azimuth), cos(azimuth));
-    return vec4(sky_towards(daylight, vec3(level, rise)), 1.0);
+    return vec4(sky_towards(daylight, vec3(level, rise), 0.0), 1.0);
+}
+"""
+FROM_ABOVE = """
+#include "lighting/daylight_sky.glsl"
+#pragma kernel(output = "seen:rgba32f")
+uniform sampler2D daylight;  //! input
+uniform float height = 0.0;
+vec4 kernel(ivec2 texel) {
+    float azimuth = radians(float(texel.x) * 7.3);
+    float lowest = horizon_rise(height) + 2e-4;
+    float rise = mix(lowest, 1.0, pow(float(texel.y) / float(size.y), 2.0));
+    vec2 level = sqrt(1.0 - rise * rise) * vec2(sin(azimuth), cos(azimuth));
+    return vec4(sky_towards(daylight, vec3(level, rise), height), 1.0);
 }
 """
 
@@ -392,3 +406,39 @@ def test_the_sky_may_be_read_in_any_direction(engine, make_sketch, elevation):
         phase = 3 / (8 * np.pi) * (1 - g**2) * (1 + together**2)
         phase /= (2 + g**2) * (1 + g**2 - 2 * g * together) ** 1.5
         np.testing.assert_allclose(found[y, x], rest + phase * aerosol, rtol=0.06)
+
+
+@pytest.mark.parametrize("elevation", [40.0, 4.0])
+@pytest.mark.parametrize("height", [0.1, 0.606, 1.5, 4.0, 9.0])
+def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height, elevation):
+    """From the eye's own horizon, below the level, to the zenith; between the tables as on them."""
+    given = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
+    seen = f'[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\nset = {{ height = {height} }}\n'
+    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", from_above=FROM_ABOVE)
+    found = engine.read(sketch, "seen").astype(np.float64)[..., :3]
+    table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
+    lowest = -np.sqrt(1 - (RADIUS / (RADIUS + height)) ** 2) + 2e-4
+    for x, y in ((3, 0), (30, 0), (20, 1), (21, 2), (44, 1), (33, 7), (0, 3)):
+        rise, aside = lowest + (1 - lowest) * (y / 9) ** 2, np.cos(np.radians(x * 7.3 - 150))
+        aerosol, rest, together = sky(rise, aside, elevation, 3.0, table, height)
+        phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
+        truth = rest + phase * aerosol
+        np.testing.assert_allclose(found[y, x], truth, rtol=0.05, atol=0.1 * truth.max(), err_msg=f"{x}, {y}")
+
+
+def test_from_606_metres_the_horizon_has_a_third_more_blue_than_from_the_sea(engine, make_sketch):
+    """Half of the haze lies below; the level horizon of the sea's own sky lacks it."""
+    given = 'position = "free", sun = [150.0, 40.0], turbidity = 3.0, adaptation = 0.0'
+    seen = '[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\n'
+    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", from_above=FROM_ABOVE)
+    sea, above = (
+        engine.read(sketch.with_values({"seen.height": height}), "seen")[0, 40, 2] for height in (0.0, 0.606)
+    )
+    table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
+    lowest = -np.sqrt(1 - (RADIUS / (RADIUS + 0.606)) ** 2) + 2e-4
+    true = []
+    for height, rise in ((0.0, 2e-4), (0.606, lowest)):
+        aerosol, rest, together = sky(rise, np.cos(np.radians(40 * 7.3 - 150)), 40.0, 3.0, table, height)
+        phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
+        true.append((rest + phase * aerosol)[2])
+    assert above / sea == pytest.approx(true[1] / true[0], rel=0.1) and above > 1.1 * sea

@@ -8,7 +8,7 @@ from scipy.ndimage import map_coordinates
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
-from playground.sketch.model import Camera
+from playground.sketch.model import Camera, kernels_of
 from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names
 
@@ -114,8 +114,19 @@ def test_the_row_adds_up(any_engine, day):
         np.testing.assert_allclose(row[5, :3], level, rtol=1e-5)
 
 
-def looked_up(dome, rise, turned, together):
+def seen_from(height, dome, rise, turned, together):
+    """Read the dome as seen from a height [km], between two of nine tables, by what is over the horizon."""
+    lowest = -np.sqrt(1 - (6360 / (6360 + height)) ** 2)
+    over = np.clip((rise - lowest) / (1 - lowest), 0, 1)
+    place = 8 * np.sqrt(height / 16)
+    tables = dome.reshape(9, -1, *dome.shape[1:])
+    low, high = (looked_up(tables[int(place) + k], over, turned, together, 1) for k in (0, 1))
+    return low + (place - int(place)) * (high - low)
+
+
+def looked_up(dome, rise, turned, together, tables=9):
     """Read the dome's two tables in NumPy; directions by their sine, and azimuth from the sun's."""
+    dome = dome[: dome.shape[0] // tables]  # as seen from the sea
     ny, nx = dome.shape[0], dome.shape[1] // 2
     place = [np.sqrt(rise) * (ny - 1), np.sin(turned / 2) * (nx - 1)]
     halves = [
@@ -320,11 +331,24 @@ def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sk
     row = row_of(any_engine, wired)
     found = any_engine.read(wired, "light")
     values = {"sun": [250.0, elevation], "sun_colour": list(row[1, :3]), "sky_colour": list(row[2, :3])}
+    if name == "lighting/horizon_sun":  # no arc is under a daylight's sun: it takes eight directions
+        values |= {"measured": "eight directions", "arc": 135.0}
     plain = make_sketch(land + light, relief=200.0, hills=HILLS)
     wanted = any_engine.read(plain.with_values({f"light.{k}": v for k, v in values.items()}), "light")
     assert np.ptp(found[..., 0]) > 0.05
     same = np.abs(found - wanted) <= 2e-3 * np.abs(wanted) + 1e-4
     assert same.mean() > 0.995  # a grazing ray may fall to either side
+
+
+def test_turbidity_is_said_once():
+    """One kernel has it and all others read that: nothing can be set to another air."""
+    graph = read_technique("lighting/daylight", GLSL, GLSL)
+    having = [path for path, kernel in kernels_of(graph) if kernel.parameter("turbidity")]
+    views = [n for n in shipped_techniques() if n.startswith("view/")]
+    having += [
+        n for n in views for _, k in kernels_of(read_technique(n, GLSL, GLSL)) if k.parameter("turbidity")
+    ]
+    assert having == ["air"]
 
 
 # ── seen behind the land ─────────────────────────────────────────────────────
@@ -406,7 +430,7 @@ def test_the_sky_behind_the_land_is_daylight_s(any_engine, outdoors):
     sun = row[0]
     aside = towards[..., :2] @ sun[:2] / np.linalg.norm(towards[..., :2], axis=-1) / np.linalg.norm(sun[:2])
     turned = np.arccos(np.clip(aside, -1, 1))
-    seen = looked_up(dome, np.clip(towards[..., 2], 0, 1), turned, towards @ sun)
+    seen = seen_from(eye.position[2] / 1000, dome, towards[..., 2], turned, towards @ sun)
     np.testing.assert_allclose(found[above], seen[above], rtol=0.02)
     # Far underfoot it is the ground's colour in all the light there is.
     down = looking(outdoors((180.0, 40.0)), 90.0, 85.0)

@@ -499,6 +499,21 @@ def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(benc
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
+def test_an_eye_under_the_terrain_is_told_of_once(tmp_path: Path, any_engine: Engine) -> None:
+    (tmp_path / "sketch.toml").write_text(SKETCH_3D, encoding="utf-8")
+    session = Session(any_engine, tmp_path / "sketch.toml")
+    try:
+        session.frame(SIZE)
+        assert not any("under the terrain" in note for note in session.notes)
+        for azimuth in (20.0, 30.0, 40.0):
+            session.look(Camera(azimuth=azimuth, elevation=-40, distance=3000, target=(5120, 5120, 0)))
+            session.frame(SIZE)
+        assert sum("under the terrain" in note for note in session.notes) == 1
+        assert session.plan is not None and session.plan.eye.position[2] > 0
+    finally:
+        session.release()
+
+
 PLAIN = """#version 330
 uniform sampler2D tex;  //! file("x.png")
 out vec4 colour;

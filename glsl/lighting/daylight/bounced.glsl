@@ -1,7 +1,7 @@
 // lighting/daylight/bounced.glsl -- light that air and ground have scattered twice or more, as if from all around.
 //
 //   gives    bounced: the logarithm of it, by the sun's height along x and by height along y
-//   needs    sky/bounced.glsl, sky/slab.glsl; the columns
+//   needs    sky/bounced.glsl, sky/slab.glsl; the columns, the air
 //   units    per unit of the sun's light outside the air, per steradian
 //   source   Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering
 //            Technique", eqs 5 to 10
@@ -14,7 +14,7 @@
 #pragma kernel(output = "bounced:rgba32f")
 
 uniform sampler2D columns;         //! input
-uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform sampler2D air;             //! input
 uniform float ground = 0.2;        //! slider(0, 1) step(0.01) How much of its light the ground throws back to the sky
 
 const int RISES = 12;
@@ -23,7 +23,7 @@ const int STEPS = 16;
 
 vec4 kernel(ivec2 texel) {
     vec2 start = bounced_start(vec2(texel) / vec2(max(size - 1, 1)));
-    Air air = air_of(turbidity);
+    Air scatters = air_of(texelFetch(air, ivec2(0), 0).r);
     vec3 second = vec3(0.0);
     vec3 again = vec3(0.0);
     float sun_level = sqrt(max(1.0 - start.x * start.x, 0.0));
@@ -42,14 +42,14 @@ vec4 kernel(ivec2 texel) {
         for (int k = 0; k < STEPS; k++) {
             float before = float(k) / float(STEPS);
             float after = float(k + 1) / float(STEPS);
-            Slab here = slab(columns, air, start.y, rise, start.x, together, whole * before * before, whole * after * after);
+            Slab here = slab(columns, scatters, start.y, rise, start.x, together, whole * before * before, whole * after * after);
             second += left * (here.molecules + here.aerosol) * 0.0795775;  // 1 / 4 pi
             again += left * here.share;
             left *= here.left;
         }
         if (to_ground >= 0.0) {
             float sun_rise = ((EARTH_RADIUS + start.y) * start.x + whole * together) / EARTH_RADIUS;
-            second += left * left_of_sunlight(columns, air, 0.0, sun_rise) * (max(sun_rise, 0.0) * ground * 0.3183099);  // 1 / pi
+            second += left * left_of_sunlight(columns, scatters, 0.0, sun_rise) * (max(sun_rise, 0.0) * ground * 0.3183099);  // 1 / pi
         }
     }
     float count = float(RISES * SIDES);

@@ -1,8 +1,9 @@
 // lighting/daylight/dome.glsl -- the light of a cloudless sky, by a sum along each line of sight.
 //
 //   gives    dome: in its left half what molecules scatter and what was scattered more than
-//            once, in its right half what aerosol scatters, without its phase
-//   needs    sky/bounced.glsl, sky/dome.glsl, sky/slab.glsl, lighting/sun.glsl; the sun's place and two tables
+//            once, in its right half what aerosol scatters, without its phase; one such table
+//            over the other for each of several heights of the eye
+//   needs    sky/bounced.glsl, sky/dome.glsl, sky/slab.glsl, lighting/sun.glsl; the sun's place, the air and two tables
 //   units    per unit of the sun's light outside the air, times pi: a sky of 1 all round lights level
 //            ground by 1
 //   source   Nishita et al. 1993 and Hillaire 2020, as in sky/slab.glsl and lighting/daylight/bounced;
@@ -22,7 +23,7 @@
 uniform sampler2D place;         //! input
 uniform sampler2D columns;       //! input
 uniform sampler2D bounced;       //! input
-uniform float turbidity = 2.5;   //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform sampler2D air;           //! input
 
 const int STEPS = 32;
 const float NIGHT = 5.1e-9;
@@ -30,12 +31,15 @@ const float NIGHT = 5.1e-9;
 vec4 kernel(ivec2 texel) {
     int half_width = max(size.x / 2, 1);
     bool right = texel.x >= half_width;
-    vec2 share = vec2(right ? texel.x - half_width : texel.x, texel.y) / vec2(max(ivec2(half_width, size.y) - 1, 1));
-    vec2 way = dome_start(min(share, 1.0));
+    int rows = max(size.y / DOMES, 1);
+    int table = min(texel.y / rows, DOMES - 1);
+    float height = dome_height(table);
+    vec2 share = vec2(right ? texel.x - half_width : texel.x, texel.y - table * rows) / vec2(max(ivec2(half_width, rows) - 1, 1));
+    vec2 way = dome_start(min(share, 1.0), height);
     vec3 sun = to_sun(texelFetch(place, ivec2(0), 0).rg);
     float together = way.x * sun.z + sqrt((1.0 - way.x * way.x) * dot(sun.xy, sun.xy)) * way.y;
-    Air air = air_of(turbidity);
-    float whole = way_to_top(0.0, way.x);
+    Air scatters = air_of(texelFetch(air, ivec2(0), 0).r);
+    float whole = way_to_top(height, way.x);
     vec3 left = vec3(1.0);
     vec3 molecules = vec3(0.0);
     vec3 aerosol = vec3(0.0);
@@ -43,7 +47,7 @@ vec4 kernel(ivec2 texel) {
     for (int k = 0; k < STEPS; k++) {
         float before = float(k) / float(STEPS);
         float after = float(k + 1) / float(STEPS);
-        Slab here = slab(columns, air, 0.0, way.x, sun.z, together, whole * before * before, whole * after * after);
+        Slab here = slab(columns, scatters, height, way.x, sun.z, together, whole * before * before, whole * after * after);
         molecules += left * here.molecules;
         aerosol += left * here.aerosol;
         often += left * here.share * bounced_at(bounced, here.height, here.sun_rise);

@@ -2,8 +2,9 @@
 //
 //   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2 the
 //            sky's light on level ground; 3 the zenith, what all is multiplied by for the eye; 4 the
-//            mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of open sky
-//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place and two tables
+//            mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of open sky;
+//            from 7 on the mean horizon as seen from each height of sky/dome.glsl
+//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place, the air and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it; degrees
 //   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
 //            light, whose reading to the power -adaptation is the exposure
@@ -21,7 +22,7 @@
 uniform sampler2D place;           //! input
 uniform sampler2D columns;         //! input
 uniform sampler2D dome;            //! input
-uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform sampler2D air;             //! input
 uniform float clouds = 0.0;        //! slider(0, 1) step(0.01) Cover of cloud: dims the sun, whitens the sky
 uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01) How much of the light's loss the eye makes up for
 
@@ -39,20 +40,22 @@ vec3 towards(float rise, float turned, vec3 sun) {
 vec4 kernel(ivec2 texel) {
     vec2 at = texelFetch(place, ivec2(0), 0).rg;
     vec3 sun = to_sun(at);
-    vec3 beam = left_of_sunlight(columns, air_of(turbidity), 0.0, sun.z);
+    vec3 beam = left_of_sunlight(columns, air_of(texelFetch(air, ivec2(0), 0).r), 0.0, sun.z);
     vec3 sky = vec3(0.0);
     vec3 horizon = vec3(0.0);
+    float height = dome_height(clamp(texel.x - 7, 0, DOMES - 1));
+    float horizon_at = horizon_rise(height) + HORIZON;
     for (int column = 0; column < AROUND; column++) {
         // The half turns on both sides of the sun are alike.
         float turned = (float(column) + 0.5) / float(AROUND) * 3.14159265;
-        horizon += dome_at(dome, 0, towards(HORIZON, turned, sun), sun) / float(AROUND);
+        horizon += dome_at(dome, 0, towards(horizon_at, turned, sun), sun, height) / float(AROUND);
         for (int row = 0; row < UP; row++) {
             // Equal steps of the squared sine weigh each direction by its sine, as level ground does.
             float rise = sqrt((float(row) + 0.5) / float(UP));
-            sky += dome_at(dome, 0, towards(rise, turned, sun), sun) / float(AROUND * UP);
+            sky += dome_at(dome, 0, towards(rise, turned, sun), sun, 0.0) / float(AROUND * UP);
         }
     }
-    vec3 zenith = dome_at(dome, 0, vec3(0.0, 0.0, 1.0), sun);
+    vec3 zenith = dome_at(dome, 0, vec3(0.0, 0.0, 1.0), sun, 0.0);
 
     float level = max(sun.z, 0.0);
     float open = 1.0 - clouds;
@@ -66,7 +69,7 @@ vec4 kernel(ivec2 texel) {
     if (texel.x == 1) found = vec4(eye * beam, at.x);
     if (texel.x == 2) found = vec4(eye * (open * sky + cloud), 1.0);
     if (texel.x == 3) found = vec4(eye * (open * zenith + cloud * overcast(1.0)), eye);
-    if (texel.x == 4) found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
+    if (texel.x == 4 || texel.x >= 7) found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
     if (texel.x == 5) found = vec4(eye * whole, 1.0);
     return found;
 }

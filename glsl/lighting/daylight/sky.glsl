@@ -19,6 +19,8 @@ vec4 kernel(ivec2 texel) {
     float eye = texelFetch(light, ivec2(min(3, last.x), 0), 0).a;
     ivec2 from = texel - ivec2(0, 1);
     vec3 found = texelFetch(dome, min(from, textureSize(dome, 0) - 1), 0).rgb * (cloud.a * eye);
-    float rise = dome_start(vec2(0.0, float(from.y) / float(max(size.y - 2, 1)))).x;
-    return vec4(found + (texel.x < size.x / 2 ? cloud.rgb * overcast(rise) : vec3(0.0)), 1.0);
+    int rows = max((size.y - 1) / DOMES, 1);
+    int table = min(from.y / rows, DOMES - 1);
+    float rise = dome_start(vec2(0.0, float(from.y - table * rows) / float(max(rows - 1, 1))), dome_height(table)).x;
+    return vec4(found + (texel.x < size.x / 2 ? cloud.rgb * overcast(max(rise, 0.0)) : vec3(0.0)), 1.0);
 }

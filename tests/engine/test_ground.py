@@ -1,0 +1,123 @@
+"""The eye stays over the terrain: one that stands under it is raised, and it is said."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from playground import cli
+from playground.images.files import read_png
+from playground.sketch.model import Camera
+
+from ..loading import load
+
+HILL = """
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    vec2 p = vec2(texel) / vec2(size - 1) - 0.5;
+    return exp(-10.0 * dot(p, p));
+}
+"""
+SKETCH = """format = 1
+size = [65, 33]
+extent = [1000.0, 1500.0]
+relief = 400.0
+[[pass]]
+name = "height"
+use = "./hill"
+[view]
+use = "view/terrain"
+samples = 1
+"""
+
+
+@pytest.fixture
+def sketch(tmp_path):
+    (tmp_path / "hill.glsl").write_text(HILL)
+    (tmp_path / "sketch.toml").write_text(SKETCH)
+    return load(tmp_path / "sketch.toml")
+
+
+def ground(x, y):
+    """The hill between its texels, in metres, in float64."""
+    i, j = np.meshgrid(np.arange(65) / 64 - 0.5, np.arange(33) / 32 - 0.5)
+    heights = 400 * np.exp(-10 * (i**2 + j**2))
+    column, row = x / 1000 * 64, y / 1500 * 32
+    k, m = int(column), int(row)
+    p, q = column - k, row - m
+    return np.array([1 - q, q]) @ heights[m : m + 2, k : k + 2] @ np.array([1 - p, p])
+
+
+UNDER = Camera(azimuth=200, elevation=5, distance=300, target=(450, 800, 60))
+
+
+def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
+    x, y, z = any_engine.plan_for(sketch.with_camera(UNDER), (64, 36)).eye.position
+    assert z < ground(x, y) - 50
+    any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
+    eye = any_engine.plan.eye
+    assert eye.position[:2] == pytest.approx((x, y), abs=0.01)
+    assert eye.position[2] == pytest.approx(ground(x, y) + 0.002 * 300, abs=0.05)
+    assert eye.target == pytest.approx(UNDER.target)
+    assert any_engine.ground.raised == pytest.approx(eye.position[2] - z, abs=0.01)
+    assert f"{any_engine.ground.raised:.0f} m" in any_engine.ground.message
+
+
+@pytest.mark.parametrize(
+    "camera",
+    [
+        Camera(azimuth=200, elevation=70, distance=600, target=(450, 800, 60)),
+        Camera(azimuth=200, elevation=5, distance=3000, target=(450, 800, 60)),  # beside the terrain
+        Camera(),
+    ],
+    ids=["above", "beside", "default"],
+)
+def test_any_other_eye_stays(any_engine, sketch, camera):
+    wanted = any_engine.plan_for(sketch.with_camera(camera), (64, 36)).eye
+    any_engine.render(sketch.with_camera(camera), size=(64, 36))
+    assert any_engine.plan.eye.position == wanted.position and any_engine.ground.message == ""
+
+
+def test_an_eye_straight_over_its_target_may_be_raised_too(any_engine, sketch):
+    down = Camera(azimuth=30, elevation=89, distance=20, target=(500, 750, 100))
+    frame = any_engine.render(sketch.with_camera(down), size=(64, 36))
+    assert any_engine.ground.raised > 200 and math.isfinite(any_engine.plan.eye.distance)
+    assert frame.array[..., :3].max() > 0
+
+
+def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, monkeypatch):
+    from playground.engine import ground as module
+
+    reads = []
+    real = module._height_at
+    monkeypatch.setattr(module, "_height_at", lambda *given: reads.append(1) or real(*given))
+    for _ in range(3):
+        any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
+    assert len(reads) == 1 and any_engine.runs["height"] == 1
+    any_engine.render(sketch.with_values({"relief": 500.0}).with_camera(UNDER), size=(64, 36))
+    assert len(reads) <= 2
+
+
+def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):
+    from playground.engine.plan import Window
+
+    seen = sketch.with_camera(UNDER)
+    whole = any_engine.render(seen, size=(64, 36)).array
+    texture = any_engine.draw_window(seen, Window((0, 0), (32, 36), (64, 36)))
+    part = np.frombuffer(texture.read(), np.uint8).reshape(36, 32, 4)[::-1]
+    assert (np.abs(part.astype(int) - whole[:, :32]) > 8).mean() < 0.02
+
+
+def test_render_says_it_once_and_a_sketch_without_terrain_says_nothing(sketch, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (
+        SKETCH
+        + "camera = { azimuth = 200.0, elevation = 5.0, distance = 300.0, target = [450.0, 800.0, 60.0] }\n"
+    )
+    (tmp_path / "sketch.toml").write_text(text)
+    assert cli.main(["render", "sketch.toml", "-o", "out.png", "--size", "64x36"]) == 0
+    said = capsys.readouterr().err
+    assert said.count("the eye stood under the terrain") == 1
+    assert read_png(tmp_path / "out.png")[0].shape[:2] == (36, 64)
