@@ -66,9 +66,7 @@ def test_an_edit_changes_the_picture_and_one_line_says_what_does_not_run(land, c
     after, said = drawn(capsys)
     assert (after != before).any()
     (line,) = said
-    assert line.startswith(
-        "note: land/land.fast.toml is left out, the plain form runs: land/land.glsl has changed"
-    )
+    assert line.startswith("note: land.fast.toml is left out, the plain form runs: land.glsl has changed")
     again, said = drawn(capsys, "--plain")
     np.testing.assert_array_equal(again, after)
     assert said == []

@@ -7,7 +7,8 @@
 //   tested   tests/glsl/test_white_noise.py, against the statistics that random numbers must have
 //
 // No height knows of its neighbours, so there is nothing that the eye could take for a hill;
-// the thesis shows it for what the methods after it add.
+// the thesis shows it for what the methods after it add. It is a number a texel by definition:
+// of all techniques it alone is another land at another size.
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 

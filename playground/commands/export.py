@@ -12,6 +12,7 @@ from playground.capture.endings import KINDS, MESHES, USUAL_GRID, VALUES
 from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
+    PlainOption,
     Renderer,
     SetOption,
     SketchArgument,
@@ -130,6 +131,7 @@ def export(
     steps: StepsOption = None,
     time: TimeOption = "",
     driver: DriverOption = "auto",
+    plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
@@ -140,7 +142,9 @@ def export(
     form = Form(texture, kind, _whole("--bits", bits), _span(span), _whole("--grid", grid), light)
     values, turns, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)
-    moment = moment_of(load(sketch), shot=shot, preset=preset, values=values, steps=turns, time=seconds)
+    moment = moment_of(
+        load(sketch).plainly(plain), shot=shot, preset=preset, values=values, steps=turns, time=seconds
+    )
     _write(
         moment.sketch, to or [], form, moment.time, moment.steps, runs_by, ctx.obj.or_else(software, device)
     )

@@ -26,6 +26,7 @@ from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, Try
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
+from playground.sketch.assign import values_of
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.places import TEXTS, canonical_of, is_variant, root_of
@@ -191,6 +192,11 @@ class _Check:
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
         self.notes = left_out(sketch)
+        request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
+        if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
+            self.attempt(request)
+            if self.errors:
+                return
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
         plan = make_plan(sketch, frame_size=_FRAME)
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
@@ -200,7 +206,8 @@ class _Check:
         for shot in sketch.shots:
             with told_at(sketch, shot):
                 make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
-        self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any"))
+        if not reads:
+            self.attempt(request)
 
     # ── trying ───────────────────────────────────────────────────────────────
 
@@ -263,6 +270,16 @@ def _is_ours(path: Path) -> bool:
     except (SketchError, tomllib.TOMLDecodeError):
         return True  # so that it is reported
     return "pass" in table or "format" in table or "view" in table
+
+
+def _names_files(sketch: Sketch) -> bool:
+    """Say whether any parameter names an image or an elevation file."""
+    values = values_of(sketch)
+    return any(
+        parameter.widget.kind == "file" and values[f"{path}.{parameter.name}"]
+        for path, kernel in kernels_of(sketch.graph)
+        for parameter in kernel.parameters
+    )
 
 
 def _drivers(sketch: Sketch) -> tuple[str, ...]:

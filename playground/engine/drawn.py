@@ -6,7 +6,9 @@ out in floating point, the camera's matrices above all, counts to nine digits, s
 ones differ between mathematical libraries.
 
 What a file is called and where it lies, and the order of a TOML's tables, say nothing either;
-a number, a size, a wire, the driver's form and a byte of an image do.
+a number, a size, a wire, the form that runs (a plain text or a fast variant, and by which driver)
+and a byte of an image do. It explains a picture that differs; by itself it fails no comparison, so a
+fast variant that was renewed leaves every reference good whose picture it still draws.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ MOST_RATIO = 200  # of what is unpacked to what is on the disk
 def refuse_bomb(path: Path, unpacked: int, packed: int) -> None:
     """Raise ``DataError`` for a file that would become so many bytes from so few."""
     if unpacked > ALWAYS_FINE and unpacked > MOST_RATIO * packed:
-        found = f"would become {unpacked / 2**20:.0f} MiB from {packed / 2**20:.2g}"
+        found = f"would become {unpacked / 2**20:.0f} MiB from {packed / 2**20:.2g} MiB"
         bound = (
             f"above {ALWAYS_FINE // 2**20} MiB a file of more than {MOST_RATIO} times its size is not opened"
         )

@@ -21,6 +21,10 @@ GESTURES = (
 """What a mouse does."""
 
 
+_AROUND = 4
+"""Lines that the heading and the margins take; where all do not fit, the text is small."""
+
+
 def draw_keymap(actions: Actions, look: Theme) -> None:
     """Draw the key map in the middle of the window, while it is asked for."""
     if not actions.keymap_shown:
@@ -38,14 +42,17 @@ def draw_keymap(actions: Actions, look: Theme) -> None:
     imgui.begin("keys", None, flags | imgui.WindowFlags_.no_nav_inputs)
     with look.font(look.bold, theme.TEXT_SIZE + 2):
         imgui.text_unformatted("Keys")
-    if imgui.begin_table("keys", 2, imgui.TableFlags_.sizing_fixed_fit):
-        for name, meaning in (*_joined(), *GESTURES):
-            imgui.table_next_row()
-            imgui.table_next_column()
-            imgui.text_colored(theme.colour(theme.WARM), name)
-            imgui.table_next_column()
-            imgui.text_unformatted(meaning)
-        imgui.end_table()
+    rows = *_joined(), *GESTURES
+    fits = (len(rows) + _AROUND) * imgui.get_text_line_height() <= room.y
+    with look.font(look.text, theme.TEXT_SIZE if fits else theme.SMALL):
+        if imgui.begin_table("keys", 2, imgui.TableFlags_.sizing_fixed_fit):
+            for name, meaning in rows:
+                imgui.table_next_row()
+                imgui.table_next_column()
+                imgui.text_colored(theme.colour(theme.WARM), name)
+                imgui.table_next_column()
+                imgui.text_unformatted(meaning)
+            imgui.end_table()
     outside = imgui.is_mouse_clicked(0) and not imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
     if outside and not imgui.is_window_appearing():
         actions.keymap_shown = False

@@ -34,6 +34,8 @@ class Key:
     letter: str = ""  # what it types, for one that is elsewhere on every keyboard
 
 
+_SIZE_KEYS = "text and panels larger, smaller, at their first size"
+
 KEYS: tuple[Key, ...] = (
     Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
     Key(imgui.Key.none, ",", "a frame of time back", "", lambda a: a.step_time(-1), letter=","),
@@ -68,9 +70,9 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
     Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
     Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
-    Key(imgui.Key.none, "Ctrl++", "larger text and panels", "", lambda a: a.resize(1), ctrl=True, sign="+"),
-    Key(imgui.Key.none, "Ctrl+-", "smaller text and panels", "", lambda a: a.resize(-1), ctrl=True, sign="-"),
-    Key(imgui.Key._0, "Ctrl+0", "text and panels at their first size", "", lambda a: a.resize(0), ctrl=True),
+    Key(imgui.Key.none, "Ctrl++", _SIZE_KEYS, "", lambda a: a.resize(1), ctrl=True, sign="+"),
+    Key(imgui.Key.none, "Ctrl+-", _SIZE_KEYS, "", lambda a: a.resize(-1), ctrl=True, sign="-"),
+    Key(imgui.Key._0, "Ctrl+0", _SIZE_KEYS, "", lambda a: a.resize(0), ctrl=True),
     Key(imgui.Key.escape, "Esc", "close what is open, one thing at a time", "", close_one),
     Key(imgui.Key.q, "Ctrl+Q", "quit", "quit", lambda a: a.quit(), ctrl=True),
 )

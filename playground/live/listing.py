@@ -179,17 +179,27 @@ def _item(sketch: Sketch, shown: Shown) -> Item:
 
 
 def _main(sketch: Sketch, sections: tuple[Section, ...]) -> Iterator[Item]:
-    """Yield the main parameters, the pass named where a title alone would not say which is meant."""
+    """Yield the main parameters, group or pass named where a title alone would not say what is meant."""
     items = [item for section in sections for item in section.items]
     named = {item.path: item for item in items}
     by_leaf = {item.leaf: item for item in items}  # an inner path may stand in the list of an outer one
     found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
-    titles = [item.title for item in found]
-    for item in found:
-        title = item.title
+    titles = [_with_group(item.parameter) for item in found]
+    for item, title in zip(found, titles, strict=True):
         if titles.count(title) > 1:
-            title = f"{in_words(item.path.partition('.')[0])}: {title[0].lower()}{title[1:]}"
+            title = _under(in_words(item.path.partition(".")[0]), title)
         yield replace(item, label=f"##main {item.path}", title=title)
+
+
+def _with_group(parameter: Parameter) -> str:
+    """Return a title as it reads outside its group: a label of one word, as "From", leans on that."""
+    group, title = parameter.group, parameter.title
+    leans = parameter.label and group and " " not in group + title and title != group
+    return _under(group, title) if leans else title
+
+
+def _under(heading: str, title: str) -> str:
+    return f"{heading}: {title[0].lower()}{title[1:]}"
 
 
 def in_words(name: str) -> str:

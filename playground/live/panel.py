@@ -64,8 +64,9 @@ class Panel:
         if sketch is not None:
             draw_paintbox(actions.painting)
             draw_search(self.memory, actions)
+        footer = _footer_lines(actions.session.orbits)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
-        imgui.begin_child("sections", ImVec2(0, -_footer_height()), 0, bar)
+        imgui.begin_child("sections", ImVec2(0, -_footer_height(footer, look)), 0, bar)
         if sketch is not None:
             if not self.memory.filter:
                 _map(actions, look)
@@ -74,7 +75,7 @@ class Panel:
                 self._keyframes.draw(actions, look)
                 draw_costs(sketch, actions, look)
         imgui.end_child()
-        _footer(look, actions.session.orbits)
+        _footer(footer, look)
         width = imgui.get_window_size().x
         imgui.end()
         if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
@@ -98,14 +99,23 @@ def _map(actions: Actions, look: Theme) -> None:
     draw_spread(actions, look)
 
 
-def _footer_height() -> float:
-    return imgui.get_text_line_height_with_spacing() * 2 + imgui.get_style().item_spacing.y * 2
+def _footer_lines(orbits: bool) -> tuple[str, str]:
+    """Return what stands below: what the mouse does, and the keys used most."""
+    mouse = "Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else ""
+    return mouse, "   ".join(f"{key.name} {key.brief}" for key in KEYS if key.brief)
 
 
-def _footer(look: Theme, orbits: bool) -> None:
+def _footer_height(lines: tuple[str, str], look: Theme) -> float:
+    """Return the room that the lines take: in a narrow panel they are broken."""
+    wide, gap = imgui.get_content_region_avail().x, imgui.get_style().item_spacing.y
+    with look.font(look.text, theme.SMALL):
+        return sum(imgui.calc_text_size(line, False, wide).y + gap for line in lines) + 2 * gap
+
+
+def _footer(lines: tuple[str, str], look: Theme) -> None:
     imgui.separator()
     with look.font(look.text, theme.SMALL):
         imgui.push_text_wrap_pos(0)
-        imgui.text_disabled("Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else "")
-        imgui.text_disabled("   ".join(f"{k.name} {k.brief}" for k in KEYS if k.brief))
+        for line in lines:
+            imgui.text_disabled(line)
         imgui.pop_text_wrap_pos()

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.engine.engine import Engine
+from playground.engine.files import content_hash
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan, repeats_of
@@ -94,7 +95,8 @@ class Session(Drafts):
         self._picture_size: tuple[int, int] | None = None  # asked for last
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
-        self._read: dict[Path, Signature | None] = {}  # images and elevation files that were drawn with
+        # Images and elevation files that were drawn with: what they were, and a hash of it.
+        self._read: dict[Path, tuple[Signature | None, str]] = {}
         self._read_for: Sketch | None = None  # the sketch that these are the files of
         self._told_of_ground = False  # that the eye stood under it
         self.reload()
@@ -228,8 +230,7 @@ class Session(Drafts):
         if self.stage is Stage.DRAW:
             self._draw_coming(size)
         if self.shown is not None and self._wanted(size) != self._drawn:
-            if not self._awaits_data(self.shown.sketch):
-                self._draw_shown(size)
+            self._draw_shown(size)
         elif self.hasty and self.shown is not None and self._now() - self._drawn_at >= REST:
             self._draw_shown(size, in_full=True)
         return self._picture.texture
@@ -246,8 +247,8 @@ class Session(Drafts):
         then it waits until something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
-        engine.painted.update(self.engine.painted)
         engine.plain_forms.notice = silent
+        engine.painted.update(self.engine.painted)
         self.engine, self.plan, self.hasty = engine, None, False
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
@@ -287,10 +288,18 @@ class Session(Drafts):
 
     def _reads_anew(self, sketch: Sketch) -> bool:
         """Say whether a sketch reads data that was never drawn with: the trial is to read them first."""
-        return any(
-            path not in self._own_files and self._read.get(path, ()) != signature(path)
-            for path in data_files(sketch)
-        )
+        return any(path not in self._own_files and self._is_new(path) for path in data_files(sketch))
+
+    def _is_new(self, path: Path) -> bool:
+        """Say whether a file holds other data than it was last drawn with; a newer date alone is none."""
+        known, now = self._read.get(path), signature(path)
+        if known is None or now is None or known[0] is None:
+            return known is None or known[0] != now
+        if known[0] != now:
+            if _hash_of(path) != known[1]:
+                return True
+            self._read[path] = now, known[1]
+        return False
 
     def _forget_view(self) -> None:
         self.map = self._next_view = None
@@ -323,8 +332,10 @@ class Session(Drafts):
 
     def _draw_shown(self, size: tuple[int, int], *, in_full: bool = False) -> None:
         assert self.shown is not None
-        self._drawn = self._wanted(size)
         sketch = self.shown.sketch
+        if self._awaits_data(sketch):
+            return  # the last good picture stays
+        self._drawn = self._wanted(size)
         try:
             if self.map is not None and not self.can_show(self.map.ref):
                 self.notes.append(f"{self.map.ref} is gone, so the sketch's own view is shown")
@@ -366,7 +377,9 @@ class Session(Drafts):
     def _note_read(self, sketch: Sketch) -> None:
         """Remember the data that a sketch was drawn with."""
         self._read_for = sketch
-        self._read |= {path: signature(path) for path in data_files(sketch)}
+        for path in data_files(sketch):
+            now = signature(path)
+            self._read[path] = now, _hash_of(path)
 
     def _repeats_of(self, sketch: Sketch) -> dict[str, int]:
         try:
@@ -380,3 +393,11 @@ class Session(Drafts):
             return {}
         repeats = self._repeats_of(sketch)
         return {path: turn for path, turn in self.steps.items() if turn < repeats.get(path, 0)}
+
+
+def _hash_of(path: Path) -> str:
+    """Return a hash of a file's contents; empty where it cannot be read."""
+    try:
+        return content_hash(path)
+    except (PlaygroundError, OSError):
+        return ""

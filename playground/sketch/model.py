@@ -253,7 +253,7 @@ class Variant:
 
     technique: Technique  # of a .comp its kernel, of a .fast.toml its passes
     verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
-    record: str = ""  # absolute path of the file that says so; "" where there is none
+    record: str = ""  # absolute path of the user's file that says so; "" where there is none
 
     @property
     def kind(self) -> str:

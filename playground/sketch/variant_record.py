@@ -14,6 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from playground.errors import SketchError
+from playground.json_text import read_json
 from playground.paths import GLSL, shown
 from playground.sketch.places import is_file
 from playground.sketch.source import read_text
@@ -31,14 +32,16 @@ def record_of(variant: Path) -> tuple[Path, str]:
 
 
 def verified(variant: Path) -> tuple[Verified | None, str]:
-    """Return what the record says of a variant's file, and the record's absolute path; "" without one.
+    """Return what the record says of a variant's file, and the record's absolute path.
 
+    The path is "" where there is none, and for the library's: that is no part of a sketch.
     Raises ``SketchError`` for a record that is not one.
     """
     record, name = record_of(variant)
     if not is_file(record):
         return None, ""
-    return _read(read_text(record), shown(record)).get(name), str(record)
+    found = _read(read_text(record), shown(record)).get(name)
+    return found, "" if record.parent == GLSL else str(record)
 
 
 def written(entries: Mapping[str, Verified]) -> str:
@@ -55,8 +58,8 @@ def read(record: Path) -> dict[str, Verified]:
 @lru_cache(maxsize=16)
 def _read(text: str, name: str) -> Mapping[str, Verified]:
     try:
-        table = json.loads(text)["variants"]
+        table = read_json(text)["variants"]
         return {key: (str(one["canonical"]), str(one["variant"])) for key, one in table.items()}
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (ValueError, TypeError, KeyError, AttributeError):
         message = "not a record of fast variants; remove it, then `playground variants renew` writes it anew"
         raise SketchError(message, file=name) from None

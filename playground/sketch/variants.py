@@ -12,6 +12,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
+from shlex import quote
 
 from playground.paths import shown
 from playground.sketch.canonical import content_of
@@ -45,7 +47,8 @@ def _left_out(key: Same[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
 def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
     for variant in technique.variants:
         if variant.kind in kinds and not is_verified(technique, variant):
-            yield f"{shown(variant.path)} is left out, the plain form runs: {why_not(technique, variant)}"
+            name = Path(variant.path).name
+            yield f"{name} is left out, the plain form runs: {why_not(technique, variant)}"
     if isinstance(technique, Graph) and standing(technique, kinds) is None:
         for spec in technique.passes:
             yield from _sentences(spec.technique, kinds)
@@ -53,8 +56,8 @@ def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
 
 def why_not(technique: Technique, variant: Variant) -> str:
     """Return why a fast variant that is not verified is not."""
-    renew = f"`playground variants renew {shown(variant.path)}` verifies it"
-    beside = shown(technique.path)
+    renew = f"`playground variants renew {quote(shown(variant.path))}` verifies it"
+    beside = Path(technique.path).name
     if not variant.technique.agrees:
         return 'it does not say how closely it agrees, as agrees = "1e-5"'
     if variant.verified is None:

@@ -18,6 +18,7 @@ import numpy as np
 from side_by_side import SEEDS, Bench, Comparison, Run, run_all
 
 from playground.engine.engine import Engine
+from playground.sketch.model import Sketch
 
 
 class Generation(Bench):
@@ -233,6 +234,29 @@ def models(bench: Generation, size: int) -> Iterator[Comparison]:
         yield Comparison(name, ours, theirs, "report")
 
 
+def multiply(bench: Generation, size: int) -> Iterator[Comparison]:
+    """Compare a product with one of its factors: the thesis says that it costs twice as much."""
+    factor = '[[pass]]\nname = "{}"\nuse = "generation/{}"\nset = {{ normalise = "minmax" }}\n'
+    product = (
+        '[[pass]]\nname = "a"\nuse = "generation/multiply"\ninputs = { first = "one", second = "other" }\n'
+    )
+    for name in ("diamond_square", "fourier"):
+        side = size - size % 2 if name == "fourier" else size
+        passes = factor.format("one", name) + factor.format("other", name) + product
+        sketch = bench.sketch(f"size = {side}\n{passes}")
+
+        def run(engine: Engine, sketch: Sketch = sketch) -> None:
+            seeds = {f"{factor}.seed": next(SEEDS) % 9999 for factor in ("one", "other")}
+            engine.texture(sketch.with_values(seeds), "a")
+            engine.ctx.finish()
+
+        ours: dict[str, Run] = {d: (lambda e=e, r=run: r(e)) for d, e in bench.engines.items()}  # type: ignore[misc]
+        theirs = {
+            name: bench.ours(f"generation/{name}", "", side, drivers="auto", normalise="minmax")["auto"]
+        }
+        yield Comparison(f"multiply, two by {name}", ours, theirs, "0.5, says the thesis")
+
+
 def others(bench: Generation, size: int) -> Iterator[Comparison]:
     """Time the rest."""
     for name in (
@@ -248,7 +272,16 @@ def others(bench: Generation, size: int) -> Iterator[Comparison]:
 
 COMPARISONS: dict[str, Callable[[Generation, int], Iterator[Comparison]]] = {
     found.__name__: found
-    for found in (layered_noise, gradient_noise, fourier, diamond_square, fault_formation, models, others)
+    for found in (
+        layered_noise,
+        gradient_noise,
+        fourier,
+        diamond_square,
+        fault_formation,
+        models,
+        multiply,
+        others,
+    )
 }
 """What is timed, by the name it goes by on the command line."""
 

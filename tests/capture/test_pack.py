@@ -20,7 +20,12 @@ from playground.live.drops import opened_from, take_dropped
 from playground.paths import GLSL
 from playground.sketch import unpack
 from playground.sketch.load import load
+from playground.sketch.model import VARIANTS
 from playground.sketch.unpack import unpacked, unpacked_beside
+from playground.sketch.variant_record import NAME
+from playground.sketch.variants import left_out, standing
+
+from ..variants import trust
 
 LAND = """// land.glsl -- a picture, tilted
 #include "inc/tilt.glsl"
@@ -302,3 +307,18 @@ def test_the_cache_keeps_the_latest_and_check_finds_a_pack_s_files(
     assert len(list((tmp_path / "cache/packs").iterdir())) == 2 and latest.is_file()
     found = [path.name for path, _ in find_files([tmp_path / "3.zip"])]
     assert found == ["tilt.glsl", "land.glsl", "sketch.toml"]
+
+
+def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_path: Path) -> None:
+    (folder / "parts/same.glsl").write_text(LAND)
+    passes = (
+        'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./same"\nset = { shape = "images/one.png" }\n'
+    )
+    (folder / "parts/land.fast.toml").write_text(passes)
+    trust(folder / "parts")
+    packed = pack(load(folder), tmp_path / "hills.zip")
+    with zipfile.ZipFile(packed) as archive:
+        assert {"hills/parts/land.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
+    found = load(unpacked(packed))
+    assert left_out(found) == ()
+    assert standing(found.graph.passes[0].technique, VARIANTS) is not None

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from playground.engine.check import check_file
@@ -127,3 +128,27 @@ def test_a_sketch_may_have_no_hole_at_all(folder, trial):
     assert (Path(found.file).name, found.line) == ("some.glsl", 2)
     folder.write("sketch.toml", text + "set = { root = 1.0 }\n")
     assert check_file(sketch, trial).ok
+
+
+def test_a_file_that_the_child_does_not_survive_is_not_read_here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """2 GiB of holes: more than the child may take."""
+    from playground.terrain import sources
+
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("read by the parent")
+
+    with (tmp_path / "land.npy").open("wb") as file:
+        head = {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
+        np.lib.format.write_array_header_1_0(file, head)
+        file.truncate(file.tell() + 8 * 16384**2)
+    (tmp_path / "sketch.toml").write_text(
+        'format = 1\n[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+        'set = { elevation = "land.npy" }\n[view]\nuse = "view/map"\ninputs = { shown = "height" }\n',
+        encoding="utf-8",
+    )
+    monkeypatch.setattr(sources, "read_elevation", refuse)
+    with Trial(memory_bytes=2**30) as small:
+        found = wrong(tmp_path / "sketch.toml", small)
+    assert "not enough memory to read it" in found.message and "land.npy" in found.message

@@ -257,9 +257,8 @@ def test_no_crack_shows_between_levels_and_without_skirts_some_would(
     with Flight(small_engine, land_of(**rough), radius=3.0) as flight:
         flight.make_all()
         for turn in range(6):
-            flight.craft = replace(
-                flight.craft, up=700.0 + 150 * (turn % 3), heading=turn * 1.05, pitch=-0.25
-            )
+            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (turn % 3)
+            flight.craft = replace(flight.craft, up=up, heading=turn * 1.05, pitch=-0.25)
             picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
             magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
             cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))

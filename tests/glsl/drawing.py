@@ -1,4 +1,4 @@
-"""What the twins of techniques that draw random numbers share: a technique's salt, and points of the finest lattice."""
+"""What twins of techniques that draw random numbers share: salts, and the finest lattice."""
 
 from __future__ import annotations
 

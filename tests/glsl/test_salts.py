@@ -1,4 +1,4 @@
-"""No two techniques draw the same numbers: each adds a salt of its own to the seed, found here in the library."""
+"""No two techniques draw the same numbers: each adds a salt of its own, found here in the library."""
 
 import re
 from itertools import combinations
@@ -82,13 +82,13 @@ def lands(any_engine, make_sketch):
 
 
 def bumps(land):
-    """Return how far each texel stands above the mean of the four around it: what was drawn for it, above all."""
+    """Return how far each texel stands above the mean of the four around it."""
     around = land[1:-1, :-2] + land[1:-1, 2:] + land[:-2, 1:-1] + land[2:, 1:-1]
     return (land[1:-1, 1:-1] - around / 4).ravel()
 
 
 def test_techniques_of_one_seed_know_nothing_of_each_other(lands):
-    """Texel by texel, over several seeds: white noise, the halved terrains and layers shared their numbers."""
+    """White noise, the halved terrains and layers shared their numbers, texel by texel."""
     sums = {}
     for seed in (0, 7, 4242):
         found = {name: bumps(land) for name, land in lands(65, seed).items()}

@@ -28,7 +28,7 @@ def curve(a):
 
 
 def weights_on_nodes(side, intervals, tiles):
-    """Return (numbers, matrix): what each node reads of the random layer, and counts for at each place of a side."""
+    """Return (numbers, matrix): what each node reads, and counts for at each place along one side."""
     nodes = [q * side // intervals for q in range(intervals)] + [side - 1]
     numbers = [q * RANDOM_SIDE // (intervals * tiles) for q in range(intervals + 1)]
     matrix = np.zeros((side, intervals + 1))

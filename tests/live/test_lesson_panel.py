@@ -221,9 +221,9 @@ def test_the_command_without_arguments_has_lessons_beside_its_window(monkeypatch
 def test_lessons_beside_a_sketch_open_where_they_were_left_unless_they_were_closed(desk, shown):
     desk.reading.progress.lesson, desk.reading.progress.shown = "after", shown
     assert desk.lessons is not None
-    desk.lessons.begin("", "", (1280, 720), 1.0, beside=True)
+    desk.lessons.begin("", "", beside=True)
     assert desk.reading.stage.own is None, "the sketch stays in view"
     assert (desk.reading.lesson.name if desk.reading.lesson else "") == ("after" if shown else "")
-    desk.lessons.begin("halving", "fr", (1280, 720), 1.0, beside=False)
+    desk.lessons.begin("halving", "fr", beside=False)
     desk.turn(3)
     assert desk.reading.lesson.title == "Moitiés" and desk.session.path == find("white_noise")

@@ -12,8 +12,9 @@ from playground.engine.engine import Engine
 from playground.live.edits import Draft
 from playground.live.listing import Filter, Listing
 from playground.live.randomised import targets
+from playground.live.rows import fitting
 from playground.sketch.assign import values_of
-from playground.sketch.find import find
+from playground.sketch.find import find, shipped_sketches
 from playground.sketch.load import load
 
 from .desk import Bare
@@ -78,6 +79,25 @@ def test_the_main_parameters_stand_first_in_their_order_and_the_passes_are_folde
     light, height = bare.places["##main light.seed"], bare.places["##main height.seed"]
     assert light[1] < height[1]
     assert "##height.level" not in bare.places, "its pass is folded"
+
+
+def test_a_label_that_leans_on_its_group_has_it_before_it() -> None:
+    sketch = load(find("variants"))
+    titles = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
+    assert titles["weights.rock_slope"] == "Slope: from" and titles["weights.snow_from"] == "Height: from"
+    assert titles["by_height.rock_from"] == "Rock from" and titles["view.mode"] == "Compare"
+
+
+@pytest.mark.slow
+def test_the_main_parameters_of_shipped_sketches_read_differently_and_whole(bare: Bare) -> None:
+    room = 95.0  # what the panel's first width leaves a label
+    imgui.new_frame()
+    for name in shipped_sketches():
+        sketch = load(find(name))
+        titles = [item.title for item in Listing().main(Draft(sketch, sketch))]
+        assert len(set(titles)) == len(titles), name
+        assert [title for title in titles if fitting(title, room) != title] == [], name
+    imgui.end_frame()
 
 
 def test_a_sketch_without_such_a_list_shows_its_passes_unfolded(folder: Path, any_engine: Engine) -> None:

@@ -12,11 +12,13 @@ from playground.engine.engine import Engine
 from playground.engine.trial import TrialReport, TrySketch
 from playground.errors import TrialTimeout
 from playground.gpu.textures import read_picture
+from playground.live.framing import framed
 from playground.live.memory import Compared, Memory
 from playground.live.remember import Rememberer
 from playground.live.see.compare import Compare, Mode
 from playground.live.session import Session
 from playground.sketch.assign import values_of
+from playground.sketch.model import DEFAULT_PICTURE
 
 SIZE = (48, 32)
 LAND = """#pragma kernel(output = "height:r32f")
@@ -116,7 +118,7 @@ def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
     if desk.session.hasty:
         desk.session.read()
         desk.turn()
-    expected = desk.engine.render(alone, size=SIZE).array
+    expected = desk.engine.render(framed(alone, 0.0, DEFAULT_PICTURE, SIZE), size=SIZE).array
     np.testing.assert_array_equal(desk.first()[..., :3], expected[..., :3])
     assert values_of(desk.session.sketch)["height.level"] == 0.5
 

@@ -181,6 +181,14 @@ def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare
     assert value(bare, "level") == 0.6
 
 
+def test_the_lines_at_the_panel_s_foot_are_whole_however_narrow_it_is(bare: Bare) -> None:
+    for width in (240.0, 330.0, 620.0):
+        bare.panel.width = width
+        bare.turn(3)
+        panel = imgui.internal.find_window_by_name("panel")
+        assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
+
+
 def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, folder: Path) -> None:
     bare.click("##preset")
     bare.click("high")

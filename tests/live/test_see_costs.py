@@ -12,6 +12,7 @@ from imgui_bundle import implot
 from playground.engine.engine import Engine
 from playground.live.see.record import Record, Ring
 
+from ..variants import trust
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -118,3 +119,25 @@ def _triangles(engine: Engine, side: int) -> int:
     from playground.terrain.meshes import build_mesh
 
     return build_mesh("grid", (("grid", side),)).indices.size // 3
+
+
+FAST = 'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./twin"\n[parameters]\nlevel = "height.level"\n'
+
+
+def test_the_switch_runs_the_plain_form_and_is_there_only_where_there_is_another(
+    bare: Bare, tmp_path: Path
+) -> None:
+    bare.click("Cost###costs")
+    bare.turn(2)
+    assert "Plain form" not in bare.places
+    (tmp_path / "twin.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "land.fast.toml").write_text(FAST, encoding="utf-8")
+    trust(tmp_path)
+    bare.session.reload()
+    bare.turn(4)
+    for plain in (True, False):
+        bare.click("Plain form")
+        bare.turn(3)
+        assert bare.session.plain == plain and bare.session.plan is not None
+        assert (bare.session.plan.step("height") is not None) == plain
+        assert (bare.session.plan.step("height.fast.height") is None) == plain

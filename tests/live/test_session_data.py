@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -125,6 +126,21 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     assert session.shown is not None
     assert dict(session.shown.edits.values)["height.elevation"] == str(folder / "other.npy")
     assert "view.channel" in dict(session.shown.edits.values)
+
+
+def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path) -> None:
+    answer(session, TrialReport(True))
+    before = session.draws
+    path = folder / "land.npy"
+    data = path.read_bytes()
+    path.unlink()
+    path.write_bytes(data)
+    os.utime(path, ns=(10**18, 10**18))
+    session.look(Camera(azimuth=12.0))
+    session.frame(SIZE)
+    assert session.draws > before, "the picture does not wait for a trial that nobody asks for"
+    session.reload()
+    assert not session.testing
 
 
 def test_other_values_wait_for_nothing(session: Session) -> None:

@@ -136,6 +136,7 @@ def test_a_sketch_that_vanishes_says_so_and_goes_on_when_it_is_back(
     assert "Traceback" not in window.complaint()
 
 
+@pytest.mark.slow
 def test_a_trial_that_takes_long_is_told_of(screen: Screen, window: Program, folder: Path) -> None:
     (folder / "land.glsl").write_text(BUSY, encoding="utf-8")
     window.wait(lambda now: now["trying"] == "land.glsl")
@@ -242,6 +243,7 @@ def test_esc_never_quits_and_ctrl_q_does(screen: Screen, window: Program) -> Non
     assert window.ended() == 0, window.complaint()
 
 
+@pytest.mark.slow
 def test_the_folder_may_be_deleted_whole(window: Program, folder: Path) -> None:
     shutil.rmtree(folder)
     window.wait(lambda now: "gone with its folder" in now["error"])

@@ -13,7 +13,7 @@
 #pragma kernel(output = "height:r32f")
 
 uniform vec4 hurst = vec4(0.8, 0.6, 0.4, 0.3);  //! slider(0, 1) step(0.01) label("Hurst exponents") parts("first", "second", "third", "fourth") Of the first four rows
-uniform float hurst_last = 0.2;                 //! slider(0, 1) step(0.01) label("Hurst exponent, last") Of all other rows
+uniform float hurst_last = 0.2;                 //! slider(0, 1) step(0.01) label("Other exponents") Of all other rows
 uniform int octaves = 10;                       //! slider(0, 16) Sums of noise; those too fine for the texels are left out
 uniform float frequency = 4.0;                  //! log_slider(0.25, 1024) Cells along the row in the first octave
 uniform uint seed = 7u;                         //! slider(0, 9999) Which curves

@@ -35,13 +35,8 @@ ivec2 visit(ivec2 cell) {
     return known ? ivec2(-1) : cell * ((size.x - 1) >> iteration);
 }
 
-// A number in [-1, 1) for a vertex.
-float number(ivec2 texel) {
-    return random_signed(finest_point(texel, size.x - 1), seed + SALT);
-}
-
 float corner(ivec2 texel) {
-    if (corners_are == 0) return number(texel);
+    if (corners_are == 0) return random_signed(finest_point(texel, size.x - 1), seed + SALT);
     bool east = texel.x > 0;
     bool north = texel.y > 0;
     return north ? (east ? corners.w : corners.z) : (east ? corners.y : corners.x);
@@ -62,6 +57,7 @@ float kernel(ivec2 texel) {
     // k is 2^(1 - iteration), and sqrt(2) times as much along a diagonal.
     float log_k = (is_diagonal ? 1.5 : 1.0) - float(iteration);
     bool is_new = half_edge.x + half_edge.y > 0;
-    return is_new ? mean + number(texel) * exp2(r * log_k) : mean;
+    ivec2 point = finest_point(texel, size.x - 1);
+    return is_new ? mean + random_signed(point, seed + SALT) * exp2(r * log_k) : mean;
     // end: height
 }
