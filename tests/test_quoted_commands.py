@@ -124,7 +124,9 @@ ALL = quoted()
 OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
 WINDOWS = [c for c in OURS if opens_a_window(c)]
 OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
-SLOW = re.compile(r"playground (check|list)$|lesson (build|check)|reduce|fly|--video|--frames|\.glb|--sweep|20000|--texture|variants verify")
+SLOW = re.compile(
+    r"playground (check|list)$|lesson (build|check)|reduce|fly|--video|--frames|\.glb|--sweep|20000|--texture|variants verify"
+)
 
 
 def test_there_are_commands_and_each_reason_is_still_needed():
