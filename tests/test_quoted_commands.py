@@ -42,9 +42,19 @@ NOT_RUN = {
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
     r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
     r"playground render --video": "names the option; the films of the README are run",
+    r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"pytest|pip": "names the program",
 }
 
+SLOPE = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.25 * float(texel.x); }
+"""
+SLOPE_FAST = """#pragma compute(groups = "size.x // 8 + 1, size.y // 8 + 1", local = "8, 8", agrees = "exact")
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(texel, size))) imageStore(out_height, texel, vec4(0.25 * float(texel.x)));
+}
+"""
 FLIGHT = {
     "format": "playground flight",
     "version": 1,
@@ -114,7 +124,10 @@ ALL = quoted()
 OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
 WINDOWS = [c for c in OURS if opens_a_window(c)]
 OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
-SLOW = re.compile(r"lesson (build|check)|reduce|fly|--video|--frames|\.glb|--sweep|20000|--texture")
+SLOW = re.compile(
+    r"playground (check|list)$|lesson (build|check)|reduce|fly|variants verify"
+    r"|--video|--frames|\.glb|--sweep|20000|--texture"
+)
 
 
 def test_there_are_commands_and_each_reason_is_still_needed():
@@ -144,6 +157,12 @@ def furnish(folder: Path, command: str) -> None:
     for name in ("hills", "my-land"):
         if words[:1] != ["new"] and (name in words or (name == "my-land" and words == ["check"])):
             made = make_sketch(folder / name)
+            if words[0] == "variants":
+                (made / "slope.glsl").write_text(SLOPE, "utf-8")
+                (made / "slope.comp").write_text(SLOPE_FAST, "utf-8")
+                sketch = made / "sketch.toml"
+                more = '[[pass]]\nname = "slope"\nuse = "./slope"\n'
+                sketch.write_text(f"{sketch.read_text('utf-8')}\n{more}", "utf-8")
             if words[0] == "reduce":
                 kernel = made / "my_land.glsl"
                 text = kernel.read_text("utf-8")
