@@ -149,8 +149,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return here
 
 
+FAST = 'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./twin"\n'
+
+
 def furnish(folder: Path, command: str) -> None:
     """Put there what a command speaks of and does not make itself."""
+    from playground.sketch.techniques import read_kernel
     from playground.templates import make_sketch
 
     words = arguments(command)
@@ -168,6 +172,12 @@ def furnish(folder: Path, command: str) -> None:
                 text = kernel.read_text("utf-8")
                 at = text.index("return")
                 kernel.write_text(text[:at] + "float wrong = fract(1.0, 2.0);\n    " + text[at:], "utf-8")
+            if words[0] == "variants":
+                (made / "twin.glsl").write_text((made / "my_land.glsl").read_text("utf-8"), "utf-8")
+                plain = read_kernel(made / "my_land.glsl", made)
+                assert plain is not None
+                exports = "".join(f'{p.name} = "height.{p.name}"\n' for p in plain.parameters)
+                (made / "my_land.fast.toml").write_text(f"{FAST}[parameters]\n{exports}", "utf-8")
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
@@ -197,6 +207,8 @@ def smaller(words: list[str]) -> list[str]:
         found += ["--seconds", "0.1"]
     if found[0] == "render" and "--size" not in found:
         found += ["--size", "64x36"]
+    if found[:2] in (["variants", "verify"], ["variants", "renew"]) and "my-land" not in found:
+        found = ["variants", "verify", "generation/smooth"]  # and nothing is written into the library
     if found == ["check"]:
         found += ["my-land"]
     if found[:2] in (["lesson", "build"], ["lesson", "check"]):
