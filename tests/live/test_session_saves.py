@@ -27,6 +27,7 @@ from playground.engine.trial import Trial
 from playground.errors import PlaygroundError
 from playground.live.follow import Follower
 from playground.live.session import Session, Stage
+from playground.live.stages import explained, gone
 from playground.live.watch import Watcher
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
@@ -237,7 +238,8 @@ class Truth:
                 found = found.with_values({LEVEL: level})
             frame = self.engine.render(found, size=SIZE, time=seconds)
         except PlaygroundError as error:
-            return str(error), b""
+            sketch = path / "sketch.toml"
+            return str(gone(sketch) or explained(error, sketch)), b""
         return "", frame.array[..., :3].tobytes()
 
 
