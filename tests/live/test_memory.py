@@ -275,7 +275,8 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
-    assert list(again.notes) == list(session.notes)
+    # Of an edit that changes a default to no effect only the reload tells: a new start knows of no edit.
+    assert list(again.notes) == [note for note in session.notes if "the default is" not in note]
     stays = locked or what in ("another default", "the same", "set to what it was") or "as it was" in what
     assert again.shown.edits.has("height.level") == stays
 
