@@ -265,8 +265,6 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
             with busy(f"rendering {sketch.name}"):
                 _draw(engine, picture, moment, size, target)
             _say_not_finite(engine)
-        if engine.ground.message and not picture.texture:
-            note(engine.ground.message)
         if picture.profile:
             _print_profile(engine)
     if picture.output != "-":

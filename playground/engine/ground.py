@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from playground.engine.plan import Plan, Step
 from playground.engine.results import Result
+from playground.errors import Diagnostic
+from playground.paths import shown
 from playground.sketch.flatten import Ref
 from playground.sketch.model import Camera, Sketch
 
@@ -52,13 +54,20 @@ class Ground:
         sketch: Sketch,
         plan_of: PlanOf,
     ) -> moderngl.Texture:
-        """Draw a sketch's picture; where the eye stood under the terrain, again from just above it."""
+        """Draw a sketch's picture; where the eye stood under the terrain, again from just above it.
+
+        That is told among the engine's warnings, once for a sketch.
+        """
         plan = plan_of(sketch)
-        shown = next(iter(plan.flat.outputs["view"].values()))
-        texture = texture_of(plan, shown)
+        view = next(iter(plan.flat.outputs["view"].values()))
+        texture = texture_of(plan, view)
         with engine.borrowed():
             camera = self.over(plan, engine.results, engine.ctx)
-        return texture if camera is None else texture_of(plan_of(sketch.with_camera(camera)), shown)
+        if camera is None:
+            return texture
+        file = shown(sketch.file)
+        engine.warnings.once(Diagnostic(self.message, file, severity="warning"), "the eye's height")
+        return texture_of(plan_of(sketch.with_camera(camera)), view)
 
     def over(self, plan: Plan, results: Mapping[str, Result], ctx: moderngl.Context) -> Camera | None:
         """Return a camera whose eye is over the terrain, or None where the plan's own is.

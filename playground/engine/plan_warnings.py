@@ -19,7 +19,9 @@ class PlanWarnings:
 
     def __init__(self) -> None:
         self.tell: Callable[[Diagnostic], None] | None = None  # nobody wants to know
-        self._told: set[tuple[str, str]] = set()  # message and file: a line moves as the file is edited
+        self._told: set[tuple[str, str]] = (
+            set()
+        )  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
 
     def look(self, plan: Plan) -> None:
@@ -31,9 +33,13 @@ class PlanWarnings:
             self._graph = plan.sketch.graph
             found += kernel_warnings(plan.sketch.graph, unheeded)
         for warning in found:
-            if (key := (warning.message, warning.file)) not in self._told:
-                self._told.add(key)
-                self.tell(warning)
+            self.once(warning, warning.message)
+
+    def once(self, warning: Diagnostic, about: str) -> None:
+        """Tell a warning, unless one of its file was told that is about the same."""
+        if self.tell is not None and (about, warning.file) not in self._told:
+            self._told.add((about, warning.file))
+            self.tell(warning)
 
 
 def kernel_warnings(

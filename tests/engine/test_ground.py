@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+import playground
 from playground import cli
-from playground.images.files import read_png
 from playground.sketch.model import Camera
 
 from ..loading import load
@@ -110,14 +110,31 @@ def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):
     assert (np.abs(part.astype(int) - whole[:, :32]) > 8).mean() < 0.02
 
 
-def test_render_says_it_once_and_a_sketch_without_terrain_says_nothing(sketch, tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(
+    "ways, written",
+    [
+        (["-o", "out.png"], "out.png"),
+        (["-o", "%02d.png", "--frames", "0..2"], "02.png"),
+        (["-o", "sheet.png", "--sweep", "view.exposure=0,1"], "sheet.png"),
+    ],
+    ids=["picture", "frames", "sweep"],
+)
+def test_render_says_it_once(sketch, tmp_path, monkeypatch, capsys, ways, written):
     monkeypatch.chdir(tmp_path)
     text = (
         SKETCH
         + "camera = { azimuth = 200.0, elevation = 5.0, distance = 300.0, target = [450.0, 800.0, 60.0] }\n"
     )
     (tmp_path / "sketch.toml").write_text(text)
-    assert cli.main(["render", "sketch.toml", "-o", "out.png", "--size", "64x36"]) == 0
+    assert cli.main(["render", "sketch.toml", "--size", "64x36", *ways]) == 0
     said = capsys.readouterr().err
     assert said.count("the eye stood under the terrain") == 1
-    assert read_png(tmp_path / "out.png")[0].shape[:2] == (36, 64)
+    assert (tmp_path / written).exists()
+
+
+def test_a_program_is_warned_once_of_all_frames(sketch):
+    with playground.headless() as engine:
+        with pytest.warns(playground.PlaygroundWarning, match="the eye stood under the terrain") as told:
+            for seconds in range(3):
+                engine.render(sketch.with_camera(UNDER), size=(64, 36), time=seconds)
+        assert len(told) == 1
