@@ -19,9 +19,7 @@ class PlanWarnings:
 
     def __init__(self) -> None:
         self.tell: Callable[[Diagnostic], None] | None = None  # nobody wants to know
-        self._told: set[tuple[str, str]] = (
-            set()
-        )  # about what, and of which file
+        self._told: set[tuple[str, str]] = set()  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
 
     def look(self, plan: Plan) -> None:
