@@ -134,3 +134,10 @@ def test_every_shipped_sketch_runs_its_fast_variants():
     assert {name: left_out(load_with(reader, name)) for name in shipped_sketches()} == dict.fromkeys(
         shipped_sketches(), ()
     )
+
+
+def test_a_technique_that_has_a_folder_of_its_own_is_meant_by_its_name(capsys):
+    assert main(["variants", "list", "generation/diamond_square"]) == 0
+    assert "generation/diamond_square.comp" in capsys.readouterr().out
+    assert main(["variants", "list", "glsl/generation/fourier"]) == 0
+    assert "generation/fourier.comp" in capsys.readouterr().out

@@ -77,6 +77,12 @@ def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Pa
     assert names(tmp_path) == ["a.png"]
 
 
+def hearing() -> None:
+    """Have a process hear of signals, whoever started the tests with them ignored, as nohup does."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
+
+
 def begun(folder: Path) -> subprocess.Popen[bytes]:
     """Return a process that draws a large picture, of which the first bytes are there."""
     (folder / "plain.frag").write_text(PLAIN, encoding="utf-8")
@@ -84,7 +90,7 @@ def begun(folder: Path) -> subprocess.Popen[bytes]:
     process = subprocess.Popen(
         [*command, "--size", "30000x30000", "-o", "land.png"],
         cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=hearing,
     )  # fmt: skip
     while process.poll() is None and not any(p.stat().st_size for p in folder.glob(".land.png.*.part")):
         time.sleep(0.02)

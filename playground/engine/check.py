@@ -34,6 +34,7 @@ from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import lonely_variant, nothing_to_run, read_kernel, read_technique
 from playground.sketch.unpack import ENDING, is_pack, unpacked
+from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import (
     any_variants,
     is_verified,
@@ -177,7 +178,11 @@ class _Check:
         owner = canonical_of(self.path)
         assert owner is not None
         technique = self.read(owner)
-        own = next(v for v in technique.variants if Path(v.path) == self.path)
+        own = next((v for v in technique.variants if Path(v.path) == self.path), None)
+        if own is None:  # a .comp with its own #version, beside a shader that can have no fast variant
+            self.shader()
+            return
+        check_shape(own.technique, technique)
         if not is_verified(technique, own):
             self.notes = (f"it does not run, the plain form does: {why_not(technique, own)}",)
         if not self.plain:

@@ -25,10 +25,9 @@ from playground.sketch.flatten import (
     Source,
     flatten,
     leaves_of,
-    repeated_path,
-    repeated_paths,
 )
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
@@ -175,18 +174,20 @@ def make_plan(
     ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
     those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
     path (that of a technique will do where one pass inside it repeats), and no later than they
-    end unless their number grows with time. What a stopped pass has not reached is
+    end unless their number changes with time or keyframes. What a stopped pass has not reached is
     ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
     Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
     kernel's header.
     """
     size, seconds = _pixels(frame_size, largest), _seconds(time)
+    varies = any(keyframe.values for keyframe in sketch.keyframes)
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
     opened = (wanted,) if wanted else ()
     flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
     fills = not wanted if interpolated is None else interpolated
-    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute="compute" in variants).plan()
+    compute = "compute" in variants
+    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute=compute, varies=varies).plan()
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -258,6 +259,7 @@ class _Planner:
         *,
         fills: bool,
         compute: bool,
+        varies: bool,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -266,6 +268,7 @@ class _Planner:
         self.steps = steps
         self.fills = fills
         self.compute = compute
+        self.varies = varies  # whether keyframes set parameters, and so perhaps counts of steps
         self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
@@ -309,7 +312,7 @@ class _Planner:
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
         asked = self.steps.get(path, whole)
-        if asked > whole and "time" not in expressions.names_in(repeat):
+        if asked > whole and not self.varies and "time" not in expressions.names_in(repeat):
             raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
         return min(asked, whole)
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.engine.stage import free_name, stage
+from playground.errors import PlaygroundError
 from playground.paths import GLSL, shown
 from playground.sketch import expressions
 from playground.sketch.agreement import Bound, bound_of
@@ -33,6 +34,7 @@ from playground.sketch.model import (
     Variant,
     kernels_of,
 )
+from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import without_variants
 from playground.sketch.wiring import output_names
 
@@ -118,10 +120,16 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     elif variant.kind not in engine.plain_forms.kinds:
         verdict.skipped = f"this context is {engine.info.opengl}; compute needs 4.3"
     else:
-        for place in places:
-            for words, sketch in _cases(place):
-                if not verdict.wrong:
-                    _compare(engine, place, sketch, words, verdict)
+        try:
+            check_shape(variant.technique, technique)
+            for place in places:
+                for words, sketch in _cases(place):
+                    if not verdict.wrong:
+                        _compare(engine, place, sketch, words, verdict)
+        except PlaygroundError as error:  # of this variant: the others are verified all the same
+            verdict.wrong = str(error.diagnostics[0])
+        if not verdict.wrong and not verdict.drawings:
+            verdict.wrong = "it did not run in any of the drawings, so nothing was compared"
     return verdict
 
 
@@ -224,6 +232,12 @@ def _ends(parameter: Parameter) -> Iterator[Value]:
         yield from range(len(widget.choices))
     elif widget.kind == "direction":
         yield from ((0.0, 20.0), (45.0, 8.0), (200.0, 3.0), (275.5, 50.0))
+    elif isinstance(parameter.default, tuple):
+        low, high = (1.0 if end is None else end for end in (widget.low, widget.high))
+        count = len(parameter.default)
+        kind = float if parameter.type.startswith("vec") else int
+        apart = (low + (high - low) * (i + 1) / (count + 1) for i in range(count))  # no two alike
+        yield tuple(kind(value) for value in apart)
     elif parameter.type in ("int", "uint", "float") and None not in (widget.low, widget.high):
         for end in (widget.low, widget.high):
             assert end is not None

@@ -42,8 +42,9 @@ def subjects(what: str, picture: Path) -> list[Subject]:
 
 
 def recorded(verdicts: Iterable[Verdict]) -> list[Path]:
-    """Write verdicts into the records, and return their files; what was not drawn stays as it was."""
+    """Write verdicts into the records, and return those that changed; what was not drawn stays as it was."""
     records: dict[Path, dict[str, Verified]] = {}
+    changed = []
     for verdict in verdicts:
         record, name = record_of(Path(verdict.variant.path))
         entries = records.setdefault(record, read(record))
@@ -53,37 +54,39 @@ def recorded(verdicts: Iterable[Verdict]) -> list[Path]:
             entries.pop(name, None)
     for record, entries in records.items():
         there = {n: e for n, e in entries.items() if (record.parent / n).is_file()}
-        with replacing(record) as handle:
-            handle.write(written(there).encode())
-    return list(records)
+        if there != read(record):
+            with replacing(record) as handle:
+                handle.write(written(there).encode())
+            changed.append(record)
+    return changed
 
 
 def _found(what: str, picture: Path) -> Iterator[Subject]:
-    path = Path(what).expanduser() if what else None
-    if what.startswith("glsl/") and not Path(what).exists():
-        path = GLSL / what.removeprefix("glsl/")
-    elif path is not None and not path.exists():
-        path = _named(what)
-    if path is None or (path.exists() and path.resolve().is_relative_to(GLSL)):
-        yield from _of_library(GLSL if path is None else path.resolve(), picture)
+    path = Path(what).expanduser()
+    if not what:
+        yield from _of_library([GLSL], picture)
+    elif not path.exists():
+        yield from _of_library(_named(what.removeprefix("glsl/")), picture)
+    elif path.resolve().is_relative_to(GLSL):
+        yield from _of_library(_named(path.resolve().relative_to(GLSL).as_posix()), picture)
     elif is_variant(path) or path.suffix in (".glsl", ".frag"):
         yield from _of_file(path.resolve(), picture)
     else:
         yield from _of_sketch(path, picture)
 
 
-def _named(what: str) -> Path:
-    """Return the file or folder of ``glsl/`` that a name means; raise ``SketchError`` for none."""
-    for ending in ("", ".glsl", ".toml"):
-        if (GLSL / f"{what}{ending}").exists():
-            return GLSL / f"{what}{ending}"
+def _named(what: str) -> list[Path]:
+    """Return the files and the folder of ``glsl/`` that a name means; raise ``SketchError`` for none."""
+    found = [GLSL / f"{what}{ending}" for ending in ("", ".glsl", ".toml")]
+    if present := [path for path in found if path.exists()]:
+        return present
     raise SketchError(
         f"there is no file and no technique '{what}'{nearest(what, [*shipped_names(), *shipped_sketches()])}"
     )
 
 
-def _of_library(within: Path, picture: Path) -> Iterator[Subject]:
-    """Yield those of ``glsl/`` in a folder, or those of one file."""
+def _of_library(places: list[Path], picture: Path) -> Iterator[Subject]:
+    """Yield those of ``glsl/`` in some folders, or those of some files."""
     reader = Techniques()
     known: list[Technique] = []
     for name in shipped_names():
@@ -94,7 +97,7 @@ def _of_library(within: Path, picture: Path) -> Iterator[Subject]:
                 raise
     for technique in known:
         for variant in technique.variants:
-            if any(Path(p).is_relative_to(within) for p in (variant.path, technique.path)):
+            if any(Path(p).is_relative_to(at) for p in (variant.path, technique.path) for at in places):
                 users = [other for other in known if other is not technique and isinstance(other, Graph)]
                 yield Subject(variant, technique, tuple(places_of(technique, variant, picture, users)))
 

@@ -148,19 +148,27 @@ class Painting:
 
     def undo(self) -> None:
         """Take the last stroke back."""
-        if self.canvas is not None:
+        if self.canvas is not None and not self._was_changed(self.canvas):
             self._saved(self.canvas.undo)
 
     def redo(self) -> None:
         """Paint the stroke again that was taken back last."""
-        if self.canvas is not None:
+        if self.canvas is not None and not self._was_changed(self.canvas):
             self._saved(self.canvas.redo)
 
     def clear(self) -> None:
         """Take all paint away."""
         canvas = self._begun()
-        if canvas is not None:
+        if canvas is not None and not self._was_changed(canvas):
             self._saved(canvas.clear)
+
+    def _was_changed(self, canvas: Canvas) -> bool:
+        """Say whether another program has painted on the file since; then it is taken in as it is."""
+        if canvas.holds() or not canvas.path.exists():
+            return False
+        self._saved(canvas.take_in)
+        self.session.notes.append(f"{canvas.path.name} was changed by another program: it stays as it is now")
+        return True
 
     def _saved(self, act: Callable[[], None]) -> None:
         try:

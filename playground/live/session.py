@@ -303,6 +303,7 @@ class Session(Drafts):
 
     def _forget_view(self) -> None:
         self.map = self._next_view = None
+        self._told_of_ground = False
         self.steps.clear()
         self.clock.rewind()
 

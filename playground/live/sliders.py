@@ -97,7 +97,12 @@ def slide(
     with _unseen_number(typed) as unseen:
         changed, now = imgui.slider_float(label, number, low, high, form, flags)
     held = min(max(now, low), high)
-    share = math.log(held / low) / math.log(high / low) if logarithmic else (held - low) / (high - low)
+    if high <= low:  # nothing to choose from, as for a brush while there is no terrain
+        share = 0.0
+    elif logarithmic:
+        share = math.log(held / low) / math.log(high / low)
+    else:
+        share = (held - low) / (high - low)
     if unseen:
         _write_number(form % now, share)
     return now if changed else None

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
-from playground.errors import SketchError, nearest
+from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.follows import Rule, follow, rules_of
@@ -141,12 +141,15 @@ def flatten(
 
     A variant gives its technique's outputs only, and after the last step: it does not stand in for
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
-    nor for one that is itself among the ``stopped`` or that starts from something wired.
+    or a parameter inside that is set and that it does not have, nor for one that is itself among
+    the ``stopped`` or that starts from something wired.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
-    shape = _shape(Same(graph), kinds, opened if kinds else (), stopped if kinds else ())
+    inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
+    asked = (opened, stopped, tuple(inside)) if kinds else ((), (), ())
+    shape = _shape(Same(graph), kinds, *asked)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -168,33 +171,15 @@ def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
             yield node
 
 
-def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:
-    """Return the paths of the passes that repeat, those inside loops included."""
-    kernels = (leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1")
-    return sorted({*_loops_of(nodes), *kernels})
-
-
-def repeated_path(path: str, nodes: tuple[Node, ...]) -> str | None:
-    """Return the pass that repeats and that a path stands for: itself, or the only one inside it."""
-    valid = repeated_paths(nodes)
-    if path in valid:
-        return path
-    inside = [name for name in valid if name.startswith(f"{path}.")]
-    return inside[0] if len(inside) == 1 else None
-
-
-def _loops_of(nodes: tuple[Node, ...]) -> Iterator[str]:
-    for node in nodes:
-        if isinstance(node, Loop):
-            yield node.path
-            yield from _loops_of(node.body)
-
-
 @lru_cache(maxsize=32)
 def _shape(
-    key: Same[Graph], kinds: frozenset[str], opened: tuple[str, ...], stopped: tuple[str, ...]
+    key: Same[Graph],
+    kinds: frozenset[str],
+    opened: tuple[str, ...],
+    stopped: tuple[str, ...],
+    overrides: tuple[str, ...],
 ) -> _Shape:
-    maker = _Flattener(key.object, kinds, opened, stopped)
+    maker = _Flattener(key.object, kinds, opened, stopped, overrides)
     nodes = tuple(maker.expand(key.object, "", {}))
     outputs = {
         path: {name: maker.real(ref) for name, ref in found.items()}
@@ -220,9 +205,23 @@ def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str)
     return Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec)
 
 
+def _is_exported(graph: Graph, path: str) -> bool:
+    """Say whether a technique shows a parameter inside, and nothing else, by a name of its own."""
+    try:
+        wanted = {target.path for target in resolve(graph, path)}
+        return any({t.path for t in resolve(graph, e.name)} == wanted for e in graph.parameters)
+    except ParameterError:  # whoever sets it says so
+        return False
+
+
 class _Flattener:
     def __init__(
-        self, graph: Graph, kinds: frozenset[str], opened: tuple[str, ...], stopped: tuple[str, ...]
+        self,
+        graph: Graph,
+        kinds: frozenset[str],
+        opened: tuple[str, ...],
+        stopped: tuple[str, ...],
+        overrides: tuple[str, ...],
     ) -> None:
         self.kinds = kinds
         self.specs: dict[str, PassSpec] = {}
@@ -239,6 +238,8 @@ class _Flattener:
                 self._open("", path)
             self.opened |= set(stopped)
             self._open_wired(graph, "")
+            for path in overrides:
+                self._open_set(graph, "", path)
 
     def _open(self, prefix: str, path: str) -> None:
         """Keep fast variants from standing in for the techniques around a pass."""
@@ -256,8 +257,21 @@ class _Flattener:
                 self._open(prefix, text)
             for name, _ in (*spec.inputs, *spec.feedback):
                 self._open(prefix, f"{spec.name}.{name}".rpartition(".")[0])
+            for path, _ in spec.values:
+                self._open_set(graph, prefix, f"{spec.name}.{path}")
             if isinstance(spec.technique, Graph):
                 self._open_wired(spec.technique, _join(prefix, spec.name))
+
+    def _open_set(self, graph: Graph, prefix: str, path: str) -> None:
+        """Keep fast variants from standing in for the techniques that show a parameter inside by no name."""
+        first, _, rest = path.partition(".")
+        spec = graph.find(first)
+        if spec is None or not isinstance(spec.technique, Graph) or "." not in rest:
+            return
+        here = _join(prefix, first)
+        if not _is_exported(spec.technique, rest):
+            self.opened.add(here)
+        self._open_set(spec.technique, here, rest)
 
     def _standing(self, technique: Technique, path: str) -> Variant | None:
         """Return the fast variant that may stand in for a technique, if any may."""

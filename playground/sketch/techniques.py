@@ -7,6 +7,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_names
 from playground.sketch.model import Graph, Kernel, Technique, Variant
 from playground.sketch.parsed import parsed_kernel, replaced
@@ -22,7 +23,7 @@ from playground.sketch.places import (
 from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.variant_check import check_compute, check_passes
+from playground.sketch.variant_check import check_shape
 from playground.sketch.variant_record import verified
 from playground.sketch.variants import without_variants
 from playground.sketch.wiring import outputs_with_formats
@@ -158,10 +159,11 @@ class Techniques:
         if path.suffix == ".comp":
             found = _compute_variant(path, root, of)
         else:
-            passes = self._graph(path, name_of(path), root)
-            check_passes(passes, of)
-            found = without_variants(passes)
-        return Variant(found, *verified(path))
+            found = without_variants(self._graph(path, name_of(path), root))
+        agreed, record = verified(Path(found.path))
+        if agreed is None or agreed[0] == content_of(of):
+            check_shape(found, of)  # beside an edited text it is left out, whatever it has
+        return Variant(found, agreed, record)
 
 
 def name_of(path: Path) -> str:
@@ -231,7 +233,6 @@ def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
         message = 'a .comp beside a kernel begins with #pragma compute(groups = "…", agrees = "…")'
         raise SketchError(message, file=shown(path))
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
-    check_compute(found, of, outputs)
     return replaced(found, outputs=outputs, accepts=_accepts(of))
 
 

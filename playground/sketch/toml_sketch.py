@@ -9,7 +9,7 @@ from typing import Any
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import LAND, check_value, resolve
-from playground.sketch.flatten import flatten, repeated_path, repeated_paths
+from playground.sketch.flatten import flatten
 from playground.sketch.model import (
     LARGEST_SIDE,
     Camera,
@@ -19,6 +19,7 @@ from playground.sketch.model import (
     Shot,
     Sketch,
 )
+from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes

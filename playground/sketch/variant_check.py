@@ -14,6 +14,14 @@ INSIDE = "fast"
 _HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a buffer that is an output
 
 
+def check_shape(variant: Technique, of: Technique) -> None:
+    """Raise ``SketchError`` or ``ShaderError`` where a fast variant has what its technique has not."""
+    if isinstance(variant, Graph):
+        check_passes(variant, of)
+    else:
+        check_compute(variant, of, of.outputs if isinstance(of, Kernel) else outputs_with_formats(of))
+
+
 def check_compute(variant: Kernel, of: Technique, outputs: tuple[Output, ...]) -> None:
     """Raise ``SketchError`` or ``ShaderError`` where a ``.comp`` has what its technique has not."""
     items = [(p.name, p.line) for p in variant.parameters] + [(i.name, i.line) for i in variant.inputs]

@@ -45,11 +45,12 @@ def _left_out(key: Same[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
 
 
 def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
+    other = standing(technique, kinds)
+    runs = Path(other.path).name if other else "the plain form"
     for variant in technique.variants:
         if variant.kind in kinds and not is_verified(technique, variant):
-            name = Path(variant.path).name
-            yield f"{name} is left out, the plain form runs: {why_not(technique, variant)}"
-    if isinstance(technique, Graph) and standing(technique, kinds) is None:
+            yield f"{Path(variant.path).name} is left out, {runs} runs: {why_not(technique, variant)}"
+    if isinstance(technique, Graph) and other is None:
         for spec in technique.passes:
             yield from _sentences(spec.technique, kinds)
 

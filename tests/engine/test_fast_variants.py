@@ -106,6 +106,17 @@ def test_a_verified_variant_runs_and_says_nothing(told, hill):
     assert sentences == []
 
 
+def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(told, hill):
+    engine, sentences = told
+    hill.write("hill.glsl", HILL.replace("scale", "steepness"))
+    np.testing.assert_array_equal(engine.read(hill.sketch(BODY), "h"), slopes())
+    assert not ran_fast(engine) and len(sentences) == 1
+    assert "hill.glsl has changed since the two were found to agree" in sentences[0]
+    (subject,) = subjects(str(hill.path / "hill.glsl"), hill.path / "picture.png")
+    verdict = verify(engine, subject.variant, subject.technique, subject.places)
+    assert not verdict.ok and "'scale' is not among the parameters and inputs of hill" in verdict.words
+
+
 def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(told, hill):
     engine, sentences = told
     engine.read(hill.sketch(BODY), "h")

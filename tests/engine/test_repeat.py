@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.programs import Program
 from playground.errors import PlaygroundError
+from playground.sketch.model import Keyframe
+
+from ..loading import load
 
 COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")
 uniform int turns = 5; //! slider(0, 50)
@@ -315,3 +320,14 @@ def test_a_turn_is_not_touched_by_what_an_earlier_one_left_in_its_texture(engine
     """.replace("LEFT", f"{left:.1e}").replace("\n    ", "\n")
     found = engine.read(folder.one(text), "a")
     np.testing.assert_array_equal(found, np.full((17, 17), 0.123, np.float32))
+
+
+def test_keyframes_may_change_how_many_steps_there_are_to_stop_at(any_engine):
+    """In a film the count may fall below what was asked for at its beginning."""
+    sketch = load("fault_formation")
+    names = {"height.iterations": 12}
+    frames = (Keyframe(0.0, values=tuple(names.items())), Keyframe(1.0, values=(("height.iterations", 4),)))
+    moving = replace(sketch.with_values({"size": 33}), keyframes=frames)
+    for seconds, runs in ((0.0, 8), (1.0, 4)):
+        plan = any_engine.plan_for(moving, (16, 9), seconds, {"height.sum": 8})
+        assert max(step.repeat for step in plan.walk() if step.path.startswith("height.sum")) == runs

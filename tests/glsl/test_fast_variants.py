@@ -11,7 +11,8 @@ from playground.engine.verify_what import subjects
 from playground.paths import GLSL
 from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_sketches
-from playground.sketch.model import Graph, PassSpec, Sketch, kernels_of
+from playground.sketch.flatten import flatten, leaves_of
+from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
 from playground.sketch.places import is_variant
 from playground.sketch.reread import with_texts
 from playground.sketch.variant_record import NAME, read, written
@@ -112,3 +113,20 @@ def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
         for place in places_in(load(name), GLSL):
             found = compared(engine, place)
             assert not found.wrong, f"{place.path}: {found.words}"
+
+
+@pytest.mark.parametrize("path", ["height.noise.direction", "height.spectrum.direction"])
+def test_a_parameter_inside_that_a_variant_has_not_has_the_plain_form_run(path):
+    """Set by whatever means: a variant would ignore it."""
+    sketch = load("fourier")
+
+    def kernels(asked):
+        return [leaf.kernel.path for leaf in leaves_of(flatten(asked, variants=VARIANTS).nodes)]
+
+    assert any(name.endswith("fourier.comp") for name in kernels(sketch))
+    assert any(
+        name.endswith("fourier.comp") for name in kernels(sketch.with_values({"height.roughness": 1.0}))
+    )
+    inner = sketch.with_values({path: "forward"}), sketch.with_values({path: "backward"})
+    for asked in inner:
+        assert not any(name.endswith(".comp") and "fourier" in name for name in kernels(asked))

@@ -10,7 +10,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import DataError, ShaderError
-from playground.images.files import read_image, write_png
+from playground.images.files import read_image, read_png, write_png
 from playground.live.brush import ERASER, Brush, covered, stroke
 from playground.live.canvas import MOST_TEXELS, Canvas
 from playground.live.painting import Painting
@@ -402,6 +402,24 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     found = weights(session)
     assert (found[..., 2] == 1).mean() > 0.9 and found[..., 3].max() > 0.5
     np.testing.assert_array_equal(found, canvas.pixels / np.float32(255))
+
+
+@pytest.mark.parametrize("act", ["undo", "clear"])
+def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path: Path, act: str) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    for _ in range(2):
+        painting.press((0.45, 0.5))
+        painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    theirs = np.zeros((128, 128, 4), np.uint8)
+    theirs[:, :, 2] = 255
+    write_png(canvas.path, theirs)
+    getattr(painting, act)()
+    np.testing.assert_array_equal(read_png(canvas.path)[0], theirs)
+    np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
+    assert any("was changed by another program" in note for note in session.notes)
 
 
 def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
