@@ -140,7 +140,8 @@ class Drafts(ABC):
             with noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             loaded = loaded.plainly(self.plain)
-            old = None if self._another else self.shown or self.coming
+            chosen = self._chosen_by_hand
+            old = None if self._another else chosen or self.shown or self.coming
             draft, notes = (
                 reload_draft(old, loaded)
                 if old
@@ -150,7 +151,7 @@ class Drafts(ABC):
             self._drop_coming()
             self._file_error = gone(self.path) or explained(error, self.path)
             return
-        if self.shown is not None and loaded == self.shown.file and not self._another:
+        if chosen is None and self.shown is not None and loaded == self.shown.file and not self._another:
             self._drop_coming()
             self._file_error = self._draw_error = None
             self._revision += 1  # the texts are the same, but an image may be another
@@ -161,7 +162,7 @@ class Drafts(ABC):
             notes = [*notes, *map(str, newly_shadowed(self.shown.file, draft.sketch))]
         known = () if old is None else left_out(old.base, self._variants)
         plain_forms = [note for note in left_out(draft.base, self._variants) if note not in known]
-        self._propose(draft, [*notes, *plain_forms])
+        self._propose(draft, [*notes, *plain_forms], by_hand=chosen is not None)
 
     def open(
         self,
@@ -204,12 +205,13 @@ class Drafts(ABC):
             return
         self._started, self._subject = self._now(), use
         try:
-            self._propose(self.shown.choose(pass_name, use), [])
+            chosen = self._chosen_by_hand
+            self._propose((chosen or self.shown).choose(pass_name, use), [], by_hand=chosen is not None)
         except PlaygroundError as error:
             self._file_error = explained(error, self.path)
 
-    def _propose(self, draft: Draft, notes: list[str]) -> None:
-        self.coming, self._coming_notes, self._file_by_hand = draft, notes, False
+    def _propose(self, draft: Draft, notes: list[str], *, by_hand: bool = False) -> None:
+        self.coming, self._coming_notes, self._file_by_hand = draft, notes, by_hand
         self._file_error, self._trial_seconds = None, 0.0
         if self._trial is None or not self._draws_anew(draft.sketch):
             self.stage = Stage.DRAW
@@ -356,34 +358,35 @@ class Drafts(ABC):
         self._revision += 1
         if self.shown is not None:
             edited = self.shown.with_edits(change(self.shown.edits))
-            if self._names_another(edited) and self._trial is not None:
+            if _names_another(self.shown, edited) and self._trial is not None:
                 self._drop_file_set_by_hand()
                 if self._reads_anew(edited.sketch):
-                    self._try_file_set_by_hand(change)
+                    draft = self.coming or self.shown
+                    self._try_by_hand(draft.with_edits(change(draft.edits)))
                     return
             self.shown = edited
         if self.coming is not None:
-            self.coming = self.coming.with_edits(change(self.coming.edits))
+            edited = self.coming.with_edits(change(self.coming.edits))
+            if self._file_by_hand and _names_another(self.coming, edited):
+                self._try_by_hand(edited)  # what is tried, or has failed, is no longer what is chosen
+            else:
+                self.coming = edited
 
-    def _names_another(self, edited: Draft) -> bool:
-        """Say whether an edit sets another text, as the name of a file is one."""
-        before = self.shown.edits.values if self.shown is not None else ()
-        return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before})
+    @property
+    def _chosen_by_hand(self) -> Draft | None:
+        """What is coming, while it is not known yet whether a file that was chosen by hand is good."""
+        return self.coming if self._file_by_hand and self.stage is not Stage.FAILED else None
 
-    def _try_file_set_by_hand(self, change: Callable[[Edits], Edits]) -> None:
-        """Have a file that was chosen by hand tried first: what it does to a reader, nobody knows yet."""
-        draft = self.coming or self.shown
-        assert draft is not None
+    def _try_by_hand(self, draft: Draft) -> None:
+        """Have the files that were chosen by hand tried first: what they do to a reader, nobody knows yet."""
         self._started, self._subject = self._now(), self.path.name
-        self._propose(draft.with_edits(change(draft.edits)), self._coming_notes)
-        self._file_by_hand = True
+        self._propose(draft, self._coming_notes, by_hand=self._reads_anew(draft.sketch))
 
     def _drop_file_set_by_hand(self) -> None:
         """Forget a file that was chosen by hand and failed: another is chosen in its place."""
         if self._file_by_hand and self.stage is Stage.FAILED:
             self._drop_coming()
-            self._file_error = None
-        self._file_by_hand = False
+            self._file_error, self._file_by_hand = None, False
 
     def _hear_trial(self) -> None:
         if self.stage is not Stage.TRIAL or self._trial is None:
@@ -399,6 +402,11 @@ class Drafts(ABC):
         self.stage = Stage.FAILED
         error = report.error or PlaygroundError("the trial failed without saying why")
         self._file_error = explained(error, self.path)
+
+
+def _names_another(before: Draft, edited: Draft) -> bool:
+    """Say whether an edit sets another text, as the name of a file is one."""
+    return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before.edits.values})
 
 
 def _listed(files: Iterable[Path]) -> str:

@@ -128,6 +128,38 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     assert "view.channel" in dict(session.shown.edits.values)
 
 
+def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Session, folder: Path) -> None:
+    answer(session, TrialReport(True))
+    other = str(folder / "other.npy")
+    for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
+        session.set("height.elevation", str(folder / "land.npy"))
+        session.frame(SIZE)
+        np.save(folder / "other.npy", np.random.default_rng(seed).random((9, 9), np.float32))
+        session.set("height.elevation", other)
+        assert session.testing
+        (folder / "sketch.toml").write_text(text, encoding="utf-8")
+        session.reload()
+        assert session.testing, "it is tried with what was saved"
+        answer(session, TrialReport(True))
+        assert session.error is None and session.shown is not None
+        assert dict(session.shown.edits.values)["height.elevation"] == other
+        assert session.shown.sketch.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
+
+
+@pytest.mark.parametrize("when", ["during its trial", "after it"])
+def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path, when: str) -> None:
+    answer(session, TrialReport(True))
+    bad = TrialReport(False, TrialCrash("the decoder crashed"))
+    session.set("height.elevation", str(folder / "other.npy"))
+    if when == "after it":
+        answer(session, bad)
+        assert session.stage is Stage.FAILED
+    session.unset("height.elevation")
+    answer(session, bad)  # of a sketch that nobody wants any more
+    assert session.error is None and session.stage is Stage.NONE
+    assert session.shown is not None and not session.shown.edits.values
+
+
 def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path) -> None:
     answer(session, TrialReport(True))
     before = session.draws
