@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from playground.engine.plan import Plan, Step
 from playground.engine.results import Result
@@ -38,7 +37,8 @@ class Ground:
 
     def __init__(self) -> None:
         self.raised = 0.0  # [m] by which the last frame's eye was raised; 0: it stood over the terrain
-        self._known: tuple[tuple[int, float, float], float] | None = None
+        self._read: tuple[tuple[int, float, float], float] | None = None  # texture and place → height there
+        self._stays: str = ""  # what the texture under a raised eye depends on
 
     @property
     def message(self) -> str:
@@ -60,38 +60,69 @@ class Ground:
         """
         plan = plan_of(sketch)
         view = next(iter(plan.flat.outputs["view"].values()))
-        texture = texture_of(plan, view)
-        with engine.borrowed():
-            camera = self.over(plan, engine.results, engine.ctx)
+        source = _terrain_of(plan)
+        camera, before = None, None
+        if source and self.raised and self._read and self._stays == engine.keys_of(plan).steps[source.path]:
+            camera = self._over(plan, self._read[0][1:], self._read[1])  # as the last frame's
         if camera is None:
-            return texture
-        file = shown(sketch.file)
-        engine.warnings.once(Diagnostic(self.message, file, severity="warning"), "the eye's height")
-        return texture_of(plan_of(sketch.with_camera(camera)), view)
+            texture = texture_of(plan, view)
+            with engine.borrowed():
+                camera = self._look(plan, source, engine.results, engine.ctx)
+            if source is None or camera is None:
+                return texture
+            self._stays = engine.keys_of(plan).steps[source.path]
+            before = engine.ran, engine.texels, engine.times, engine.triangles
+        warning = Diagnostic(self.message, shown(sketch.file), severity="warning")
+        engine.warnings.once(warning, "the eye's height")
+        texture = texture_of(plan_of(sketch.with_camera(camera)), view)
+        if before is not None:
+            _add(engine, *before)
+        return texture
 
-    def over(self, plan: Plan, results: Mapping[str, Result], ctx: moderngl.Context) -> Camera | None:
+    def _look(
+        self, plan: Plan, source: Ref | None, results: Mapping[str, Result], ctx: moderngl.Context
+    ) -> Camera | None:
         """Return a camera whose eye is over the terrain, or None where the plan's own is.
 
         ``results`` are what was made for the plan.
         """
         self.raised = 0.0
-        source = _terrain_of(plan)
         result = results.get(source.path) if source else None
-        extent, relief = plan.land.extent, plan.land.relief
-        if source is None or result is None or extent is None or relief is None:
+        place = _place_of(plan)
+        if source is None or result is None or place is None:
+            return None
+        key = (result.number, *place)
+        if self._read is None or self._read[0] != key:
+            self._read = key, _height_at(place, result, source.output, ctx)
+        return self._over(plan, place, self._read[1])
+
+    def _over(self, plan: Plan, place: tuple[float, float], height: float) -> Camera | None:
+        """Return a camera over a height that is known at a place; None where the plan's own eye may stay."""
+        self.raised = 0.0
+        if plan.land.relief is None or _place_of(plan) != place:
             return None
         x, y, z = plan.eye.position
-        place = np.array([x / extent[0], y / extent[1]]) * (np.array(result.size) - 1)
-        if not ((place >= 0) & (place <= np.array(result.size) - 1)).all():
-            return None
-        key = (result.number, x, y)
-        if self._known is None or self._known[0] != key:
-            self._known = key, _height_at(place, result, source.output, ctx)
-        lowest = self._known[1] * relief + CLEARANCE * plan.eye.distance
+        lowest = height * plan.land.relief + CLEARANCE * plan.eye.distance
         if not z < lowest:  # or no number
             return None
         self.raised = lowest - z
         return _seen_from((x, y, lowest), plan)
+
+
+def _place_of(plan: Plan) -> tuple[float, float] | None:
+    """Return where the eye stands over the terrain, in shares of its sides; None beside it."""
+    if plan.land.extent is None or plan.land.relief is None:
+        return None
+    x, y = (at / side for at, side in zip(plan.eye.position, plan.land.extent, strict=False))
+    return (x, y) if 0 <= x <= 1 and 0 <= y <= 1 else None
+
+
+def _add(engine: Engine, ran: list[str], texels: int, times: dict[str, float], triangles: int) -> None:
+    """Add what an earlier drawing of the same frame ran and took to what the engine tells of it."""
+    engine.ran = [*ran, *(path for path in engine.ran if path not in ran)]
+    engine.texels += texels
+    engine.times = {path: times.get(path, 0.0) + engine.times.get(path, 0.0) for path in times | engine.times}
+    engine.runner.draws.drawn += triangles
 
 
 def _terrain_of(plan: Plan) -> Ref | None:
@@ -107,8 +138,9 @@ def _draws_terrain(step: Step) -> bool:
     return kernel.kind == "draw" and all(map(kernel.reads, ("relief", "clip_from_world")))
 
 
-def _height_at(place: NDArray[np.float64], result: Result, output: str, ctx: moderngl.Context) -> float:
+def _height_at(share: tuple[float, float], result: Result, output: str, ctx: moderngl.Context) -> float:
     """Return the height between the four texels around a place."""
+    place = np.array(share) * (np.array(result.size) - 1)
     low = np.minimum(place.astype(int), np.maximum(np.array(result.size) - 2, 0))
     wide, tall = (min(2, n) for n in result.size)
     window = int(low[0]), int(low[1]), wide, tall

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -98,6 +99,31 @@ def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, 
     assert len(reads) == 1 and any_engine.runs["height"] == 1
     any_engine.render(sketch.with_values({"relief": 500.0}).with_camera(UNDER), size=(64, 36))
     assert len(reads) <= 2
+
+
+def test_an_eye_that_stays_under_the_terrain_costs_one_drawing(any_engine, sketch):
+    """The first frame draws twice, and tells of both; the next ones know how high the ground is."""
+    seen = sketch.with_camera(UNDER)
+    first = any_engine.render(seen, size=(64, 36)).array
+    assert {"height", "view.land"} <= set(any_engine.ran)
+    before = any_engine.runs["view.land"]
+    other = any_engine.render(sketch.with_values({"view.exposure": 0.5}).with_camera(UNDER), size=(64, 36))
+    assert any_engine.runs["view.land"] - before <= 1 and any_engine.ground.raised > 0
+    assert (other.array != first).any()
+
+
+def test_a_terrain_that_becomes_wider_or_another_is_looked_at_again(any_engine, sketch):
+    any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
+    raised = any_engine.ground.raised
+    x, y, _ = any_engine.plan.eye.position
+    any_engine.render(sketch.with_values({"extent": "1100,1650"}).with_camera(UNDER), size=(64, 36))
+    assert any_engine.ground.raised == pytest.approx(
+        raised - ground(x, y) + ground(x / 1.1, y / 1.1), abs=0.1
+    )
+    text = HILL.replace("exp(", "0.95 * exp(")
+    Path(sketch.folder, "hill.glsl").write_text(text)
+    any_engine.render(load(Path(sketch.file)).with_camera(UNDER), size=(64, 36))
+    assert any_engine.ground.raised == pytest.approx(raised - 0.05 * ground(x, y), abs=0.1)
 
 
 def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):
