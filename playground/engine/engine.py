@@ -349,7 +349,7 @@ class Engine:
         keys, shown = self.keys_of(plan), next(iter(plan.flat.outputs["view"].values()))
         nodes = needed(plan.nodes, shown)
         if self.keeping is not None:
-            nodes = self.keeping.would_run(self.cache, plan, keys, shown, continued(plan))
+            nodes = self.keeping.would_run(self, plan, keys, shown, continued(plan))
         return would_run(keys, self.cache, nodes, plan)
 
     def keys_of(self, plan: Plan) -> Keys:

@@ -11,8 +11,9 @@ read in turn, and what it would take to read it. It is read where that saves eno
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from playground.engine.cache import Kept
 from playground.engine.keys import Keys
@@ -25,21 +26,29 @@ from playground.sketch.flatten import Ref
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 
 
-def passing(plan: Plan, continued: frozenset[str] = frozenset()) -> frozenset[str]:
+def passing(
+    plan: Plan, continued: frozenset[str] = frozenset(), painted: Collection[Path] = ()
+) -> frozenset[str]:
     """Return the paths of the steps and loops of a plan that are never kept.
 
     What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
-    stopped before its last turn or gone on from by a later draw; and whatever reads such a one.
+    stopped before its last turn or gone on from by a later draw, or reads a file that is
+    ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
     """
     found: set[str] = set()
     for node in plan.nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, Turns)]
-        own = any(_passes(step, plan, continued) for step in steps)
+        own = any(_passes(step, plan, continued) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
     return frozenset(found)
+
+
+def _reads_one(step: Step, files: Collection[Path]) -> bool:
+    named = (step.values[p.name] for p in step.kernel.parameters if p.widget.kind == "file")
+    return bool(files) and any(Path(str(value)) in files for value in named)
 
 
 def _stops(loop: Turns) -> bool:

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TYPE_CHECKING
 
-from playground.engine.cache import Cache
 from playground.engine.cache import Kept as InMemory
 from playground.engine.execution import Execution
 from playground.engine.keys import Keys
@@ -77,7 +76,7 @@ class Keeping:
 
         ``goes_on``: the steps that a later draw goes on from.
         """
-        passes, keys = passing(plan, goes_on), execution.keys
+        passes, keys = passing(plan, goes_on, engine.painted), execution.keys
 
         def read(step: Step) -> bool:
             return step.path not in passes and self._take(engine, step, keys.steps[step.path])
@@ -91,15 +90,16 @@ class Keeping:
         return found.nodes
 
     def would_run(
-        self, cache: Cache, plan: Plan, keys: Keys, ref: Ref, goes_on: frozenset[str]
+        self, engine: Engine, plan: Plan, keys: Keys, ref: Ref, goes_on: frozenset[str]
     ) -> list[PlanNode]:
         """Return what ``begin`` would; nothing is read."""
-        passes = passing(plan, goes_on)
+        passes = passing(plan, goes_on, engine.painted)
 
         def read(step: Step) -> bool:
             return step.path not in passes and keys.steps[step.path] in self.store
 
-        return choose(keys, needed(plan.nodes, ref), ref, cache.peek, read, skips=self.skips).nodes
+        peek, nodes = engine.cache.peek, needed(plan.nodes, ref)
+        return choose(keys, nodes, ref, peek, read, skips=self.skips).nodes
 
     @contextmanager
     def _timed(self, engine: Engine, key: str) -> Iterator[None]:
@@ -173,7 +173,8 @@ class Keeping:
     def _keep_all(self, engine: Engine, plan: Plan) -> Iterator[None]:
         """Keep what is worth it, a piece at a time; ends early where a texture is gone."""
         keys, results = engine.keys_of(plan), engine.results
-        ref, passes = next(iter(plan.flat.outputs["view"].values())), passing(plan, continued(plan))
+        ref = next(iter(plan.flat.outputs["view"].values()))
+        passes = passing(plan, continued(plan), engine.painted)
         for worth in worth_keeping(plan, keys, ref, passes, self._costs, reading, self.floor):
             result = results.get(worth.path)
             if result is None or worth.key in self.store:

@@ -267,7 +267,7 @@ class Session(Drafts):
         return self._picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
 
     def _wanted(self, size: tuple[int, int]) -> object:
-        return self._revision, size, self.clock.time if self.animated else 0.0
+        return self._revision, size, self.framed_for, self.clock.time if self.animated else 0.0
 
     def _draws_anew(self, sketch: Sketch) -> bool:
         """Say whether the driver would be given anything that it has not drawn already.

@@ -439,6 +439,30 @@ def test_what_stops_before_its_last_turn_is_not_kept(any_shelf, folder, worn):
     assert kept_of(any_shelf, worn) == {"land", "worn.add", "light"}
 
 
+class Strokes:
+    """An image of one pixel that is painted in this process."""
+
+    token = "a brush's"
+    pixels = np.full((1, 1, 4), 128, np.uint8)
+    version = 1
+
+    def holds(self) -> bool:
+        return True
+
+    def changed_since(self, version: int) -> tuple[slice, slice]:
+        return slice(0, 1), slice(0, 1)
+
+
+def test_what_reads_a_painted_file_is_not_kept(any_shelf, folder, worn):
+    """No other process knows it by that version: the cache would fill with what is never read again."""
+    engine = any_shelf.engine()
+    engine.painted[folder.path / "p.png"] = Strokes()
+    engine.render(worn, size=(64, 36))
+    any_shelf.keep(engine)
+    assert not listed(any_shelf.folder)
+    assert kept_of(any_shelf, worn) == {"worn.add", "light"}, "without the strokes"
+
+
 def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_shelf, folder):
     draw = '#pragma draw(mesh = "triangles", count = "1", output = "v:rgba16f", depth = "none")\n'
     draw += "INITIALvec4 vertex(int corner) { return vec4(corner == 1, corner == 2, 0, 1); }\n"

@@ -15,7 +15,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.plan import Plan
+from playground.engine.plan import Plan, repeats_of
 from playground.errors import PlaygroundError
 from playground.live.begin import first_draft
 from playground.live.clock import is_animated
@@ -239,7 +239,10 @@ class Compare:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
             with as_before(engine, plan):
-                texture = _drawn(engine, chosen, plan, kept.steps)
+                repeats = repeats_of(chosen, time=plan.time)
+                # A save may have left fewer steps than it stopped at.
+                steps = {path: step for path, step in kept.steps.items() if step < repeats.get(path, 0)}
+                texture = _drawn(engine, chosen, plan, steps)
                 self._picture.keep(texture)
         except Exception as error:
             if not self._told:
