@@ -8,7 +8,7 @@ import pytest
 
 from playground.paths import GLSL
 from playground.reduce import blocks, edits
-from playground.reduce.lay import written
+from playground.reduce.inline import written
 from playground.reduce.tokens import print_tokens, tidy, tokens_of
 from playground.sketch.techniques import read_kernel
 
