@@ -23,12 +23,14 @@ LAYERS = (
     ("terminal",),
     ("signals", "streams"),
     ("live",),
+    ("workbench",),
     ("reduce",),
     ("shots",),
     ("lessons",),
     ("capture", "flight", "templates"),
     ("api",),
     ("engine",),
+    ("process",),
     ("gpu",),
     ("terrain",),
     ("images",),
@@ -41,7 +43,7 @@ LONGEST = 500
 # Where a technique's name is allowed in Python, and why.
 NAMED = {
     "sketch": {"map", "terrain"},  # what shows a sketch that has no [view], or one without a use
-    "live": {"map"},  # shows any texture from above
+    "workbench": {"map"},  # shows any texture from above
 }
 
 

@@ -23,7 +23,7 @@ import tifffile
 
 import playground
 from playground import cli
-from playground.engine import trial
+from playground.engine import sandbox as trial
 from playground.engine.check import find_files
 from playground.errors import DataError
 from playground.gpu.doctor import where_to_show

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from playground.sketch.allowed_files import canonical_of, is_variant, root_of
 from playground.sketch.canonical import content_of
-from playground.sketch.places import canonical_of, is_variant, root_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.variant_record import NAME, written
 

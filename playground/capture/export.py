@@ -16,18 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.api import headless
-from playground.capture.endings import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
-from playground.capture.find import height_of, kind_of
-from playground.capture.form import Form, besides, bits_for, check
+from playground.capture.atomic_group import write_together
+from playground.capture.export_options import Form, besides, bits_for, check
+from playground.capture.export_textures import height_of, kind_of
+from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
 from playground.capture.gltf import encode_glb
+from playground.capture.lossy_images import encode_picture
 from playground.capture.mesh import grid_of, land_mesh, sampled
 from playground.capture.obj import encode_mtl, encode_obj
-from playground.capture.pictures import encode_picture
-from playground.capture.together import write_together
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
-from playground.engine.seen import seen
+from playground.engine.view_inputs import seen
 from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.sketch.model import DEFAULT_PICTURE, Sketch

@@ -1,6 +1,6 @@
 """The process that captures for a window: it takes one job, says how far it is, and answers.
 
-Run by ``capture.working`` only, as ``python -m playground.capture.job_child RENDERER DRIVER STOP``,
+Run by ``capture.job_process`` only, as ``python -m playground.capture.job_child RENDERER DRIVER STOP``,
 where STOP is a file whose coming stops the job.
 """
 
@@ -13,10 +13,10 @@ from pathlib import Path
 
 from playground.api import headless
 from playground.capture.job import Job, do
-from playground.capture.working import Finished, Progress
+from playground.capture.job_process import Finished, Progress
 from playground.engine.plain_forms import silent
-from playground.engine.trial_process import Ready, receive_bytes, send
-from playground.engine.trial_wire import Reader
+from playground.engine.sandbox_process import Ready, receive_bytes, send
+from playground.engine.sandbox_wire import Reader
 from playground.errors import PlaygroundError
 
 

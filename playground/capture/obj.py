@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.capture.form import one_word
+from playground.capture.export_options import one_word
 from playground.capture.mesh import LandMesh
 
 _ROWS = 65536  # formatted at once

@@ -21,10 +21,10 @@ from playground.engine.files import find_file
 from playground.errors import DataError
 from playground.images.files import reason, replacing
 from playground.paths import GLSL, SKETCHES, shown
+from playground.sketch.allowed_files import is_inside
 from playground.sketch.assign import resolve, values_of
 from playground.sketch.load import is_technique
 from playground.sketch.model import Sketch, Value, kernels_of
-from playground.sketch.places import is_inside
 from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground._version import __version__
-from playground.capture.endings import COLOUR, HEIGHT, whole_numbers
 from playground.capture.exr import encode_exr
+from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
 from playground.errors import DataError
 from playground.images.files import encode_samples
 from playground.sketch.colour import linear_to_srgb

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
-from playground.images.endings import VIDEO_ENDINGS
+from playground.images.extensions import VIDEO_ENDINGS
 from playground.images.files import reason
 from playground.partial import partial_file
 from playground.paths import shown

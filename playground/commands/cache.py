@@ -12,7 +12,7 @@ from playground.errors import counted
 from playground.terminal import print_json, print_table
 
 if TYPE_CHECKING:
-    from playground.engine.store import Listed
+    from playground.engine.disk_cache import Listed
 
 HELP = help_text(
     "Expensive land that live keeps on disk, so that a sketch reopens at once.\n\n"
@@ -52,7 +52,7 @@ def _group(ctx: typer.Context) -> None:
 @app.command("show", help=SHOW_HELP)
 def show(as_json: JsonOption = False) -> None:
     """Say where land is kept, how much there is, and of which passes."""
-    from playground.engine.store import limit_in, listed, place
+    from playground.engine.disk_cache import limit_in, listed, place
 
     folder, limit = place(), limit_in()
     found = listed(folder)
@@ -68,7 +68,7 @@ def show(as_json: JsonOption = False) -> None:
 @app.command("clear", help=CLEAR_HELP)
 def clear_() -> None:
     """Remove all land that is kept."""
-    from playground.engine.store import clear, place
+    from playground.engine.disk_cache import clear, place
 
     number, size = clear(place())
     print(f"{counted(number, 'file')} removed, {in_bytes(size)}")

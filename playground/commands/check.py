@@ -49,7 +49,7 @@ def check(
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files
-    from playground.engine.trial import Trial
+    from playground.engine.sandbox import Trial
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)

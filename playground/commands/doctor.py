@@ -92,7 +92,7 @@ class _Cache(TypedDict):
 
 
 def _cache() -> _Cache:
-    from playground.engine.store import bytes_in, limit_in, place
+    from playground.engine.disk_cache import bytes_in, limit_in, place
 
     files, size = bytes_in(place())
     return {"folder": str(place()), "files": files, "bytes": size, "most_bytes": limit_in()}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.capture.endings import KINDS, MESHES, USUAL_GRID, VALUES
+from playground.capture.extensions import KINDS, MESHES, USUAL_GRID, VALUES
 from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
@@ -31,7 +31,7 @@ from playground.errors import ParameterError
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
-    from playground.capture.form import Form
+    from playground.capture.export_options import Form
     from playground.sketch.model import Sketch
 
 
@@ -136,7 +136,7 @@ def export(
     device: DeviceOption = "",
 ) -> None:
     """Write what was asked for, and print the files' paths."""
-    from playground.capture.form import Form
+    from playground.capture.export_options import Form
     from playground.sketch.load import load
 
     form = Form(texture, kind, _whole("--bits", bits), _span(span), _whole("--grid", grid), light)
@@ -161,7 +161,7 @@ def _write(
 ) -> None:
     from playground.api import headless
     from playground.capture.export import prepare, run
-    from playground.capture.form import check
+    from playground.capture.export_options import check
     from playground.images.files import new_name
 
     with ExitStack() as stack:
@@ -188,7 +188,7 @@ def _write(
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.capture.form import besides
+    from playground.capture.export_options import besides
 
     taken: set[Path] = set()
     for path in paths:

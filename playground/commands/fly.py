@@ -197,7 +197,7 @@ def _open(
     if record and not Path(record).expanduser().parent.is_dir():
         raise DataError(f"there is no folder '{Path(record).parent}' to write into", file=record)
     if not where_to_show(os.environ, sys.platform):
-        from playground.gpu.mend import mend
+        from playground.gpu.driver_advice import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
     from playground.live.fly import run

@@ -226,7 +226,7 @@ def pictures(
 ) -> None:
     """Draw every picture of a lesson into a folder."""
     from playground.images.files import write_png
-    from playground.lessons.pictures import draw, pictures_of
+    from playground.lessons.figure_renders import draw, pictures_of
     from playground.lessons.read import read_lesson
 
     found = pictures_of(read_lesson(name))

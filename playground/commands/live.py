@@ -102,7 +102,7 @@ def check_display(renderer: Renderer) -> None:
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
     if not where_to_show(os.environ, sys.platform):
-        from playground.gpu.mend import mend
+        from playground.gpu.driver_advice import mend
 
         raise ContextError(mend("unable to open display", sys.platform, os.environ))
 
@@ -122,7 +122,7 @@ def open_window(
     no_cache: bool = False,
 ) -> None:
     """Open a window and stay until it is closed."""
-    from playground.engine.store import limit_in
+    from playground.engine.disk_cache import limit_in
 
     keeps = 0 if no_cache else limit_in()
     from playground.live.app import run

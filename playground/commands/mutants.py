@@ -27,7 +27,7 @@ from playground.paths import shown
 from playground.terminal import note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.shots.mutants.again import Redrawn
+    from playground.shots.mutants.repeatability import Redrawn
     from playground.shots.mutants.suite import Result
     from playground.shots.suite import Taken
 
@@ -87,7 +87,7 @@ def mutants(
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
     from playground.api import headless
-    from playground.shots.mutants.again import again
+    from playground.shots.mutants.repeatability import again
     from playground.shots.mutants.suite import Bench, named, shot_of
     from playground.sketch.load import load
 

@@ -37,8 +37,8 @@ from playground.errors import ParameterError
 from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
+    from playground.reduce.initial_case import Question
     from playground.reduce.search import Search, State
-    from playground.reduce.start import Question
 
 HELP = help_text(
     "Shrink a sketch that fails to the smallest that still fails in the same way.\n\n"
@@ -169,7 +169,7 @@ def reduce(
     device: DeviceOption = "",
 ) -> None:
     """Shrink a sketch that fails to the smallest that still fails."""
-    from playground.reduce.start import Question
+    from playground.reduce.initial_case import Question
     from playground.sketch.load import load
 
     kinds = {
@@ -241,9 +241,9 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
+    from playground.reduce.initial_case import Bench
     from playground.reduce.output import Account, claim, plain_texts, to_reproduce, write_folder
     from playground.reduce.search import Search
-    from playground.reduce.start import Bench
 
     claim(folder)
     with Bench(question) as bench, _shown() as tell:

@@ -33,7 +33,7 @@ from playground.commands.arguments import (
 )
 from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
 from playground.errors import DataError, ParameterError, counted
-from playground.images.endings import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
+from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
 from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
@@ -244,7 +244,7 @@ def make_picture(picture: Picture, renderer: Renderer) -> None:
     size = picture.size or moment.size or DEFAULT_PICTURE
 
     from playground.api import headless
-    from playground.engine.placing import told_at
+    from playground.engine.error_place import told_at
 
     with (
         told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),

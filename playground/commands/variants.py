@@ -21,7 +21,7 @@ from playground.terminal import print_json, print_table, progress
 
 if TYPE_CHECKING:
     from playground.engine.verify import Verdict
-    from playground.engine.verify_what import Subject
+    from playground.engine.verify_targets import Subject
 
 HELP = help_text(
     "Fast variants: other forms of a technique, that give the same and exist only for speed.\n\n"
@@ -77,7 +77,7 @@ def _group(ctx: typer.Context) -> None:
 @app.command("list", help=LIST_HELP)
 def list_(what: WhatArgument = "", as_json: JsonOption = False) -> None:
     """List fast variants, how closely they agree, and which of them run."""
-    from playground.engine.verify_what import subjects
+    from playground.engine.verify_targets import subjects
 
     rows = [_row(subject) for subject in subjects(what, Path())]
     if as_json:
@@ -99,7 +99,7 @@ def renew(
     ctx: typer.Context, what: WhatArgument = "", software: SoftwareOption = False, device: DeviceOption = ""
 ) -> None:
     """Verify fast variants, and record those that agree."""
-    from playground.engine.verify_what import recorded
+    from playground.engine.verify_targets import recorded
 
     verdicts = _verdicts(what, ctx.obj.or_else(software, device))
     for path in recorded(verdicts):
@@ -124,7 +124,7 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
     from playground.api import headless
     from playground.engine.plain_forms import silent
     from playground.engine.verify import verify
-    from playground.engine.verify_what import subjects
+    from playground.engine.verify_targets import subjects
     from playground.paths import shown
 
     found: list[Verdict] = []

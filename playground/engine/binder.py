@@ -23,7 +23,7 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Kernel, Parameter, Sampling, Value
-from playground.sketch.words import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:

@@ -18,18 +18,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from playground.engine.placing import told_at
+from playground.engine.error_place import told_at
 from playground.engine.plan import make_plan
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
-from playground.engine.stage import free_name, stage, with_pictures
-from playground.engine.trial import Request, Trial, TrialReport, TryLibrary, TrySketch
+from playground.engine.sandbox import Request, Trial, TrialReport, TryLibrary, TrySketch
+from playground.engine.standalone import free_name, stage, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
+from playground.sketch.allowed_files import TEXTS, canonical_of, is_variant, root_of
 from playground.sketch.assign import values_of
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
-from playground.sketch.places import TEXTS, canonical_of, is_variant, root_of
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import lonely_variant, nothing_to_run, read_kernel, read_technique

@@ -24,11 +24,11 @@ from playground.gpu.textures import drain, make_framebuffer, read_texture, split
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Value
-from playground.sketch.words import ZOOM
+from playground.sketch.reserved_names import ZOOM
 from playground.terrain.lod import CHOOSERS
 from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
-from playground.terrain.sight import View
 from playground.terrain.tiles import Chosen, ranges
+from playground.terrain.visibility import View
 
 if TYPE_CHECKING:
     import moderngl

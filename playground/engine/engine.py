@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.cache import Cache
-from playground.engine.drawn import Drawn
+from playground.engine.cache_keys import Form, KeyMaker, Keys
 from playground.engine.execution import Execution, would_run
-from playground.engine.finite import FiniteCheck, NotFinite
+from playground.engine.eye_height import Ground, PlanOf
 from playground.engine.frame import Frame
-from playground.engine.ground import Ground, PlanOf
-from playground.engine.keys import Form, KeyMaker, Keys
-from playground.engine.painted import PaintedFiles
+from playground.engine.non_finite import FiniteCheck, NotFinite
+from playground.engine.painted_images import PaintedFiles
+from playground.engine.picture_hash import Drawn
 from playground.engine.plain_forms import PlainForms, warn
 from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
 from playground.engine.plan_warnings import PlanWarnings
@@ -43,7 +43,7 @@ from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, L
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.store_keeping import Keeping
+    from playground.engine.disk_caching import Keeping
 
 CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
@@ -282,7 +282,7 @@ class Engine:
     def drawn(self) -> str:
         """Return a hash of what the last frame's picture was drawn from; "" before the first.
 
-        The same on every machine: see ``engine.drawn``.
+        The same on every machine: see ``engine.picture_hash``.
         """
         return "" if self._plan is None else self._hash_of(self._plan)
 
@@ -290,7 +290,7 @@ class Engine:
         """Return the first number that is not finite among what the last frame was made from, if any.
 
         Ask before the next frame is drawn. What it costs, and what it leaves out: see
-        ``engine.finite``.
+        ``engine.non_finite``.
         """
         return self._finite.first()
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 
 from playground.engine.cache import Cache, Kept
-from playground.engine.keys import Keys
+from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.images.files import encode_png
-from playground.images.pictures import write_picture
+from playground.images.image_formats import write_picture
 
 
 @dataclass(frozen=True, eq=False)

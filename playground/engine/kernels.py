@@ -20,8 +20,8 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Sampling
+from playground.sketch.reserved_names import MATCHES, PLAIN_UNIFORMS, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
-from playground.sketch.words import MATCHES, PLAIN_UNIFORMS, UNWIRED, WINDOW, WIRED
 
 if TYPE_CHECKING:
     import moderngl

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from numbers import Integral, Real
 
 from playground.engine.between import Between, between_of
+from playground.engine.error_place import placed
 from playground.engine.files import find_file
-from playground.engine.placing import placed
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions

@@ -12,10 +12,10 @@ from playground.engine.between import Between
 from playground.engine.binder import Binder
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
-from playground.engine.fill import filled
+from playground.engine.error_place import placed
+from playground.engine.fill_between import filled
 from playground.engine.kernels import Job, Kernels, usual_of
-from playground.engine.painted import Painted, PaintedFiles, PaintedTextures
-from playground.engine.placing import placed
+from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures
 from playground.engine.plan import Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
@@ -23,7 +23,7 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.model import Kernel
-from playground.sketch.words import GIVEN
+from playground.sketch.reserved_names import GIVEN
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:

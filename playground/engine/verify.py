@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.stage import free_name, stage
+from playground.engine.standalone import free_name, stage
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, shown
 from playground.sketch import expressions

@@ -22,10 +22,10 @@ from functools import lru_cache
 from playground.engine.plan import Plan, PlanNode, Turns, Window, sources_of, walk
 from playground.errors import SketchError
 from playground.sketch.flatten import Ref
+from playground.sketch.identity import Same
 from playground.sketch.model import Kernel
-from playground.sketch.same import Same
+from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.sketch.source import SourceText
-from playground.sketch.words import MATCHES, WINDOW, WIRED, ZOOM
 
 _KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
 _LOCAL = "k_local"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from playground.flight.plot import Plot
+from playground.flight.layout import Plot
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.triangle import TRIANGLE
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.flight.craft import CLEARANCE, LEVEL, Controls, Craft, stepped
+from playground.flight.layout import Plot, plot_of
 from playground.flight.lens import through
 from playground.flight.parts import Parts
-from playground.flight.plot import Plot, plot_of
 from playground.flight.record import Moment
 from playground.flight.scene import Scene
 from playground.gpu.textures import read_picture

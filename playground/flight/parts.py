@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.errors import SketchError
 from playground.flight.cutter import Cutter
-from playground.flight.plot import FARTHEST, PartName, Plot
+from playground.flight.layout import FARTHEST, PartName, Plot
 from playground.gpu.textures import bytes_of, make_texture, read_texture
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from playground.flight import shaders
+from playground.flight.layout import Plot
 from playground.flight.lens import Lens
 from playground.flight.meshes import part_mesh, steps_of
 from playground.flight.parts import Parts, Slot
-from playground.flight.plot import Plot
 from playground.gpu.textures import make_framebuffer, make_texture
 from playground.paths import GLSL
 from playground.sketch.source import read_source

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
-from playground.gpu.mend import mend
+from playground.gpu.driver_advice import mend
 
 if TYPE_CHECKING:
     import moderngl

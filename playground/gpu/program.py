@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic, ShaderError
-from playground.gpu.logs import LogEntry, hint, parse_log, source_column, split_moderngl
-from playground.gpu.names import guess
+from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
+from playground.gpu.name_suggestions import guess
 from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, version_line, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import FETCHES
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import FETCHES
 
 if TYPE_CHECKING:
     import moderngl

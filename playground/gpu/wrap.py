@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
 from playground.sketch.model import DRIVERS, Kernel, Output
+from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 from playground.sketch.source import Line, SourceText
-from playground.sketch.words import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8

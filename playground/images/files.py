@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
-from playground.images.endings import VALUE_ENDINGS
+from playground.images.extensions import VALUE_ENDINGS
 from playground.partial import partial_file
 from playground.paths import shown
 

@@ -11,6 +11,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError
 from playground.lessons.excerpt import excerpt
+from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import lesson_files
 from playground.lessons.markdown import formulas, images, links
 from playground.lessons.measuring import measured, named_in
@@ -29,7 +30,6 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.pictures import broken, draw
 from playground.sketch.find import shipped_sketches
 
 MOST_WORDS = 60

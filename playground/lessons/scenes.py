@@ -13,7 +13,7 @@ from playground.paths import SKETCHES
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flatten import flatten, leaves_of
 from playground.sketch.load import load_with
-from playground.sketch.maps import Map
+from playground.sketch.map_sketch import Map
 from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_camera import read_camera

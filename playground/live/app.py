@@ -17,47 +17,49 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
-from playground.gpu.said import warnings_of
+from playground.gpu.driver_warnings import warnings_of
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.lessons.library import SOURCE, lesson_file
-from playground.live.actions import Actions
 from playground.live.capture_window import draw_capture
-from playground.live.code_window import draw_code, unsaved
+from playground.live.code_window import draw_code
 from playground.live.drops import draw_drops, opened_from, take_dropped
-from playground.live.editors import Opener
 from playground.live.errors_list import draw_errors
-from playground.live.finite import FiniteWatch, draw_not_finite
-from playground.live.follow import Follower
 from playground.live.guard import Guard
-from playground.live.hand import Hand
-from playground.live.interface_size import remembered_size
+from playground.live.inspect.ab import below_bar, drag_line, paint_both
+from playground.live.inspect.overlays import draw_see
+from playground.live.inspect.timeline import height_of_timeline
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
-from playground.live.lesson.beside import Lessons
-from playground.live.memory import Remembered
+from playground.live.lesson.host import Lessons
+from playground.live.mouse import Hand
+from playground.live.non_finite import draw_not_finite
 from playground.live.overlay import Area, draw_notices, draw_trial, draw_waiting, trial_text
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
-from playground.live.picture import Painter
-from playground.live.place import Place
-from playground.live.problems import Warnings
-from playground.live.remember import QUIET, Rememberer, memory_of
-from playground.live.see.ab import below_bar, drag_line, paint_both
-from playground.live.see.timeline import height_of_timeline
-from playground.live.see.view import draw_see
-from playground.live.session import REST, Session
 from playground.live.status import Status
-from playground.live.storing import Storing
-from playground.live.terminal_errors import TerminalErrors, to_log
-from playground.live.watch import Watcher
 from playground.live.window import Window, wake
+from playground.live.window_place import Place
+from playground.sketch.allowed_files import TEXTS
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
-from playground.sketch.places import TEXTS
+from playground.workbench.actions import Actions
+from playground.workbench.autosave import QUIET, Rememberer, memory_of
+from playground.workbench.disk_caching import Storing
+from playground.workbench.editors import Opener
+from playground.workbench.interface_size import remembered_size
+from playground.workbench.last_frame import Painter
+from playground.workbench.memory import Remembered
+from playground.workbench.non_finite import FiniteWatch
+from playground.workbench.problems import Warnings
+from playground.workbench.reload import Follower
+from playground.workbench.session import REST, Session
+from playground.workbench.terminal_errors import TerminalErrors, to_log
+from playground.workbench.text_file import unsaved
+from playground.workbench.watcher import Watcher
 
 if TYPE_CHECKING:
     import moderngl
@@ -233,7 +235,7 @@ class Live:
         """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""
         if self.window.open:
             return True
-        if not unsaved(self.actions):
+        if not unsaved(self.actions.editing):
             return False
         self.window.stay()
         self.actions.leaving, self._settling = True, _SETTLES

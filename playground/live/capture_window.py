@@ -6,10 +6,13 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET
 from playground.capture.video import QUALITIES
-from playground.images.endings import VIDEO_ENDINGS
+from playground.images.extensions import VIDEO_ENDINGS
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.capturing import (
+from playground.live.panel_rows import row
+from playground.live.theme import Theme
+from playground.paths import shown
+from playground.workbench.actions import Actions
+from playground.workbench.captures import (
     MULTIPLES,
     Capturing,
     Wish,
@@ -18,10 +21,7 @@ from playground.live.capturing import (
     summary,
     sweep_text,
 )
-from playground.live.listing import Listing
-from playground.live.rows import row
-from playground.live.theme import Theme
-from playground.paths import shown
+from playground.workbench.parameter_list import Listing
 
 _NAMES = {PICTURE: "Picture", PICTURES: "Numbered pictures", FILM: "Film", SHEET: "Sheet of a sweep"}
 _ENDINGS = list(VIDEO_ENDINGS)

@@ -10,11 +10,11 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.files import path_named
 from playground.live.overlay import Area
-from playground.live.texts import Editing
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.dependencies import path_named
+from playground.workbench.text_file import Editing, unsaved
 
 _TALLEST = 0.46  # share of the picture's height, so that the list below stays in sight
 _CLASH = "Saved by others meanwhile"
@@ -38,6 +38,9 @@ class _View:
     def changed(self) -> bool:
         return self.editor.get_undo_index() != self.saved_at
 
+    def written(self) -> str:
+        return self.editor.get_text()
+
 
 def draw_code(actions: Actions, look: Theme, area: Area) -> None:
     """Draw every file that is open in the window, and the questions about those that are not saved."""
@@ -57,7 +60,7 @@ def _ask_to_leave(actions: Actions) -> None:
     if not imgui.is_popup_open(_LEAVING):
         imgui.open_popup(_LEAVING)
     if imgui.begin_popup_modal(_LEAVING, None, _BOX)[0]:
-        imgui.text_unformatted(f"Not saved: {', '.join(unsaved(actions))}")
+        imgui.text_unformatted(f"Not saved: {', '.join(unsaved(actions.editing))}")
         if imgui.button("Save and quit"):
             actions.leaving = False
             if all([save(e, actions) for e in actions.editing if e.text.kept and _view_of(e).changed]):
@@ -90,17 +93,6 @@ def stay(actions: Actions) -> None:
     for editing in actions.editing:
         view = _view_of(editing)
         view.clash, view.closing = "", False
-
-
-def unsaved(actions: Actions) -> list[str]:
-    """Return the names of open files with changes that are not saved."""
-    return [e.text.path.name for e in actions.editing if e.text.kept and _view_of(e).changed]
-
-
-def typed_in(editing: Editing) -> str | None:
-    """Return the text of an open file where it has changes that are not saved; else None."""
-    view = _view_of(editing)
-    return view.editor.get_text() if view.changed else None
 
 
 def typing(actions: Actions) -> list[str]:

@@ -7,14 +7,14 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError
-from playground.live.actions import Actions
-from playground.live.listing import Listing
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
+from playground.sketch.allowed_files import SHADERS
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Value
-from playground.sketch.places import SHADERS
 from playground.sketch.unpack import is_pack, unpacked_beside
+from playground.workbench.actions import Actions
+from playground.workbench.parameter_list import Listing
 
 _TITLE = "dropped"
 

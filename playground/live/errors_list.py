@@ -6,12 +6,12 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import Diagnostic, counted
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.excerpt import numbered, short_place
 from playground.live.overlay import Area
-from playground.live.problems import passes_of
-from playground.live.sources import editor_name, open_place, open_problem
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.error_excerpt import numbered, short_place
+from playground.workbench.open_source import editor_name, open_place, open_problem
+from playground.workbench.problems import passes_of
 
 MOST = 60
 """Diagnostics drawn; more help nobody."""

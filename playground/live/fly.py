@@ -22,20 +22,20 @@ from imgui_bundle import imgui
 import glfw
 
 from playground.engine.engine import Engine
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
-from playground.live.fly_follow import SaveFollower
-from playground.live.hands import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
+from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
-from playground.live.interface_size import remembered_size
-from playground.live.picture import Painter
 from playground.live.status import VARIABLE
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
+from playground.workbench.flight_reload import SaveFollower
+from playground.workbench.interface_size import remembered_size
+from playground.workbench.last_frame import Painter
 
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.live import keying
-from playground.live.actions import Actions
-from playground.live.listing import Listing
-from playground.live.rows import cross, slot
+from playground.live.panel_rows import cross, slot
 from playground.live.theme import Theme
 from playground.sketch.keyframes import EASES
+from playground.workbench import keyframe_edits as keying
+from playground.workbench.actions import Actions
+from playground.workbench.parameter_list import Listing
 
 
 @dataclass

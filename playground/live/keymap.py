@@ -5,9 +5,9 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.actions import Actions
 from playground.live.keys import KEYS
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
 
 GESTURES = (
     ("drag", "turn the land"),

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-from playground.live.actions import Actions
-from playground.live.field import keeps_keys, left_a_field
-from playground.live.layers import close_one
-from playground.live.saving import save_values
-from playground.live.sources import edit_problem
+from playground.live.escape_layers import close_one
+from playground.live.text_field import keeps_keys, left_a_field
+from playground.workbench.actions import Actions
+from playground.workbench.open_source import edit_problem
+from playground.workbench.save_commands import save_values
 
 
 def toggle_capture(actions: Actions) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.session import Session
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.session import Session
 
 _FADE = 1.0  # [s]
 PATIENCE = 0.3

@@ -13,19 +13,19 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.costs import draw_costs
-from playground.live.field import await_field
-from playground.live.head import draw_head, draw_search
+from playground.live.brush_panel import draw_paintbox
+from playground.live.cost_panel import draw_costs
+from playground.live.inspect.map_panel import draw_spread
 from playground.live.keyframe_list import KeyframeList
 from playground.live.keys import KEYS
-from playground.live.paintbox import draw_paintbox
+from playground.live.panel_head import draw_head, draw_search
 from playground.live.panel_memory import Memory
-from playground.live.rows import row
-from playground.live.sections import Sections
-from playground.live.see.spread import draw_spread
+from playground.live.panel_rows import row
+from playground.live.pass_sections import Sections
+from playground.live.text_field import await_field
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
+from playground.workbench.actions import Actions
 
 
 @dataclass

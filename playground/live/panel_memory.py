@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from playground.live.listing import Filter, Listing
 from playground.sketch.model import Value
+from playground.workbench.parameter_list import Filter, Listing
 
 
 @dataclass

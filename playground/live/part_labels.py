@@ -14,11 +14,11 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.listing import in_words
 from playground.live.overlay import Area
 from playground.live.theme import Theme
 from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
+from playground.workbench.parameter_list import in_words
 
 _LEAST = 48.0  # [units of scale 1] a part that is narrower has no room for a name
 _WIDEST = 260.0

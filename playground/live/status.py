@@ -15,11 +15,12 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from playground.engine.finite import NotFinite
-from playground.live.actions import Actions
-from playground.live.code_window import typing, unsaved
-from playground.live.layers import open_layers
+from playground.engine.non_finite import NotFinite
+from playground.live.code_window import typing
+from playground.live.escape_layers import open_layers
 from playground.live.overlay import PATIENCE
+from playground.workbench.actions import Actions
+from playground.workbench.text_file import unsaved
 
 VARIABLE = "PLAYGROUND_STATUS"
 
@@ -51,7 +52,7 @@ class Status:
             "playing": session.clock.playing,
             "typing": typing(actions),
             "takes_text": imgui.get_io().want_text_input,
-            "unsaved": unsaved(actions),
+            "unsaved": unsaved(actions.editing),
             "map": session.map.ref if session.map else "",
             "steps": dict(session.steps),
             "saved": str(actions.saved or ""),

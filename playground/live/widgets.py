@@ -13,14 +13,14 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import dome, theme
-from playground.live.numbers import unit_of
-from playground.live.rows import fitting_choice
+from playground.live.panel_rows import fitting_choice
 from playground.live.sliders import draw_numbers, part_names
 from playground.paths import shown
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, is_whole, length_of, tidied, write
 from playground.sketch.widgets import WIDGETS
+from playground.workbench.number_format import unit_of
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
 _PAD = 84.0

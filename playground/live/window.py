@@ -22,8 +22,8 @@ import glfw
 
 from playground.errors import ContextError
 from playground.gpu.context import abandon, adopt_context
-from playground.gpu.mend import mend
-from playground.live.clicks import Clicks
+from playground.gpu.driver_advice import mend
+from playground.live.double_click import Clicks
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
-from playground.engine.trial_process import receive, send
+from playground.engine.sandbox_process import receive, send
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.gpu.context import ContextInfo, context_info, open_context
 from playground.gpu.textures import drain, read_picture

@@ -18,9 +18,9 @@ from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.case import SHOT, Case, copied
 from playground.reduce.child import Task
-from playground.reduce.faults import Commanded, Died, Fault, Finding, Refused
+from playground.reduce.failures import Commanded, Died, Fault, Finding, Refused
+from playground.reduce.initial_case import Question
 from playground.reduce.probe import Probe
-from playground.reduce.start import Question
 from playground.reduce.worker import Worker
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of

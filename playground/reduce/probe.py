@@ -12,7 +12,7 @@ from pathlib import Path
 from playground.errors import ParameterError
 from playground.reduce.case import SHOT, Case, copied
 from playground.reduce.child import Seen, Task
-from playground.reduce.faults import Commanded, Fault, Finding
+from playground.reduce.failures import Commanded, Fault, Finding
 from playground.reduce.worker import Worker
 
 CANNOT_SAY = 125

@@ -18,7 +18,7 @@ from functools import lru_cache, partial
 from playground.reduce import blocks, edits
 from playground.reduce.case import Case, Pass, glsl_of
 from playground.reduce.ddmin import ddmin
-from playground.reduce.faults import Finding
+from playground.reduce.failures import Finding
 from playground.reduce.probe import Probe
 from playground.reduce.tokens import tidy, tokens_of
 from playground.sketch.model import Camera

@@ -10,8 +10,8 @@ import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from playground.engine.trial import LIMIT_BYTES
-from playground.engine.trial_process import receive, send
+from playground.engine.sandbox import LIMIT_BYTES
+from playground.engine.sandbox_process import receive, send
 from playground.errors import ContextError, PlaygroundError, TrialCrash
 from playground.gpu.context import ContextInfo
 from playground.reduce.child import Seen, Task

@@ -13,7 +13,7 @@ means for that:
                           why. Where a graphics card draws, they say nothing, and are left out of the
                           comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
-                          files (see ``engine.drawn``). It never makes a comparison less strict:
+                          files (see ``engine.picture_hash``). It never makes a comparison less strict:
                           that an edit changed the picture is what the test is there to tell.
     size                  the picture's. Pictures of two sizes are never compared.
     tool                  the playground's version. It never makes a comparison less strict either:

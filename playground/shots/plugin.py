@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from playground.shots import used
+from playground.shots import unused_references as used
 from playground.shots.names import (
     CHECKED,
     LEFT,

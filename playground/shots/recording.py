@@ -19,9 +19,9 @@ from playground.shots.compare import difference_picture
 from playground.shots.flip import flip_picture
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
 from playground.shots.names import CHECKED, LOOSE, SCREENSHOTS, UNKEPT
-from playground.shots.places import clean, drop, file_of, place_of, records_in
 from playground.shots.references import accepted, home_of, reference_texts
 from playground.shots.report import NAME, write_report
+from playground.shots.result_paths import clean, drop, file_of, place_of, records_in
 from playground.shots.results import (
     FOLDER,
     PASSED,

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.engine.engine import Engine
+from playground.engine.error_place import told_at
 from playground.engine.frame import Frame
-from playground.engine.placing import told_at
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png

@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import Any
 
 from playground.errors import ParameterError, nearest
+from playground.sketch.identity import Same
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, Parameter, Sketch, Technique, Value
-from playground.sketch.same import Same
 from playground.sketch.values import coerce, spell
 
 LAND = ("size", "extent", "relief", "base_elevation")

@@ -13,8 +13,8 @@ import re
 from functools import lru_cache
 from typing import Any
 
+from playground.sketch.identity import Same
 from playground.sketch.model import Graph, Kernel, Parameter, Technique
-from playground.sketch.same import Same
 
 _TOKEN = re.compile(
     r"[A-Za-z_]\w*"

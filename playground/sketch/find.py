@@ -6,7 +6,7 @@ from pathlib import Path
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.places import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
+from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
 from playground.sketch.unpack import is_pack, unpacked
 
 

@@ -24,8 +24,8 @@ from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.follows import Rule, follow, rules_of
+from playground.sketch.identity import Same
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
-from playground.sketch.same import Same
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import standing
 from playground.sketch.wiring import (

@@ -9,13 +9,13 @@ from dataclasses import replace
 from playground.errors import nearest
 from playground.sketch import expressions
 from playground.sketch.agreement import read_agreement
+from playground.sketch.allowed_files import SHADERS
 from playground.sketch.annotation import arguments
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Buffer, Kernel, Output
-from playground.sketch.places import SHADERS
+from playground.sketch.reserved_names import DRIVER_BOUND, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import check_name, is_given, read_uniforms
-from playground.sketch.words import DRIVER_BOUND, PLAIN_UNIFORMS
 
 FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
 

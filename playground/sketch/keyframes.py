@@ -23,8 +23,8 @@ from functools import lru_cache
 from typing import Any
 
 from playground.sketch.assign import resolve
+from playground.sketch.identity import Same
 from playground.sketch.model import Graph, Keyframe, Parameter, Sketch, Value
-from playground.sketch.same import Same
 from playground.sketch.values import is_whole
 
 EASES = ("smooth", "linear", "hold")

@@ -11,11 +11,7 @@ from pathlib import Path
 
 from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
-from playground.sketch.assign import effective_values, shown_parameters
-from playground.sketch.find import find
-from playground.sketch.flatten import flatten
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
-from playground.sketch.places import (
+from playground.sketch.allowed_files import (
     SHADERS,
     canonical_of,
     following_links_once,
@@ -24,6 +20,10 @@ from playground.sketch.places import (
     is_variant,
     root_of,
 )
+from playground.sketch.assign import effective_values, shown_parameters
+from playground.sketch.find import find
+from playground.sketch.flatten import flatten
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
 from playground.sketch.techniques import (
     Techniques,
     lonely_variant,

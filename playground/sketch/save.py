@@ -20,10 +20,10 @@ from pathlib import Path
 
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError
 from playground.paths import GLSL, shown
+from playground.sketch.allowed_files import leads_outside
 from playground.sketch.assign import LAND, resolve, values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
-from playground.sketch.places import leads_outside
 from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_spans import append, drop, put, text_of

@@ -20,8 +20,8 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch.allowed_files import is_file, is_inside, names_below, note, real
 from playground.sketch.macro_calls import with_calls_joined
-from playground.sketch.places import is_file, is_inside, names_below, note, real
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")

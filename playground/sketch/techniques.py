@@ -7,11 +7,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.canonical import content_of
-from playground.sketch.find import shipped_names
-from playground.sketch.model import Graph, Kernel, Technique, Variant
-from playground.sketch.parsed import parsed_kernel, replaced
-from playground.sketch.places import (
+from playground.sketch.allowed_files import (
     FAST,
     TECHNIQUES,
     is_file,
@@ -20,6 +16,10 @@ from playground.sketch.places import (
     leads_outside,
     names_below,
 )
+from playground.sketch.canonical import content_of
+from playground.sketch.find import shipped_names
+from playground.sketch.kernel_cache import parsed_kernel, replaced
+from playground.sketch.model import Graph, Kernel, Technique, Variant
 from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile

@@ -11,9 +11,9 @@ from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import wiring
 from playground.sketch.agreement import read_agreement
+from playground.sketch.allowed_files import is_variant, leads_outside
 from playground.sketch.assign import LAND, check_value, flat_values, resolve
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
-from playground.sketch.places import is_variant, leads_outside
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell

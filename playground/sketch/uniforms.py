@@ -16,9 +16,7 @@ from playground.sketch import values
 from playground.sketch.annotation import calls as read_calls
 from playground.sketch.follows import read_follows
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
-from playground.sketch.source import Line, SourceText
-from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
-from playground.sketch.words import (
+from playground.sketch.reserved_names import (
     GIVEN,
     GIVEN_INSTEAD,
     GLSL_WORDS,
@@ -29,6 +27,8 @@ from playground.sketch.words import (
     TOWARDS,
     WIRED,
 )
+from playground.sketch.source import Line, SourceText
+from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
 
 _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"

@@ -16,7 +16,7 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.json_text import read_json
 from playground.paths import GLSL, shown
-from playground.sketch.places import is_file
+from playground.sketch.allowed_files import is_file
 from playground.sketch.source import read_text
 
 NAME = "fast_variants.json"

@@ -17,8 +17,8 @@ from shlex import quote
 
 from playground.paths import shown
 from playground.sketch.canonical import content_of
+from playground.sketch.identity import Same
 from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
-from playground.sketch.same import Same
 
 
 def standing(technique: Technique, kinds: Collection[str]) -> Variant | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from playground.errors import Diagnostic
 from playground.sketch.model import Kernel
 from playground.sketch.uniforms import unfed_samplers
-from playground.sketch.unread import unread
+from playground.sketch.unused_parameters import unread
 
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:

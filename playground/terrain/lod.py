@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.terrain.morph import morph
-from playground.terrain.sight import Boxes, View, boxes_of
 from playground.terrain.tiles import CELLS, EAST, LEVELS, NORTH, SOUTH, WEST, Chosen, Piece, rims_of
+from playground.terrain.visibility import Boxes, View, boxes_of
 
 Levels = NDArray[np.int8]
 Tables = Mapping[str, NDArray[np.float32]]

@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.terrain.sight import FAR, Boxes, Floats, View, boxes_of
 from playground.terrain.tiles import CELLS, LEVELS, Chosen, Piece, rims_of
+from playground.terrain.visibility import FAR, Boxes, Floats, View, boxes_of
 
 START = 0.8
 """Where vertices begin to slide, over the distance that a level reaches; as in view/vertices.glsl."""

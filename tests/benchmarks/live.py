@@ -23,12 +23,12 @@ from pathlib import Path
 import moderngl
 
 from playground.engine.engine import Engine
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.gpu.context import open_context
-from playground.live.follow import Follower
-from playground.live.session import Session
-from playground.live.watch import Watcher
 from playground.paths import GLSL
+from playground.workbench.reload import Follower
+from playground.workbench.session import Session
+from playground.workbench.watcher import Watcher
 
 SIZE = (1280, 720)
 SMALL = (320, 180)  # where what counts is that a picture comes, not how soon

@@ -24,7 +24,7 @@ from rich.table import Table
 
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
-from playground.live.listing import Filter
+from playground.workbench.parameter_list import Filter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "live"))
 from desk import Bare

@@ -22,10 +22,10 @@ from rich.console import Console
 from rich.table import Table
 
 import playground
-from playground.engine.trial import Trial
-from playground.live.session import Session
-from playground.live.watch import Watcher
+from playground.engine.sandbox import Trial
 from playground.paths import GLSL
+from playground.workbench.session import Session
+from playground.workbench.watcher import Watcher
 
 SIZE = (1280, 720)
 KERNELS = ("texturing/height_blend/mix", "texturing/tiled")  # one that fetches, one that filters

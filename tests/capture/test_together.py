@@ -11,7 +11,7 @@ import pytest
 
 import playground
 from playground import DataError, Sketch
-from playground.capture.together import write_together
+from playground.capture.atomic_group import write_together
 from playground.engine.engine import Engine
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,7 +30,7 @@ def test_all_take_their_names_or_none(tmp_path: Path):
 FULL = """
 import resource, signal, sys
 from pathlib import Path
-from playground.capture.together import write_together
+from playground.capture.atomic_group import write_together
 from playground.errors import DataError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))

@@ -11,7 +11,7 @@ import pytest
 
 from playground import cli
 from playground.commands.cache import in_bytes
-from playground.engine.store import Kept, Store, place
+from playground.engine.disk_cache import Kept, Store, place
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="the folder is told by XDG_CACHE_HOME"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.capture.endings import ENDINGS
+from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from playground.engine.check import check_file
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.errors import Diagnostic, PlaygroundError
 from playground.sketch.load import load
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.check import FileReport, check_file, find_files
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.errors import DataError, Diagnostic, ShaderError
 from playground.sketch.load import load
 

@@ -10,7 +10,7 @@ import pytest
 from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.verify import verify
-from playground.engine.verify_what import recorded, subjects
+from playground.engine.verify_targets import recorded, subjects
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
 from playground.sketch.load import load
 from playground.sketch.model import VARIANTS, Sketch

@@ -89,7 +89,7 @@ def test_an_eye_straight_over_its_target_may_be_raised_too(any_engine, sketch):
 
 
 def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, monkeypatch):
-    from playground.engine import ground as module
+    from playground.engine import eye_height as module
 
     reads = []
     real = module._height_at

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.all_errors import all_mistakes
 from playground.engine.engine import Engine
-from playground.engine.mistakes import all_mistakes
-from playground.engine.trial import Trial, TrySketch
+from playground.engine.sandbox import Trial, TrySketch
 from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.sketch.load import load
 

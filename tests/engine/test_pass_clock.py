@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from playground.engine import pass_clock
-from playground.engine.pass_clock import PassClock
+from playground.engine import pass_time_limit as pass_clock
+from playground.engine.pass_time_limit import PassClock
 
 
 class Time:

@@ -12,11 +12,11 @@ import tifffile
 
 import playground
 from playground import cli
-from playground.engine import trial
+from playground.engine import sandbox as trial
 from playground.engine.check import check_file
-from playground.engine.trial import Trial
-from playground.live.problems import Warnings
+from playground.engine.sandbox import Trial
 from playground.sketch.load import load
+from playground.workbench.problems import Warnings
 
 SKETCH = """format = 1
 size = 9

@@ -16,10 +16,10 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.engine import store as store_module
+from playground.engine import disk_cache as store_module
+from playground.engine.disk_cache import Kept, Store, bytes_in, clear, limit_in, listed, store_for, trim
+from playground.engine.disk_caching import Keeping
 from playground.engine.engine import Engine
-from playground.engine.store import Kept, Store, bytes_in, clear, limit_in, listed, store_for, trim
-from playground.engine.store_keeping import Keeping
 from playground.errors import ParameterError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import read_raw
@@ -565,7 +565,7 @@ def test_a_texture_of_another_size_is_not_taken(kept, folder):
 
 def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypatch):
     costs = {"land": 500.0, "worn": 1.0, "light": 100.0}
-    monkeypatch.setattr("playground.engine.store_keeping.reading", lambda size: 4.0)
+    monkeypatch.setattr("playground.engine.disk_caching.reading", lambda size: 4.0)
 
     def kept_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)
@@ -600,9 +600,7 @@ def test_costs_are_measured_where_land_is_made_and_a_loop_counts_as_one(any_shel
 
 
 def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn, monkeypatch):
-    monkeypatch.setattr(
-        "playground.engine.store_keeping.PIECE", 33 * 4 * 10
-    )  # rows of 33 floats, ten at once
+    monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
     keeping = engine.keeping = Keeping(engine.keeping.store, floor=ALWAYS, rest=1.0, now=lambda: now)
@@ -625,7 +623,7 @@ def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn,
 
 
 def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, monkeypatch):
-    monkeypatch.setattr("playground.engine.store_keeping.PIECE", 33 * 4 * 10)
+    monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)
     engine = any_shelf.engine(cache_bytes=20_000)
     engine.keeping.rest = 0.0
     picture(engine, worn)

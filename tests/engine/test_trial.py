@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.plan import smallest_land
-from playground.engine.trial import Trial, TrialReport, TryLibrary, TrySketch
+from playground.engine.sandbox import Trial, TrialReport, TryLibrary, TrySketch
 from playground.errors import ShaderError, TrialCrash, TrialTimeout
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -321,7 +321,7 @@ def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
 
 
 SCRIPT = """
-from playground.engine.trial import Trial, TrySketch
+from playground.engine.sandbox import Trial, TrySketch
 from playground.sketch.load import load
 with Trial(limit_seconds=90.0) as trial:
     trial._arguments[-1] = "OWN"  # [s] after which a child ends by itself

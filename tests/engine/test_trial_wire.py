@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from playground.engine.trial import TryLibrary, TrySketch
-from playground.engine.trial_wire import Reader, Writer
+from playground.engine.sandbox import TryLibrary, TrySketch
+from playground.engine.sandbox_wire import Reader, Writer
 from playground.sketch.load import load
 from playground.sketch.model import Kernel, Sketch, kernels_of
 

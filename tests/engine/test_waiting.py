@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.trial_process import Process
-from playground.engine.waiting import waited_since, waits_of
+from playground.engine.sandbox_process import Process
+from playground.process.cpu_wait import waited_since, waits_of
 
 BUSY = "import os, time\nos.sched_setaffinity(0, {cpu})\nprint(flush=True)\nwhile True: pass"
 READY = """
 import sys
 import time
 from pathlib import Path
-from playground.engine.trial_process import Ready, send
+from playground.engine.sandbox_process import Ready, send
 while not Path(sys.argv[1]).exists():
     time.sleep(0.01)
 send(sys.stdout.buffer, Ready())
@@ -67,15 +67,15 @@ def test_processes_that_share_one_processor_wait_for_each_other():
 
 def test_a_trial_s_time_is_what_it_had(monkeypatch):
     """One that waited for a processor has worked for the rest, and for an eighth at least."""
-    process = Process[object]("playground.engine.trial_child", ["0", "any", "60.0"])
+    process = Process[object]("playground.engine.sandbox_child", ["0", "any", "60.0"])
     try:
         process.busy, process._ready_at = True, time.monotonic() - 100.0
         process._handed_at = process._ready_at
-        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {"1": 80_000_000_000})
+        monkeypatch.setattr("playground.engine.sandbox_process.waits_of", lambda _: {"1": 80_000_000_000})
         assert process.seconds == pytest.approx(20.0, abs=9.0)
-        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {"1": 99_900_000_000})
+        monkeypatch.setattr("playground.engine.sandbox_process.waits_of", lambda _: {"1": 99_900_000_000})
         assert process.seconds == pytest.approx(100.0 / 8, abs=2.0)
-        monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: {})
+        monkeypatch.setattr("playground.engine.sandbox_process.waits_of", lambda _: {})
         assert process.seconds >= 100.0
     finally:
         process.kill()
@@ -86,7 +86,7 @@ def test_what_it_waited_before_it_was_ready_does_not_count(monkeypatch, tmp_path
     (tmp_path / "ready_late.py").write_text(READY, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     waited = {"1": 0}
-    monkeypatch.setattr("playground.engine.trial_process.waits_of", lambda _: dict(waited))
+    monkeypatch.setattr("playground.engine.sandbox_process.waits_of", lambda _: dict(waited))
     process = Process[object]("ready_late", [str(tmp_path / "now")])
     try:
         process.hand_over(object())

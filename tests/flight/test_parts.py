@@ -10,8 +10,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import SketchError
+from playground.flight.layout import plot_of
 from playground.flight.parts import Parts
-from playground.flight.plot import plot_of
 from playground.gpu.textures import read_texture
 from playground.sketch.load import load
 

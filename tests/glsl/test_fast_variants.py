@@ -7,14 +7,14 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.verify import compared, places_in, verify
-from playground.engine.verify_what import subjects
+from playground.engine.verify_targets import subjects
 from playground.paths import GLSL
+from playground.sketch.allowed_files import is_variant
 from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flatten import flatten, leaves_of
 from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
-from playground.sketch.places import is_variant
-from playground.sketch.reread import with_texts
+from playground.sketch.text_overrides import with_texts
 from playground.sketch.variant_record import NAME, read, written
 from playground.sketch.variants import is_verified, why_not
 

@@ -12,7 +12,8 @@ from scipy import ndimage
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.model import Camera
-from playground.terrain import lod, sight, tiles
+from playground.terrain import lod, tiles
+from playground.terrain import visibility as sight
 from playground.terrain.camera import look
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'

@@ -9,7 +9,8 @@ import pytest
 from scipy import ndimage
 
 from playground.sketch.model import Camera
-from playground.terrain import morph, sight, tiles
+from playground.terrain import morph, tiles
+from playground.terrain import visibility as sight
 from playground.terrain.camera import look
 
 LAND = """#include "noise/hash.glsl"

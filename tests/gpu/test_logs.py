@@ -10,7 +10,7 @@ from pathlib import Path
 import moderngl
 import pytest
 
-from playground.gpu.logs import LogEntry, hint, parse_log, source_column, split_moderngl
+from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
 
 LOGS = Path(__file__).parent / "logs"
 

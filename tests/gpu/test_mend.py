@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from playground.gpu.mend import COMPLAINTS, DEBIAN_RENDER, complaint, mend
+from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, complaint, mend
 
 # Texts as users saw them: in public threads (named), or provoked on Mesa 22.3.6 with
 # glcontext 3.1 and GLFW 3.4, or (binary) as they stand in those two for other platforms.

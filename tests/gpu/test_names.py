@@ -8,10 +8,10 @@ import moderngl
 import pytest
 
 from playground.errors import PlaygroundError
-from playground.gpu.logs import hint
-from playground.gpu.names import guess, library
+from playground.gpu.driver_log import hint
+from playground.gpu.driver_warnings import warnings_of
+from playground.gpu.name_suggestions import guess, library
 from playground.gpu.program import compile_wrapped
-from playground.gpu.said import warnings_of
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
 from playground.sketch.model import Kernel

@@ -11,8 +11,8 @@ import tifffile
 
 from playground.engine.frame import Frame
 from playground.errors import DataError
-from playground.images.endings import PICTURE_ENDINGS
-from playground.images.pictures import write_picture
+from playground.images.extensions import PICTURE_ENDINGS
+from playground.images.image_formats import write_picture
 
 FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP", ".tif": "TIFF", ".tiff": "TIFF"}
 

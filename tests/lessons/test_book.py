@@ -12,13 +12,14 @@ import pytest
 from PIL import Image
 
 from playground.errors import DataError
-from playground.lessons.book import build, pictures
+from playground.lessons.book import build
+from playground.lessons.book import images as pictures
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.html import formula, line, plain, prose
-from playground.lessons.book.pictures import is_diagram, larger
+from playground.lessons.book.images import is_diagram, larger
+from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
 from playground.lessons.library import interface_words
-from playground.lessons.pictures import draw, pictures_of
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from playground.errors import SketchError
+from playground.lessons.bugs import around, region
 from playground.lessons.excerpt import anchors, excerpt
-from playground.lessons.faults import around, region
-from playground.lessons.pictures import faulty
+from playground.lessons.figure_renders import faulty
 from playground.paths import GLSL
 
 TEXT = """float a;

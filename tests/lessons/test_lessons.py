@@ -6,11 +6,11 @@ import re
 
 import pytest
 
-from playground.lessons.faults import region
+from playground.lessons.bugs import region
+from playground.lessons.figure_renders import faulty, pictures_of
 from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
 from playground.lessons.measuring import filled, numbers_of
 from playground.lessons.model import Break, Prose
-from playground.lessons.pictures import faulty, pictures_of
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.rules import broken_rules, wrong_pictures
 from playground.lessons.scenes import Sketches

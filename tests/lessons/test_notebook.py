@@ -17,6 +17,7 @@ import pytest
 from PIL import Image
 
 from playground.errors import SketchError
+from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import interface_words, lesson_files
 from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Figure, Prose
@@ -24,7 +25,6 @@ from playground.lessons.notebook import lesson as notebook_lesson
 from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
-from playground.lessons.pictures import broken, draw
 from playground.lessons.read import read_lesson
 from playground.lessons.scenes import Sketches
 
@@ -133,7 +133,7 @@ def test_a_saved_notebook_shows_the_picture(opened, lesson, engine):
 
 
 def test_mending_the_lines_makes_the_whole_picture(opened, lesson, engine):
-    from playground.lessons.faults import around
+    from playground.lessons.bugs import around
 
     block = lesson.named["fault"]
     whole, faulty = around(block)

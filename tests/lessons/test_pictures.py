@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.lessons.pictures import pictures_of
+from playground.lessons.figure_renders import pictures_of
 from playground.lessons.read import read_lesson, summaries
 
 LESSONS = [one.name for one in summaries()]

@@ -49,7 +49,7 @@ def test_variants_stand_over_what_the_block_sets(make_lesson):
 
 def test_a_texture_from_above(make_lesson, engine):
     """Its greys are the texture's values between the ends of the range."""
-    from playground.lessons.pictures import draw
+    from playground.lessons.figure_renders import draw
 
     found = make_lesson(
         ('pixels    = [96, 96]\ncaption   = "Smoother', 'pixels = [20, 20]\ncaption = "Smoother'),

@@ -10,14 +10,14 @@ import imgui_bundle
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
-from playground.live.actions import Actions
 from playground.live.drops import draw_drops
+from playground.live.inspect.overlays import draw_see
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
-from playground.live.see.view import draw_see
-from playground.live.session import Session
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.session import Session
 
 
 class Bare:

@@ -12,10 +12,10 @@ from playground.lessons import library
 from playground.lessons.read import part
 from playground.lessons.translate import write_hashes
 from playground.live.code_window import draw_code
-from playground.live.lesson.beside import Lessons
-from playground.live.lesson.reading import Reading
-from playground.live.remember import Rememberer, memory_of
-from playground.live.see.timeline import height_of_timeline
+from playground.live.inspect.timeline import height_of_timeline
+from playground.live.lesson.host import Lessons
+from playground.workbench.autosave import Rememberer, memory_of
+from playground.workbench.lesson.reader import Reading
 
 from .desk import Bare
 

@@ -12,15 +12,15 @@ import pytest
 
 from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
-from playground.capture.working import Working
+from playground.capture.job_process import Working
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
-from playground.live import capturing
-from playground.live.actions import Actions
-from playground.live.capturing import Capturing, Wish, job_of, parts_of, size_of, summary, sweep_text
-from playground.live.session import Session
 from playground.sketch.assign import resolve
+from playground.workbench import captures as capturing
+from playground.workbench.actions import Actions
+from playground.workbench.captures import Capturing, Wish, job_of, parts_of, size_of, summary, sweep_text
+from playground.workbench.session import Session
 
 from .desk import Bare
 

@@ -8,8 +8,8 @@ import pytest
 
 from playground.errors import SketchError
 from playground.sketch.assign import value_of, values_of
-from playground.sketch.choose import choices, with_technique
 from playground.sketch.load import load
+from playground.sketch.replace_technique import choices, with_technique
 
 FLAT = """// flat.glsl -- level land
 #pragma kernel(output = "height:r32f")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.live.clicks import APART, Clicks
+from playground.live.double_click import APART, Clicks
 
 SLOW = 0.4
 """[s] that a turn takes where a picture is drawn slowly."""

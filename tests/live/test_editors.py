@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from playground.live.editors import Editor, Opener, find_editor, find_terminal
+from playground.workbench.editors import Editor, Opener, find_editor, find_terminal
 
 FILE = Path("/land/my hills/land.glsl").absolute()
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.edits import Draft, Edits, reload_draft
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera
+from playground.workbench.edits import Draft, Edits, reload_draft
 
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")

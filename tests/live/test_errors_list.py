@@ -11,12 +11,14 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
-from playground.live import code_window, errors_list, sources
-from playground.live.code_window import draw_code, unsaved
-from playground.live.editors import Editor
+from playground.live import code_window, errors_list
+from playground.live.code_window import draw_code
 from playground.live.errors_list import draw_errors
-from playground.live.problems import Problems, Warnings, passes_of
 from playground.sketch.load import load
+from playground.workbench import open_source as sources
+from playground.workbench.editors import Editor
+from playground.workbench.problems import Problems, Warnings, passes_of
+from playground.workbench.text_file import unsaved
 
 from .desk import Bare
 
@@ -260,16 +262,16 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     view = code_window._view_of(editing)
     place = view.editor.get_main_cursor_position()
     assert (place.line, place.index) == (2, first.column - 1)
-    assert view.editor.has_markers() and not unsaved(desk.actions)
+    assert view.editor.has_markers() and not unsaved(desk.actions.editing)
     desk.type("// ")
-    assert unsaved(desk.actions) == ["wave.glsl"]
+    assert unsaved(desk.actions.editing) == ["wave.glsl"]
     wanted = view.editor.get_text()
     desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert (folder / "wave.glsl").read_text(encoding="utf-8") == wanted != WAVE
-    assert not unsaved(desk.actions)
+    assert not unsaved(desk.actions.editing)
     view.editor.undo()
     desk.turn(2)
-    assert unsaved(desk.actions), "what was saved is no longer what is seen"
+    assert unsaved(desk.actions.editing), "what was saved is no longer what is seen"
 
 
 def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) -> None:
@@ -284,7 +286,7 @@ def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) ->
     desk.turn(3)
     desk.click("Merge both")
     assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
-    assert not unsaved(desk.actions)
+    assert not unsaved(desk.actions.editing)
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.session import Session
 from playground.paths import GLSL
 from playground.sketch.variant_record import NAME
+from playground.workbench.session import Session
 
 from ..variants import trust
 

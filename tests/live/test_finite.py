@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.finite import NotFinite
-from playground.live.actions import Actions
-from playground.live.finite import REST, FiniteWatch, place_in, ref_of, said
-from playground.live.session import Session
+from playground.engine.non_finite import NotFinite
+from playground.live.non_finite import place_in, ref_of
+from playground.workbench.actions import Actions
+from playground.workbench.non_finite import REST, FiniteWatch, said
+from playground.workbench.session import Session
 
 from .desk import Bare
 
@@ -156,7 +157,7 @@ def test_a_map_is_placed_as_its_kernel_places_it() -> None:
 def test_the_words_lead_to_the_texture_and_back(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from playground.live import finite
+    from playground.live import non_finite as finite
 
     Desk(any_engine, tmp_path).session.release()
     bare = Bare(any_engine, tmp_path / "sketch.toml")

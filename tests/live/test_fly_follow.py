@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.trial import TrialReport, TrySketch
+from playground.engine.sandbox import TrialReport, TrySketch
 from playground.errors import ShaderError
-from playground.live.fly_follow import SaveFollower
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from playground.workbench.flight_reload import SaveFollower
 
 LAND = """// land.glsl -- a plain
 #pragma kernel(output = "height:r32f")

@@ -11,7 +11,7 @@ import imgui_bundle
 import pytest
 from imgui_bundle import imgui
 
-from playground.live.lesson.marks import written
+from playground.live.lesson.markdown_runs import written
 from playground.live.theme import Theme
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.framing import WIDEST, field_for, framed, moved
-from playground.live.gesture import Gesture
-from playground.live.session import Session
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.terrain.camera import look
+from playground.workbench.camera_drag import Gesture
+from playground.workbench.framing import WIDEST, field_for, framed, moved
+from playground.workbench.session import Session
 
 EXTENT, RELIEF = (10_240.0, 8_000.0), 1_800.0
 NARROW = (950, 720)

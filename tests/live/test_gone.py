@@ -12,11 +12,11 @@ import pytest
 
 from playground import errors
 from playground.engine.engine import Engine
-from playground.engine.trial import TrialReport
+from playground.engine.sandbox import TrialReport
 from playground.errors import PlaygroundError
 from playground.live.errors_list import draw_errors
-from playground.live.problems import Problems
-from playground.live.session import Session
+from playground.workbench.problems import Problems
+from playground.workbench.session import Session
 
 from .desk import Bare
 from .screen import ROOT
@@ -127,8 +127,8 @@ import os, shutil, sys
 from pathlib import Path
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
-from playground.live.session import Session
-from playground.live.problems import Problems
+from playground.workbench.session import Session
+from playground.workbench.problems import Problems
 with Engine(open_context()) as engine:
     session = Session(engine, sys.argv[1])
     session.frame((32, 32))

@@ -5,7 +5,17 @@ from __future__ import annotations
 import pytest
 
 from playground.flight.craft import Controls
-from playground.live.hands import FULL, NOTCH, REST, Keys, Wheel, by_gamepad, by_keys, by_mouse, together
+from playground.live.flight_controls import (
+    FULL,
+    NOTCH,
+    REST,
+    Keys,
+    Wheel,
+    by_gamepad,
+    by_keys,
+    by_mouse,
+    together,
+)
 from playground.live.instruments import HELP, clock
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.hasty import GRID, hastily
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from playground.workbench.preview import GRID, hastily
 
 SKETCH = """format = 1
 size = 129

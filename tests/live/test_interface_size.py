@@ -9,7 +9,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.live.interface_size import SIZES, InterfaceSize, remembered_size
+from playground.workbench.interface_size import SIZES, InterfaceSize, remembered_size
 
 from .desk import Bare
 

@@ -10,11 +10,11 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.live import keying
-from playground.live.actions import Actions
-from playground.live.session import Session
 from playground.sketch.load import load
 from playground.sketch.model import Camera
+from playground.workbench import keyframe_edits as keying
+from playground.workbench.actions import Actions
+from playground.workbench.session import Session
 
 from .desk import Bare
 

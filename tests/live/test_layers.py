@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.live.code_window import draw_code
-from playground.live.layers import open_layers
-from playground.live.sources import open_source
+from playground.live.escape_layers import open_layers
+from playground.workbench.open_source import open_source
 
 from .desk import Bare
 

@@ -12,8 +12,8 @@ from imgui_bundle import ImVec2, imgui
 from playground import cli
 from playground.engine.engine import Engine
 from playground.lessons.scenes import Sketches
-from playground.live.lesson.ways import follow
 from playground.sketch.find import find
+from playground.workbench.lesson.links import follow
 
 from .lesson_desk import Desk, shelved
 from .test_lesson_stage import FILE, OWN, value
@@ -167,7 +167,8 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
     desk.open(show=False)
     opened: list[str] = []
     monkeypatch.setattr(
-        "playground.live.lesson.ways.webbrowser.open", lambda address: bool(opened.append(address)) or True
+        "playground.workbench.lesson.links.webbrowser.open",
+        lambda address: bool(opened.append(address)) or True,
     )
     for address in (
         "https://doi.org/10.1145/358523.358553",

@@ -12,11 +12,11 @@ from playground.lessons.library import LANGUAGES, TEXTS, lesson_files
 from playground.lessons.markdown import formulas
 from playground.lessons.model import Break, Compare, Exercise, Figure, Slider, Steps
 from playground.lessons.read import read_lesson
-from playground.live.edits import Draft
 from playground.live.lesson.formulas import set_formula
-from playground.live.lesson.marks import INSTEAD
-from playground.live.lesson.scene import edits_of, map_of, steps_of
+from playground.live.lesson.markdown_runs import INSTEAD
 from playground.sketch.load import load
+from playground.workbench.edits import Draft
+from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
 
 FILES = sorted(TEXTS.glob("*/*.md"))
 

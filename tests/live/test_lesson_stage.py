@@ -12,19 +12,19 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.lessons import library
+from playground.lessons.figure_renders import broken, draw
 from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
-from playground.lessons.pictures import broken, draw
 from playground.lessons.read import read_lesson
-from playground.live.edits import Draft, Edits
-from playground.live.framing import framed
-from playground.live.lesson.faults import BROKEN, MENDED, TOLD
-from playground.live.lesson.reading import BOTH
-from playground.live.lesson.scene import edits_of, map_of, steps_of
-from playground.live.lesson.ways import play_on
-from playground.live.sources import open_source
 from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
+from playground.workbench.edits import Draft, Edits
+from playground.workbench.framing import framed
+from playground.workbench.lesson.bugs import BROKEN, MENDED, TOLD
+from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
+from playground.workbench.lesson.links import play_on
+from playground.workbench.lesson.reader import BOTH
+from playground.workbench.open_source import open_source
 
 from .lesson_desk import RAW, Desk, shelved
 

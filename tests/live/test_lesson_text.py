@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from playground.live.lesson.formulas import Formulas, can_set, set_formula
-from playground.live.lesson.lines import Extent, broken
-from playground.live.lesson.marks import Run, parts_of, plain
-from playground.live.lesson.progress import NARROWEST, Progress, read_progress, write_progress
-from playground.live.lesson.words import _ALL, words_in
+from playground.live.lesson.line_breaking import Extent, broken
+from playground.live.lesson.markdown_runs import Run, parts_of, plain
+from playground.workbench.lesson.labels import _ALL, words_in
+from playground.workbench.lesson.progress import NARROWEST, Progress, read_progress, write_progress
 
 INK = 0xFFEEEEEE
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,13 +9,13 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.live.edits import Draft
-from playground.live.listing import Filter, Listing
-from playground.live.randomised import targets
-from playground.live.rows import fitting_label
+from playground.live.panel_rows import fitting_label
 from playground.sketch.assign import values_of
 from playground.sketch.find import find, shipped_sketches
 from playground.sketch.load import load
+from playground.workbench.edits import Draft
+from playground.workbench.parameter_list import Filter, Listing
+from playground.workbench.random_targets import targets
 
 from .desk import Bare
 

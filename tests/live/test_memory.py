@@ -12,13 +12,13 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.folders import cache_folder, state_folder
-from playground.live.edits import Edits
-from playground.live.memory import Compared, Memory, Remembered
-from playground.live.remember import QUIET, TIME, Rememberer
-from playground.live.session import Session
-from playground.live.words import Said
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
+from playground.workbench.autosave import QUIET, TIME, Rememberer
+from playground.workbench.edit_merge import Said
+from playground.workbench.edits import Edits
+from playground.workbench.memory import Compared, Memory, Remembered
+from playground.workbench.session import Session
 
 SIZE = (64, 48)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "4")

@@ -9,16 +9,16 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.trial import TrialReport, TrySketch
+from playground.engine.sandbox import TrialReport, TrySketch
 from playground.errors import TrialTimeout
 from playground.gpu.textures import read_picture
-from playground.live.framing import framed
-from playground.live.memory import Compared, Memory
-from playground.live.remember import Rememberer
-from playground.live.see.compare import Compare, Mode
-from playground.live.session import Session
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
+from playground.workbench.autosave import Rememberer
+from playground.workbench.framing import framed
+from playground.workbench.inspect.compare import Compare, Mode
+from playground.workbench.memory import Compared, Memory
+from playground.workbench.session import Session
 
 SIZE = (48, 32)
 LAND = """#pragma kernel(output = "height:r32f")

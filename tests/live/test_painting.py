@@ -11,12 +11,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import DataError, ShaderError
 from playground.images.files import read_image, read_png, write_png
-from playground.live.brush import ERASER, Brush, covered, stroke
-from playground.live.canvas import MOST_TEXELS, Canvas
-from playground.live.painting import Painting
-from playground.live.session import Session
 from playground.sketch.load import load
 from playground.terrain.masks import read_mask
+from playground.workbench.brush import ERASER, Brush, covered, stroke
+from playground.workbench.painted_mask import MOST_TEXELS, Canvas
+from playground.workbench.painting import Painting
+from playground.workbench.session import Session
 
 EXTENT = (1000.0, 500.0)
 HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)

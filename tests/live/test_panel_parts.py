@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from playground.errors import ParameterError
-from playground.live.chance import at_random, mutated
-from playground.live.edits import Draft, Edits
-from playground.live.history import History, applied, edits_of, in_words, state_of
-from playground.live.listing import Filter, Listing, set_words
-from playground.live.typed import read_typed
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.sketch.values import coerce, tidied
+from playground.workbench.edits import Draft, Edits
+from playground.workbench.history import History, applied, edits_of, in_words, state_of
+from playground.workbench.parameter_list import Filter, Listing, set_words
+from playground.workbench.randomise import at_random, mutated
+from playground.workbench.typed_values import read_typed
 
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from playground.live.part_labels import Part, parts_of
-from playground.sketch.choose import with_technique
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from playground.sketch.replace_technique import with_technique
 
 
 def sketch_of(name: str) -> Sketch:

@@ -10,14 +10,14 @@ import pytest
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
-from playground.live.excerpt import numbered, short_place
-from playground.live.gesture import Gesture, steered
-from playground.live.numbers import decimals, format_of, snapped
-from playground.live.pictures import save_new
 from playground.live.widgets import CONTROLS
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.sketch.widgets import WIDGETS
 from playground.terrain.camera import look
+from playground.workbench.camera_drag import Gesture, steered
+from playground.workbench.error_excerpt import numbered, short_place
+from playground.workbench.number_format import decimals, format_of, snapped
+from playground.workbench.snapshot import save_new
 
 
 def test_every_widget_of_an_annotation_has_a_control():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.place import Place, on_screen
+from playground.live.window_place import Place, on_screen
 
 
 def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:

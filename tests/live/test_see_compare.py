@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.gpu.textures import make_framebuffer, make_texture, read_picture, write_texture
 from playground.images.files import write_png
-from playground.live.hasty import hastily
-from playground.live.see.ab import drag_line, shows_first
-from playground.live.see.beside import Beside
-from playground.live.see.compare import PERIOD, Compare, Mode
-from playground.live.see.inspector import Inspector
-from playground.live.see.state import See
-from playground.live.session import Session
+from playground.live.inspect.ab import drag_line, shows_first
 from playground.sketch.load import load
+from playground.workbench.inspect.blend import Beside
+from playground.workbench.inspect.compare import PERIOD, Compare, Mode
+from playground.workbench.inspect.inspector import Inspector
+from playground.workbench.inspect.toggles import See
+from playground.workbench.preview import hastily
+from playground.workbench.session import Session
 
 from .desk import Bare
 

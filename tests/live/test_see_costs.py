@@ -10,7 +10,7 @@ import pytest
 from imgui_bundle import implot
 
 from playground.engine.engine import Engine
-from playground.live.see.record import Record, Ring
+from playground.workbench.inspect.frame_costs import Record, Ring
 
 from ..variants import trust
 from .desk import Bare

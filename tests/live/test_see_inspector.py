@@ -12,10 +12,10 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.gpu.textures import read_picture, read_texels, read_texture
-from playground.live.see.glass import lines_of
-from playground.live.see.inspector import Inspector
-from playground.live.session import Session
+from playground.live.inspect.tooltip import lines_of
 from playground.terrain.pick import ground_under
+from playground.workbench.inspect.inspector import Inspector
+from playground.workbench.session import Session
 
 from .desk import Bare
 

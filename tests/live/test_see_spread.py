@@ -12,11 +12,11 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.gpu.textures import make_texture, write_texture
-from playground.live.see import histogram
-from playground.live.see.histogram import BINS, Counter, Histogram, count
-from playground.live.see.legend import STEPS, colours_of, ends_of, ticks
-from playground.live.session import Session
-from playground.sketch.maps import Map
+from playground.sketch.map_sketch import Map
+from playground.workbench.inspect import histogram
+from playground.workbench.inspect.histogram import BINS, Counter, Histogram, count
+from playground.workbench.inspect.legend import STEPS, colours_of, ends_of, ticks
+from playground.workbench.session import Session
 
 from .desk import Bare
 

@@ -9,10 +9,10 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.live.clock import Clock
-from playground.live.hand import Hand
-from playground.live.see.time import marks_of, span_of, stepped, toggle_loop
+from playground.live.mouse import Hand
 from playground.sketch.load import load
+from playground.workbench.clock import Clock
+from playground.workbench.inspect.time_range import marks_of, span_of, stepped, toggle_loop
 
 from .desk import Bare
 

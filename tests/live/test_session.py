@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.trial import TrialReport, TrySketch
+from playground.engine.sandbox import TrialReport, TrySketch
 from playground.errors import ContextError, SketchError, TrialTimeout
 from playground.images.files import write_png
-from playground.live.files import files_of
-from playground.live.framing import framed
-from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
+from playground.workbench.dependencies import files_of
+from playground.workbench.framing import framed
+from playground.workbench.session import Session, Stage
 
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope

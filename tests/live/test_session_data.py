@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.trial import TrialReport
+from playground.engine.sandbox import TrialReport
 from playground.errors import TrialCrash
 from playground.images.files import write_png
-from playground.live.session import Session, Stage
 from playground.sketch.model import Camera
 from playground.terrain import elevation, sources
+from playground.workbench.session import Session, Stage
 
 from .test_session import FakeTrial
 
@@ -182,7 +182,7 @@ def test_other_values_wait_for_nothing(session: Session) -> None:
 
 
 def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
-    from playground.engine.trial import Trial, TrySketch
+    from playground.engine.sandbox import Trial, TrySketch
     from playground.sketch.load import load
 
     with (folder / "land.npy").open("wb") as file:  # 4 GiB of float32 and of holes

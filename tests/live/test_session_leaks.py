@@ -11,7 +11,7 @@ import moderngl
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.session import Session
+from playground.workbench.session import Session
 
 SIZE = (64, 36)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "3")

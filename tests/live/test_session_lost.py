@@ -11,9 +11,9 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.gpu.context import abandon, open_context
-from playground.live.session import Session, Stage
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
+from playground.workbench.session import Session, Stage
 
 SIZE = (64, 48)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "4")

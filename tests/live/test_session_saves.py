@@ -23,15 +23,15 @@ import PIL.Image
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.trial import Trial
+from playground.engine.sandbox import Trial
 from playground.errors import PlaygroundError
-from playground.live.follow import Follower
-from playground.live.session import Session, Stage
-from playground.live.stages import explained, gone
-from playground.live.watch import Watcher
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera
+from playground.workbench.reload import Follower
+from playground.workbench.reload_stages import explained, gone
+from playground.workbench.session import Session, Stage
+from playground.workbench.watcher import Watcher
 
 SIZE = (24, 16)
 PATIENCE = 90.0  # [s] for the session to come to rest

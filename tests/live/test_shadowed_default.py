@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.session import Session
 from playground.templates import make_sketch
+from playground.workbench.session import Session
 
 SIZE = (32, 18)
 

@@ -10,17 +10,17 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.engine.disk_cache import listed
+from playground.engine.disk_caching import REST as LAND_RESTS
+from playground.engine.disk_caching import Keeping
 from playground.engine.engine import Engine
-from playground.engine.store import listed
-from playground.engine.store_keeping import REST as LAND_RESTS
-from playground.engine.store_keeping import Keeping
 from playground.errors import ContextError
-from playground.live import storing as storing_module
-from playground.live.actions import Actions
-from playground.live.finite import REST, FiniteWatch
-from playground.live.see.thumbnails import Thumbnails
-from playground.live.session import Session
-from playground.live.storing import Storing
+from playground.workbench import disk_caching as storing_module
+from playground.workbench.actions import Actions
+from playground.workbench.disk_caching import Storing
+from playground.workbench.inspect.thumbnails import Thumbnails
+from playground.workbench.non_finite import REST, FiniteWatch
+from playground.workbench.session import Session
 
 from .screen import ON_LINUX, Program, Screen
 
@@ -116,7 +116,7 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     for name, text in (("height.glsl", HEIGHT), ("raised.glsl", RAISED), ("sketch.toml", SKETCH)):
         (folder / name).write_text(text, encoding="utf-8")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr("playground.engine.store.place", lambda: tmp_path / "land")
+    monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
     made = Desk(ctx, folder)
 
     def keeping(store: object) -> Keeping:  # all land is worth it, by the test's clock

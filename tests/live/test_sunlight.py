@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.session import Session
-from playground.live.sunlight import suns_of, turned
 from playground.sketch.load import load
+from playground.workbench.session import Session
+from playground.workbench.sun_drag import suns_of, turned
 
 SKETCH = """format = 1
 size = 17

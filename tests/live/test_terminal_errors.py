@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from playground.errors import Diagnostic
-from playground.live.terminal_errors import TerminalErrors
+from playground.workbench.terminal_errors import TerminalErrors
 
 ONE, OTHER = Diagnostic("no name 'p'", "land.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
 

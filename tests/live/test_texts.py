@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import DataError
-from playground.live.texts import OpenText, merge
+from playground.workbench.text_file import OpenText, merge
 
 TEXT = "one\ntwo\nthree\nfour\nfive\n"
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.trial import TrialReport
-from playground.live.follow import Follower
+from playground.engine.sandbox import TrialReport
 from playground.live.overlay import PATIENCE, trial_text
-from playground.live.session import Session
+from playground.workbench.reload import Follower
+from playground.workbench.session import Session
 
 from .test_session import KERNEL, SKETCH, TILT, FakeTrial
 

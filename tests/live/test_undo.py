@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.live.actions import Actions
-from playground.live.saving import rounded, save_a_copy, save_as_preset, save_values
-from playground.live.session import Session
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
+from playground.workbench.actions import Actions
+from playground.workbench.save_commands import rounded, save_a_copy, save_as_preset, save_values
+from playground.workbench.session import Session
 
 SIZE = (48, 32)
 KERNEL = """// land.glsl -- a slope

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.watch import Watcher
-from playground.sketch.places import signature
+from playground.sketch.allowed_files import signature
+from playground.workbench.watcher import Watcher
 
 LIMIT = 30.0  # [s]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.lesson.progress import Progress, write_progress
+from playground.workbench.lesson.progress import Progress, write_progress
 
 from .lesson_desk import write_lessons
 from .screen import ON_LINUX, Program, Screen

@@ -19,7 +19,7 @@ WIDTH, HEIGHT = 900, 600
 RUN = """
 import os, sys, time
 from playground.live.app import run
-from playground.live.session import Session
+from playground.workbench.session import Session
 from imgui_bundle import imgui
 slide = imgui.slider_float
 def noting(label, *rest):

@@ -17,8 +17,8 @@ from playground.cli import main
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
 from playground.reduce.child import Seen, Task
-from playground.reduce.faults import Differs, Fault, NotFinite, OffReference, Refused, Side
-from playground.reduce.lay import lay_flat
+from playground.reduce.failures import Differs, Fault, NotFinite, OffReference, Refused, Side
+from playground.reduce.inline import lay_flat
 from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
@@ -417,7 +417,7 @@ LOOP = "\n    for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"
 
 @pytest.mark.slow
 def test_a_crash_of_the_compiler_is_kept(sketch, worker, tmp_path):
-    from playground.reduce.faults import Died
+    from playground.reduce.failures import Died
 
     path = sketch(
         f"{HEIGHT}uniform float gain = 1.0;\n{DOUBLING}\nfloat other(float x) {{ return x * gain; }}\n"
@@ -434,7 +434,7 @@ def test_a_crash_of_the_compiler_is_kept(sketch, worker, tmp_path):
 @pytest.mark.slow
 def test_a_hang_is_kept(sketch, tmp_path):
     """llvmpipe stops a loop after 65,535 turns, so it takes many of them to be slow."""
-    from playground.reduce.faults import Died
+    from playground.reduce.failures import Died
 
     path = sketch(
         f"{HEIGHT}float other(float x) {{ return x * 0.5; }}\nfloat kernel(ivec2 texel) {{\n"

@@ -18,8 +18,8 @@ import pytest
 from playground.errors import DataError
 from playground.images.files import read_png
 from playground.markup import Markup, tag
+from playground.shots.page.labels import MEANINGS, TIERS
 from playground.shots.page.shot import CAPTIONS
-from playground.shots.page.words import MEANINGS, TIERS
 from playground.shots.report import report_html, write_report
 from playground.shots.results import NEVER_ACCEPTED, Record, read_results
 

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from playground._version import __version__
-from playground.engine.drawn import rounded
 from playground.engine.engine import Engine
+from playground.engine.picture_hash import rounded
 from playground.gpu.build import processor_in
 from playground.gpu.context import ContextInfo
 from playground.images.files import write_png

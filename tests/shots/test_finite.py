@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.finite import NotFinite, not_finite_in
+from playground.engine.non_finite import NotFinite, not_finite_in
 from playground.shots.suite import shots_of, take
 from playground.sketch.load import load
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import TrialCrash, TrialTimeout
-from playground.shots.places import place_of
+from playground.shots.result_paths import place_of
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]

@@ -17,14 +17,14 @@ from playground.errors import DataError
 from playground.images.files import read_png
 from playground.shots import judge
 from playground.shots.compare import compare
-from playground.shots.mutants import again as again_module
-from playground.shots.mutants.again import Redrawn, again
+from playground.shots.mutants import repeatability as again_module
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
+from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.shots.mutants.pictures import FINISHED
 from playground.shots.mutants.redraw import commented
-from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.mutants.render_mutants import rendering_mutants
+from playground.shots.mutants.repeatability import Redrawn, again
 from playground.shots.mutants.suite import (
     Bench,
     Result,

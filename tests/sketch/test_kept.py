@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from playground.errors import PlaygroundError, SketchError
-from playground.sketch.kept import RESTED, KeptTechniques
+from playground.sketch.allowed_files import noting_places
 from playground.sketch.load import load, load_with
 from playground.sketch.model import kernels_of
-from playground.sketch.places import noting_places
+from playground.sketch.technique_cache import RESTED, KeptTechniques
 
 KERNEL = """#include "part.glsl"
 #pragma kernel(output = "height:r32f")

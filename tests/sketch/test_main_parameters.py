@@ -6,9 +6,9 @@ import pytest
 
 from playground.paths import SKETCHES
 from playground.sketch.assign import resolve
-from playground.sketch.choose import with_technique
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
+from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import save
 
 HEAD = 'format = 1\nmain = ["height.rise"]  # what it is about\n'

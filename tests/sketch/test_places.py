@@ -10,8 +10,8 @@ import pytest
 
 from playground.errors import ShaderError
 from playground.paths import GLSL
+from playground.sketch.allowed_files import noting_places, real, root_of
 from playground.sketch.load import load
-from playground.sketch.places import noting_places, real, root_of
 
 KERNEL = """#include "../lib.glsl"
 #pragma kernel(output = "height:r32f")

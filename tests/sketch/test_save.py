@@ -19,9 +19,9 @@ from playground.errors import DataError, SketchError
 from playground.images.files import write_png
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.assign import values_of
-from playground.sketch.choose import with_technique
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
+from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
 from playground.sketch.toml_lines import Place
 from playground.sketch.toml_spans import Spans, append, drop, put

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from playground.sketch.model import Camera
-from playground.terrain import lod, sight, tiles
+from playground.terrain import lod, tiles
+from playground.terrain import visibility as sight
 from playground.terrain.camera import look
 
 EXTENT, RELIEF, SIZE = (1000.0, 800.0), 300.0, (640, 360)

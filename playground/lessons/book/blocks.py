@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.lessons.book.html import Address, code_block, line, plain, prose
+from playground.lessons.bugs import around
 from playground.lessons.excerpt import excerpt
-from playground.lessons.faults import around
+from playground.lessons.figure_renders import Picture, pictures_in
 from playground.lessons.library import SOURCE
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import (
@@ -29,7 +30,6 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.pictures import Picture, pictures_in
 from playground.lessons.values import spelled_value
 from playground.markup import Markup, joined, tag
 

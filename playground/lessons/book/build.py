@@ -21,6 +21,7 @@ from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.gallery import gallery_html
+from playground.lessons.book.images import Album, of_picture
 from playground.lessons.book.page import (
     FIGURES,
     Book,
@@ -29,12 +30,11 @@ from playground.lessons.book.page import (
     gallery_page,
     lesson_page,
 )
-from playground.lessons.book.pictures import Album, of_picture
+from playground.lessons.figure_renders import pictures_of
 from playground.lessons.figures import Drawn, ThesisFigure, thesis_figures
 from playground.lessons.library import interface_words
 from playground.lessons.measuring import Number, numbers_of
 from playground.lessons.model import Lesson
-from playground.lessons.pictures import pictures_of
 
 MANIFEST = "book.json"
 PICTURES = "pictures"

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from playground.errors import DataError
+from playground.lessons.bugs import around
 from playground.lessons.excerpt import excerpt
-from playground.lessons.faults import around
 from playground.lessons.library import SOURCE, THESIS, interface_words
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import (

@@ -13,7 +13,8 @@ from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import SketchError, nearest
-from playground.lessons.faults import region
+from playground.lessons.bugs import region
+from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import SOURCE, interface_words
 from playground.lessons.measuring import measured
 from playground.lessons.model import (
@@ -29,11 +30,10 @@ from playground.lessons.model import (
     Steps,
 )
 from playground.lessons.notebook.controls import controls_of, scene_at
-from playground.lessons.pictures import broken, draw
 from playground.lessons.read import read_lesson
 from playground.markup import tag
 from playground.paths import GLSL
-from playground.sketch.reread import with_texts
+from playground.sketch.text_overrides import with_texts
 
 T = TypeVar("T")
 

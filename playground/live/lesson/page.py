@@ -10,13 +10,13 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.lessons.model import Lesson, Words
 from playground.live import theme
-from playground.live.actions import Actions
-from playground.live.lesson.marks import written
+from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.prose import Prose
-from playground.live.lesson.reading import Reading
-from playground.live.lesson.words import words_in
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.lesson.labels import words_in
+from playground.workbench.lesson.reader import Reading
 
 TEXT = theme.TEXT_SIZE + 1.0
 """Of a lesson's text: it is read at length."""

@@ -23,19 +23,19 @@ from playground.lessons.model import (
     Steps,
 )
 from playground.live import theme
-from playground.live.lesson.asking import draw_exercise, draw_measure, draw_prose, draw_question
-from playground.live.lesson.coding import draw_break, draw_code_block
+from playground.live.lesson.code_blocks import draw_break, draw_code_block
+from playground.live.lesson.figure_blocks import draw_compare, draw_figure, draw_slider, draw_steps
 from playground.live.lesson.formulas import Formulas
-from playground.live.lesson.marks import plain, written
+from playground.live.lesson.markdown_runs import plain, written
 from playground.live.lesson.page import Page
-from playground.live.lesson.pictures import draw_compare, draw_figure, draw_slider, draw_steps
-from playground.live.lesson.progress import NARROWEST, WIDEST
 from playground.live.lesson.prose import Prose as Texts
-from playground.live.lesson.reading import Reading
-from playground.live.lesson.ways import follow, play_on
+from playground.live.lesson.questions import draw_exercise, draw_measure, draw_prose, draw_question
 from playground.live.panel_memory import Memory
-from playground.live.rows import fitting
+from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
+from playground.workbench.lesson.links import follow, play_on
+from playground.workbench.lesson.progress import NARROWEST, WIDEST
+from playground.workbench.lesson.reader import Reading
 
 DRAWN: dict[type[Block], Any] = {
     Prose: draw_prose,

@@ -12,8 +12,8 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.lesson.formulas import Formulas
-from playground.live.lesson.lines import Extent, Line, Placed, broken
-from playground.live.lesson.marks import Part, Run, Runs, parts_of, written
+from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
+from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
 from playground.live.theme import Theme
 
 _GAP, _CLOSE = 9.0, 4.0  # between parts, in units of scale 1

@@ -16,10 +16,10 @@ from playground.paths import GLSL, shown
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
-from playground.sketch.reread import with_texts
+from playground.sketch.reserved_names import PLAIN_UNIFORMS
 from playground.sketch.source import read_text
+from playground.sketch.text_overrides import with_texts
 from playground.sketch.wiring import input_names
-from playground.sketch.words import PLAIN_UNIFORMS
 
 _CAMERA = "camera."
 

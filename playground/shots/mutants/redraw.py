@@ -21,12 +21,12 @@ from playground.gpu.context import open_context
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing
 from playground.shots.mutants.model import DoesNotApply
-from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.suite import ShotCase, Taken, take
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
-from playground.sketch.reread import with_texts
 from playground.sketch.source import read_text
+from playground.sketch.text_overrides import with_texts
 
 _SMALL = (96, 54)
 

@@ -16,9 +16,9 @@ from playground.errors import ContextError, SketchError, nearest
 from playground.shots.compare import Comparison, compare
 from playground.shots.judge import Judgement, Seen
 from playground.shots.mutants.breaking import broken
+from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
-from playground.shots.mutants.pictures import FINISHED
-from playground.shots.mutants.rendering import rendering_mutants
+from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.tiers import TIERS, judged
 from playground.shots.suite import ShotCase, Taken, take
 from playground.sketch.model import Shot, Sketch

@@ -17,8 +17,8 @@ from string import Template
 from playground._version import __version__
 from playground.errors import counted
 from playground.markup import Markup, joined, tag
+from playground.shots.page.labels import MEANINGS, meaning
 from playground.shots.page.shot import Setting, can_be_accepted, chip, failure, moment, passed_row, row
-from playground.shots.page.words import MEANINGS, meaning
 from playground.shots.results import Record
 
 _HERE = Path(__file__).resolve().parent

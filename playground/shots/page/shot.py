@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from urllib.parse import quote
 
 from playground.markup import Markup, tag
-from playground.shots.page.words import TIERS, meaning
+from playground.shots.page.labels import TIERS, meaning
 from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
 
 CAPTIONS = {"expected": "Expected", "actual": "Actual", "difference": "Difference ×16", "flip": "FLIP map"}

@@ -1,0 +1,32 @@
+"""Find the textures that an export is made of, and tell what they hold."""
+
+from __future__ import annotations
+
+from playground.capture.extensions import COLOUR, HEIGHT, NUMBERS
+from playground.engine.plan import Plan
+from playground.engine.view_inputs import height_seen
+from playground.errors import SketchError
+
+
+def height_of(plan: Plan) -> str:
+    """Return the heights that the picture shows; raise ``SketchError`` where there are none."""
+    found = height_seen(plan)
+    if not found:
+        there = ", ".join(spec.name for spec in plan.sketch.graph.passes if spec.name != "view")
+        hint = f"; its textures are {there}" if there else ""
+        raise SketchError(f"sketch {plan.sketch.name} has no height to export{hint}")
+    return found
+
+
+def kind_of(plan: Plan, texture: str) -> str:
+    """Return what a texture holds, told by the names of the output and, if it is not named, of the pass."""
+    path, _, output = texture.partition(":")
+    last = path.rpartition(".")[2]
+    outputs = plan.flat.outputs[path]
+    names = [output] if output else [last, last if last in outputs else next(iter(outputs))]
+    for name in names:
+        if name == HEIGHT:
+            return HEIGHT
+        if name in (COLOUR, "light"):
+            return COLOUR
+    return NUMBERS

@@ -1,0 +1,224 @@
+"""Work out what each pass's textures depend on, before anything runs.
+
+A pass is stale when its key changes. The key holds its text without comments, the values
+and given names that the text uses, its size and count of turns, its driver, its files by
+their contents, and the keys of what it reads. Inside a loop, what is fed back has a name
+in place of a key: a loop's key is the same at every turn, so a loop can go on from the
+turn that is kept.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from playground.engine.files import content_hash
+from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
+from playground.sketch.flatten import Fed, Source
+from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import TOWARDS
+from playground.terrain.meshes import mesh_parameters
+
+Form = tuple[Kernel, str]  # which form of a kernel runs, and by which driver
+_MAX_TEXTS = 512
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
+
+
+@dataclass
+class Keys:
+    """The keys of one plan."""
+
+    steps: dict[str, str] = field(default_factory=dict)  # by the step's path
+    raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
+    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the count of turns
+    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, whatever the count of turns
+    step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
+    loop_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a loop
+
+    def changes(self, node: PlanNode) -> frozenset[str]:
+        """Return the paths of the loops around a node whose turns change it."""
+        return self.loop_loops[node.path] if isinstance(node, Turns) else self.step_loops[node.path]
+
+
+class KeyMaker:
+    """Makes the keys of plans; remembers what kernels' texts say.
+
+    ``text`` gives what counts of a kernel's text, ``content`` what tells a file's contents from others.
+    """
+
+    def __init__(
+        self,
+        text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical,
+        content: Callable[[Path], str] = content_hash,
+    ) -> None:
+        self._text = text
+        self._content = content
+        self._texts: dict[int, tuple[Kernel, _Text]] = {}
+
+    def keys_of(
+        self,
+        plan: Plan,
+        form: Callable[[Step], Form],
+        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        continued: frozenset[str],
+    ) -> Keys:
+        """Return the keys of a plan.
+
+        ``form`` chooses what runs, ``given`` says what the engine gives a kernel beside its
+        parameters, ``continued`` are the paths of draws that a later draw goes on from.
+        """
+        made = _Made(self.text_of, self._content, form, given, continued)
+        for node in plan.nodes:
+            made.add(node, "", {}, {})
+        return made.keys
+
+    def text_of(self, kernel: Kernel) -> _Text:
+        """Return what a kernel's text says, worked out once: texts are long, and kernels seldom change."""
+        known = self._texts.get(id(kernel))
+        if known is not None:
+            return known[1]
+        while len(self._texts) >= _MAX_TEXTS:
+            self._texts.pop(next(iter(self._texts)))
+        found = _read_text(kernel, self._text(kernel))
+        self._texts[id(kernel)] = (kernel, found)  # held, so that its identity stays its own
+        return found
+
+
+@dataclass(frozen=True)
+class _Text:
+    """What a kernel's text says of staleness."""
+
+    digest: str
+    used: frozenset[str]  # names that stand in the text besides their declaration, or in its header
+
+
+def _read_text(kernel: Kernel, text: str) -> _Text:
+    counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
+    if kernel.kind == "compute":
+        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
+    header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
+    header += [
+        kernel.samples,
+        kernel.local,
+        kernel.buffers,
+        kernel.overwrites,
+        kernel.aligned,
+        kernel.stages,
+        counts,
+    ]
+    header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
+    used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
+    used |= set(_IDENTIFIER.findall(" ".join(counts)))
+    used |= kernel.source.names & {"iterations"}
+    used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
+    if kernel.kind == "source":
+        used |= {p.name for p in kernel.parameters}
+    if kernel.kind == "draw":
+        used |= set(mesh_parameters(kernel.registry))
+    return _Text(_digest([header, text]), frozenset(used))
+
+
+class _Made:
+    """The keys of one plan, being made."""
+
+    def __init__(
+        self,
+        text_of: Callable[[Kernel], _Text],
+        content: Callable[[Path], str],
+        form: Callable[[Step], Form],
+        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        continued: frozenset[str],
+    ) -> None:
+        self.keys = Keys()
+        self.varies: dict[
+            str, frozenset[str]
+        ] = {}  # loops that a step changes with, as its next reader sees it
+        self.text_of = text_of
+        self.content = content
+        self.form = form
+        self.given = given
+        self.continued = continued
+
+    def add(
+        self, node: PlanNode, loop: str, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
+    ) -> None:
+        """Add a node; ``loop`` is the innermost loop around it, ``fed`` names what loops feed back."""
+        if isinstance(node, Turns):
+            self._loop(node, fed, varying)
+            return
+        kernel, driver = self.form(node)
+        text = self.text_of(kernel)
+        parts: list[Any] = [text.digest, driver, node.size, node.window]
+        for parameter in kernel.parameters:
+            value = node.values[parameter.name]
+            if parameter.widget.kind == "file":
+                path = Path(str(value))
+                parts.append((parameter.name, parameter.sampling, path.suffix, self.content(path)))
+            elif parameter.name in text.used:
+                parts.append((parameter.name, value))
+        parts += [(name, self._source(source, fed)) for name, source in node.inputs]
+        parts += list(self.given(kernel, node).items())
+        if "iterations" in text.used:
+            parts.append(node.whole)
+        if node.path in self.continued:
+            parts.append("continued")
+        self.keys.unfinished[node.path] = _digest([node.path, parts])
+        self.keys.raw[node.path] = self.keys.steps[node.path] = _digest([node.repeat, parts])
+        if node.between is not None:
+            self.keys.steps[node.path] = _digest([self.keys.raw[node.path], *node.between])
+        varies = frozenset[str]().union(*(self._varies(source, varying) for _, source in node.inputs))
+        if loop and kernel.repeat == "1" and kernel.reads("iteration"):
+            varies |= {loop}
+        self.varies[node.path] = self.keys.step_loops[node.path] = varies
+
+    def _loop(self, loop: Turns, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
+        inside = sorted({step.path for step in walk(loop.body)})
+        own = _loops_in(loop)
+        outer: frozenset[str] = frozenset()
+        for source in sources_of(loop):
+            within = source.loop in own if isinstance(source, Fed) else source.path in inside
+            if not within:
+                outer |= self._varies(source, varying)
+        names, changes = dict(fed), dict(varying)
+        for name, _, _ in loop.feedback:
+            names[Fed(loop.path, name)] = f"fed back: {loop.path} {name}"
+            changes[Fed(loop.path, name)] = outer | {loop.path}
+        for node in loop.body:
+            self.add(node, loop.path, names, changes)
+        parts: list[Any] = [loop.path, *(self.keys.steps[path] for path in inside)]
+        parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
+        if any("iterations" in self.text_of(self.form(step)[0]).used for step in walk(loop.body)):
+            parts.append(loop.whole)
+        key = self.keys.loops[loop.path] = _digest(parts)
+        self.keys.loop_loops[loop.path] = outer
+        for path in inside:
+            if loop.path in self.varies[path]:  # what reads it from here on sees the last turn
+                self.keys.steps[path] = _digest([key, path, loop.repeat])
+                self.varies[path] -= {loop.path}
+
+    def _varies(self, source: Source | None, varying: Mapping[Fed, frozenset[str]]) -> frozenset[str]:
+        if source is None:
+            return frozenset()
+        return varying[source] if isinstance(source, Fed) else self.varies[source.path]
+
+    def _source(self, source: Source | None, fed: Mapping[Fed, str]) -> str:
+        if source is None:
+            return ""
+        return fed[source] if isinstance(source, Fed) else f"{self.keys.steps[source.path]}:{source.output}"
+
+
+def _loops_in(loop: Turns) -> set[str]:
+    found = {loop.path}
+    for node in loop.body:
+        if isinstance(node, Turns):
+            found |= _loops_in(node)
+    return found
+
+
+def _digest(parts: object) -> str:
+    return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()

@@ -1,0 +1,202 @@
+"""Choose what a frame takes from the store, and what is worth keeping there.
+
+The camera, the window's size and the time change a sketch's last passes all the time; what
+they read of the land stays. Where that meets is the frontier: of the passes that stay, those
+that are read by one that does not. A reopened sketch takes the frontier from the disk, and
+the passes behind it are not run at all.
+
+Of a pass that stays, two times are weighed: what it took to make, with what it reads made or
+read in turn, and what it would take to read it. It is read where that saves enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.engine.cache import Kept
+from playground.engine.cache_keys import Keys
+from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node, needed, sources_of, walk
+from playground.engine.results import Result
+from playground.gpu.textures import bytes_of
+from playground.sketch.expressions import names_in
+from playground.sketch.flatten import Ref
+
+_PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
+
+
+def passing(
+    plan: Plan, continued: frozenset[str] = frozenset(), painted: Collection[Path] = ()
+) -> frozenset[str]:
+    """Return the paths of the steps and loops of a plan that are never kept.
+
+    What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
+    stopped before its last turn or gone on from by a later draw, or reads a file that is
+    ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
+    """
+    found: set[str] = set()
+    for node in plan.nodes:
+        reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
+        steps = list(walk((node,)))
+        loops = [loop for loop in every_node((node,)) if isinstance(loop, Turns)]
+        own = any(_passes(step, plan, continued) or _reads_one(step, painted) for step in steps)
+        if own or reads & found or any(_stops(loop) for loop in loops):
+            found |= {node.path, *(step.path for step in steps)}
+    return frozenset(found)
+
+
+def _reads_one(step: Step, files: Collection[Path]) -> bool:
+    named = (step.values[p.name] for p in step.kernel.parameters if p.widget.kind == "file")
+    return bool(files) and any(Path(str(value)) in files for value in named)
+
+
+def _stops(loop: Turns) -> bool:
+    by_time = "time" in loop.spec.repeat and "time" in names_in(loop.spec.repeat)
+    return by_time or loop.repeat != loop.whole
+
+
+def _passes(step: Step, plan: Plan, continued: frozenset[str]) -> bool:
+    kernel = step.kernel
+    if kernel.kind.startswith("plain") or step.path in continued or step.window is not None:
+        return True
+    if step.size == plan.frame_size or step.repeat != step.whole:
+        return True
+    if "time" in kernel.repeat and "time" in names_in(kernel.repeat):
+        return True
+    return any(kernel.reads(name) for name in _PASSING)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """How a frame is made."""
+
+    nodes: list[PlanNode]  # to be run, in order
+    taken: dict[str, Result]  # by the step's path: what is kept in memory, or was read
+    skipped: frozenset[str]  # steps that are neither, since nothing that runs reads them
+
+
+def choose(
+    keys: Keys,
+    nodes: Iterable[PlanNode],
+    ref: Ref,
+    held: Callable[[str], Kept | None],
+    read: Callable[[Step], bool],
+    *,
+    skips: bool,
+) -> Chosen:
+    """Choose how to make a texture; ``nodes`` are what it needs, in order.
+
+    ``held(key)`` is what is kept in memory. ``read(step)`` puts what the store keeps of a step there,
+    and says whether it could. ``skips``: what nothing asks for is left out.
+    """
+    known = list(nodes)
+    wanted = {ref.path} if skips else {step.path for step in walk(tuple(known))}
+    run: list[PlanNode] = []
+    taken: dict[str, Result] = {}
+    skipped: set[str] = set()
+    for node in reversed(known):
+        inside = {step.path: step for step in walk((node,))}
+        here = _in_memory(node, keys, held)
+        if here is None:
+            # Of a loop that was read, each step that others read is kept by itself.
+            missing = [step for path, step in inside.items() if path in wanted and not held(keys.steps[path])]
+            if all(read(step) for step in missing):
+                here = {path: found for path in inside if (found := _alone(held(keys.steps[path])))}
+                skipped |= inside.keys() - here.keys() - {step.path for step in missing}
+        if here is not None:
+            taken |= here
+            continue
+        run.append(node)
+        wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+    return Chosen(run[::-1], taken, frozenset(skipped))
+
+
+def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Kept | None]) -> dict[str, Result] | None:
+    """Return what memory keeps of a node, by the step's path; None where it has to be run, or read."""
+    if isinstance(node, Step):
+        found = _alone(held(keys.steps[node.path]))
+        return None if found is None else {node.path: found}
+    kept = held(keys.loops[node.path])
+    if kept is None or kept.turn != node.repeat or not kept.results:
+        return None
+    together = dict(kept.results)
+    for inside in every_node(node.body):
+        if not keys.changes(inside):
+            together |= _in_memory(inside, keys, held) or {}
+    return together
+
+
+def _alone(kept: Kept | None) -> Result | None:
+    return None if kept is None else next(iter(kept.results.values()), None)
+
+
+# ── what is worth keeping ────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class Worth:
+    """A step whose textures are worth keeping."""
+
+    path: str
+    key: str
+    cost: float  # [ms] that it took to make, with all that it reads
+
+
+def worth_keeping(
+    plan: Plan,
+    keys: Keys,
+    ref: Ref,
+    passes: frozenset[str],
+    costs: Mapping[str, float],
+    reading: Callable[[int], float],
+    floor: float,
+) -> list[Worth]:
+    """Return what is worth keeping of a texture's frame: those of the frontier that cost enough.
+
+    ``passes``: as ``passing`` returns them. ``costs`` [ms] of what ran, by the key of the step or the
+    loop; ``reading(bytes)`` [ms]. To read must save at least ``floor`` [ms].
+    """
+    nodes = needed(plan.nodes, ref)
+    home = {step.path: number for number, node in enumerate(nodes) for step in walk((node,))}
+    sources = [_sources(node, number, home) for number, node in enumerate(nodes)]
+    others = {ref.path}.union(*sources)
+    steps = {step.path: step for step in walk(tuple(nodes))}
+    to_read = {path: reading(bytes_in(step)) for path, step in steps.items()}
+    # What must be run or read to have a node by running it, each with its time, by what and which.
+    ways: list[dict[tuple[bool, str], float]] = []
+    wholes: list[dict[str, float]] = []  # what was run for a node, nothing read, each with its time
+    is_read: list[bool] = []
+    for number, node in enumerate(nodes):
+        key = keys.loops[node.path] if isinstance(node, Turns) else keys.steps[node.path]
+        way, whole = {(True, key): costs.get(key, 0.0)}, {key: costs.get(key, 0.0)}
+        for path in sources[number]:
+            before = home[path]
+            whole |= wholes[before]
+            way |= {(False, path): to_read[path]} if is_read[before] else ways[before]
+        ways.append(way)
+        wholes.append(whole)
+        mine = sum(to_read[step.path] for step in walk((node,)) if step.path in others)
+        stays = not any(step.path in passes for step in walk((node,)))
+        is_read.append(stays and sum(way.values()) - mine >= floor)
+    found: list[Worth] = []
+    wanted = {ref.path}
+    for number in reversed(range(len(nodes))):
+        asked = [step.path for step in walk((nodes[number],)) if step.path in wanted]
+        if asked and is_read[number]:
+            cost = sum(wholes[number].values())
+            found += [Worth(path, keys.steps[path], cost) for path in asked]
+        elif asked:
+            wanted |= sources[number]
+    return found[::-1]
+
+
+def bytes_in(step: Step) -> int:
+    """Return the bytes of a step's textures."""
+    return sum(bytes_of(step.size, output.format) for output in step.kernel.outputs)
+
+
+def _sources(node: PlanNode, number: int, home: Mapping[str, int]) -> set[str]:
+    """Return the steps of other nodes that a node reads."""
+    read = {source.path for source in sources_of(node) if isinstance(source, Ref)}
+    return {path for path in read if home[path] != number}

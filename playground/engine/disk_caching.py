@@ -1,0 +1,211 @@
+"""Keep an engine's expensive textures in a store, and take them from there.
+
+What passes cost is measured as they run. Once the land has rested for a moment, the textures
+that are worth it are read back a piece a turn, and the store's own thread writes them: no
+frame waits for either. The next time, an engine with this store reads them and does not run
+the passes at all; a pass in between that is wanted after all, runs then.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import TYPE_CHECKING
+
+from playground.engine.cache import Kept as InMemory
+from playground.engine.cache_keys import Keys
+from playground.engine.disk_cache import Kept, Store
+from playground.engine.disk_cache_choice import choose, passing, worth_keeping
+from playground.engine.execution import Execution
+from playground.engine.plan import Plan, PlanNode, Step, continued, needed
+from playground.engine.results import Result
+from playground.gpu.textures import bytes_of, make_framebuffer
+from playground.sketch.flatten import Ref
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+
+FLOOR = 20.0  # [ms] that reading must save: less is not seen
+RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
+REST = 1.0  # [s] without another piece of land before one is kept
+PIECE = 4 * 2**20  # [bytes] read back in one turn
+_MOST_COSTS = 4096
+
+
+def reading(size: int) -> float:
+    """Return what it takes to read so many bytes from the store [ms]."""
+    return size / RATE
+
+
+class Keeping:
+    """What an engine has to do with a store; ``now`` is a clock in seconds."""
+
+    def __init__(
+        self,
+        store: Store,
+        *,
+        floor: float = FLOOR,
+        rest: float = REST,
+        now: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self.store = store
+        self.floor = floor  # [ms]
+        self.rest = rest  # [s]
+        self.skips = True  # passes whose textures nothing asks for are not run
+        self.skipped: frozenset[str] = frozenset()  # those of the last frame, by path
+        self.reads = 0  # textures of passes read so far
+        self._now = now
+        self._costs: OrderedDict[str, float] = OrderedDict()  # [ms] by the key of the step or the loop
+        self._costed_at = 0.0
+        self._is_new = False  # something was made that nobody has weighed yet
+        self._work: Iterator[None] | None = None
+
+    @property
+    def going(self) -> bool:
+        """Whether textures are being read back."""
+        return self._work is not None
+
+    # ── while a frame is made ────────────────────────────────────────────────
+
+    def begin(
+        self, engine: Engine, execution: Execution, plan: Plan, ref: Ref, goes_on: frozenset[str]
+    ) -> list[PlanNode]:
+        """Read what the store keeps of a texture, have the rest measured, and return what is to be run.
+
+        ``goes_on``: the steps that a later draw goes on from.
+        """
+        passes, keys = passing(plan, goes_on, engine.painted), execution.keys
+
+        def read(step: Step) -> bool:
+            return step.path not in passes and self._take(engine, step, keys.steps[step.path])
+
+        def timed(path: str, key: str) -> AbstractContextManager[None]:
+            return nullcontext() if path in passes else self._timed(engine, key)
+
+        found = choose(keys, needed(plan.nodes, ref), ref, engine.cache.get, read, skips=self.skips)
+        self.skipped = found.skipped
+        execution.results, execution.timed = found.taken, timed
+        return found.nodes
+
+    def would_run(
+        self, engine: Engine, plan: Plan, keys: Keys, ref: Ref, goes_on: frozenset[str]
+    ) -> list[PlanNode]:
+        """Return what ``begin`` would; nothing is read."""
+        passes = passing(plan, goes_on, engine.painted)
+
+        def read(step: Step) -> bool:
+            return step.path not in passes and keys.steps[step.path] in self.store
+
+        peek, nodes = engine.cache.peek, needed(plan.nodes, ref)
+        return choose(keys, nodes, ref, peek, read, skips=self.skips).nodes
+
+    @contextmanager
+    def _timed(self, engine: Engine, key: str) -> Iterator[None]:
+        """Measure what a step or a loop takes; both ends wait for the driver."""
+        engine.ctx.finish()
+        start = self._now()
+        yield
+        engine.ctx.finish()
+        self._costed_at, self._is_new = self._now(), True
+        self._note(key, (self._costed_at - start) * 1e3)
+
+    def _take(self, engine: Engine, step: Step, key: str) -> bool:
+        """Put what the store keeps of a step into the engine's cache."""
+        kept = self.store.read(key)
+        outputs = engine.form_of(step)[0].outputs
+        if kept is None or (kept.size, kept.outputs) != (
+            step.size,
+            tuple((o.name, o.format) for o in outputs),
+        ):
+            return False
+        result = engine.pool.take(step.size, outputs)
+        for output, data in zip(outputs, kept.data, strict=True):
+            result.textures[output.name].write(data, alignment=1)
+        engine.cache.put(key, InMemory({step.path: result}))
+        self._note(key, kept.cost)
+        self.reads += 1
+        return True
+
+    def _note(self, key: str, cost: float) -> None:
+        self._costs[key] = cost
+        self._costs.move_to_end(key)
+        while len(self._costs) > _MOST_COSTS:
+            self._costs.popitem(last=False)
+
+    # ── at rest ──────────────────────────────────────────────────────────────
+
+    def look(self, engine: Engine, plan: Plan) -> float | None:
+        """Do a piece of what is to be done for the frame of a plan; say in how many seconds to come again.
+
+        None: not before another frame has run something.
+        """
+        if self._work is not None:
+            with engine.borrowed():
+                ended = next(self._work, self) is self
+            if not ended:
+                return 0.0
+            self._work = None
+        if not self._is_new:
+            return None
+        left = self._costed_at + self.rest - self._now()
+        if left > 0:
+            return left
+        self._is_new = False
+        if engine.plan is not plan:  # a texture was read since
+            engine.recall(plan)
+        self._work = self._keep_all(engine, plan)
+        return 0.0
+
+    def finish(self, engine: Engine, plan: Plan) -> None:
+        """Do all that is to be done for the frame of a plan, rested or not, and wait until it is written."""
+        self._costed_at -= self.rest
+        while self.look(engine, plan) is not None:
+            pass
+        self.close()
+
+    def close(self) -> None:
+        """Wait until all that was read back is written."""
+        self._work = None
+        self.store.close()
+
+    def _keep_all(self, engine: Engine, plan: Plan) -> Iterator[None]:
+        """Keep what is worth it, a piece at a time; ends early where a texture is gone."""
+        keys, results = engine.keys_of(plan), engine.results
+        ref = next(iter(plan.flat.outputs["view"].values()))
+        passes = passing(plan, continued(plan), engine.painted)
+        for worth in worth_keeping(plan, keys, ref, passes, self._costs, reading, self.floor):
+            result = results.get(worth.path)
+            if result is None or worth.key in self.store:
+                continue
+            size = sum(bytes_of(result.size, o.format) for o in result.outputs)
+            if not self.store.fits(size):
+                continue
+            parts: list[memoryview] = []
+            for output in result.outputs:
+                whole = bytearray(bytes_of(result.size, output.format))
+                row = len(whole) // result.size[1]
+                rows = max(PIECE // row, 1)
+                for south in range(0, result.size[1], rows):
+                    if engine.results is not results and engine.results.get(worth.path) is not result:
+                        self._is_new = True  # another frame was made, and the texture may be another's by now
+                        return
+                    north = min(south + rows, result.size[1])
+                    whole[south * row : north * row] = _read_rows(engine, result, output.name, south, north)
+                    yield
+                parts.append(memoryview(whole).toreadonly())
+            outputs = tuple((o.name, o.format) for o in result.outputs)
+            made_for = f"{plan.sketch.name}: {worth.path}"
+            self.store.keep(worth.key, Kept(result.size, outputs, worth.cost, made_for, tuple(parts)))
+
+
+def _read_rows(engine: Engine, result: Result, output: str, south: int, north: int) -> bytes:
+    """Return rows of a texture in its own kind of number."""
+    texture = result.textures[output]
+    framebuffer = make_framebuffer(engine.ctx, [texture])
+    try:
+        viewport = (0, south, result.size[0], north - south)
+        return framebuffer.read(viewport, texture.components, alignment=1, dtype=texture.dtype)
+    finally:
+        framebuffer.release()

@@ -1,0 +1,62 @@
+"""Say in one hash what a picture is drawn from, the same on every machine and in every year.
+
+It is a pass's key (see ``keys``) with two things smoothed out. A text counts by its tokens, as
+the compiler takes it, so that comments, line ends and spaces say nothing. What the engine works
+out in floating point, the camera's matrices above all, counts to nine digits, since the last
+ones differ between mathematical libraries.
+
+What a file is called and where it lies, and the order of a TOML's tables, say nothing either;
+a number, a size, a wire, the form that runs (a plain text or a fast variant, and by which driver)
+and a byte of an image do. It explains a picture that differs; by itself it fails no comparison, so a
+fast variant that was renewed leaves every reference good whose picture it still draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from playground.engine.cache_keys import Form, KeyMaker
+from playground.engine.plan import Plan, Step
+from playground.sketch.canonical import compiled_text
+from playground.sketch.flatten import Ref
+from playground.sketch.model import Kernel
+
+_DIGITS = 9
+
+
+class Drawn:
+    """Makes the hashes; remembers what kernels' texts say."""
+
+    def __init__(self) -> None:
+        self._keys = KeyMaker(lambda kernel: compiled_text(kernel.source.code))
+
+    def hash_of(
+        self,
+        plan: Plan,
+        ref: Ref,
+        form: Callable[[Step], Form],
+        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        continued: frozenset[str],
+    ) -> str:
+        """Return the hash of what a texture of a plan is made from; arguments as ``KeyMaker`` takes them."""
+
+        def smoothed(kernel: Kernel, step: Step) -> dict[str, Any]:
+            return {name: rounded(value) for name, value in given(kernel, step).items()}
+
+        return self._keys.keys_of(plan, form, smoothed, continued).steps[ref.path]
+
+
+def rounded(value: Any) -> Any:
+    """Return a number, or a tuple of them, to nine digits of the largest; anything else as it is."""
+    if isinstance(value, tuple | list):
+        most = max((abs(float(v)) for v in value), default=0.0)
+        return tuple(_to_digits(float(v), most) for v in value)
+    return _to_digits(value, abs(value)) if isinstance(value, float) else value
+
+
+def _to_digits(value: float, most: float) -> str:
+    if most == 0.0:
+        return "0"
+    share = round(value / most, _DIGITS) + 0.0  # no -0.0
+    return f"{share:.{_DIGITS}f} of {most:.{_DIGITS}g}"

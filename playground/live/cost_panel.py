@@ -1,0 +1,122 @@
+"""What the pictures cost: milliseconds of each pass over time, texels, triangles, compiling.
+
+Folded at first. While it is folded or off the screen nothing is timed and nothing kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui, implot
+
+from playground.live import theme
+from playground.live.inspect import plots
+from playground.live.panel_rows import fitting
+from playground.live.theme import Theme
+from playground.sketch.model import Sketch
+from playground.sketch.variants import any_variants
+from playground.workbench.actions import Actions
+from playground.workbench.inspect.frame_costs import Record
+
+_MOST = 6  # passes with a line of their own
+_HIGH = 110.0  # of a plot
+
+
+def draw_costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
+    """Draw the plots, then the table of what ran, how often and how long."""
+    session, engine = actions.session, actions.session.engine
+    imgui.spacing()
+    with look.font(look.bold):
+        opened = imgui.collapsing_header("Cost###costs")
+    if not opened:
+        return
+    actions.see.costs_shown = True
+    record = actions.see.record
+    imgui.text_disabled(f"by {engine.clock}")
+    imgui.set_item_tooltip(
+        "By the wall clock each pass waits for the one before, so pictures take a little longer"
+    )
+    if record.pictures:
+        _plots(record, look)
+    paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
+    if any_variants(sketch.graph):
+        changed, plain = imgui.checkbox("Plain form", session.plain)
+        imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
+        if changed:
+            session.run_plain(plain)
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+    if imgui.begin_table("costs", 3, flags):
+        for path in paths:
+            imgui.table_next_row()
+            imgui.table_next_column()
+            ran = path in engine.ran
+            imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
+            imgui.table_next_column()
+            imgui.text_disabled(f"{engine.runs[path]} ×")
+            imgui.table_next_column()
+            spent = session.times.get(path)
+            imgui.text("" if spent is None else f"{spent:.2f} ms")
+        imgui.end_table()
+    compiled = session.last_reload
+    if compiled is not None:
+        imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms")
+        if compiled.trial:
+            imgui.same_line(0, 0)
+            imgui.text_disabled(f", {compiled.trial * 1e3:.0f} of them the trial")
+    _compiling(engine.runner.compile_times)
+
+
+def _plots(record: Record, look: Theme) -> None:
+    """Draw each dear pass over the last pictures, and what was computed and drawn for them."""
+    plots.begin()
+    size = ImVec2(-1, _HIGH * look.scale)
+    axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
+    held = len(record.whole.values)
+    across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
+    dear = record.dearest(_MOST)
+    implot.push_style_var(implot.StyleVar_.plot_padding, ImVec2(4, 4))
+    if implot.begin_plot("##ms", size, plots.PLAIN | implot.Flags_.no_legend.value):
+        implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
+        implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
+        for number, path in enumerate(dear):
+            implot.plot_line(path, across, record.passes[path].values.copy(), plots.line(number))
+        implot.end_plot()
+    implot.pop_style_var()
+    draw, side = imgui.get_window_draw_list(), imgui.get_font_size() * 0.6
+    for number, path in enumerate(dear):
+        values = record.passes[path].values
+        corner = imgui.get_cursor_screen_pos()
+        top = corner.y + (imgui.get_font_size() - side) / 2
+        colour = theme.packed(plots.COLOURS[number % len(plots.COLOURS)])
+        draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
+        text = f"{path}  {values.mean():.2f} ms, most {values.max():.2f}"
+        imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
+    whole = record.whole.values
+    imgui.text_disabled(f"in all {whole[-1]:.1f} ms; median of {held}: {np.median(whole):.1f} ms")
+    for name, ring in (("texels computed", record.texels), ("triangles drawn", record.triangles)):
+        imgui.plot_lines(
+            f"##{name}",
+            ring.values.astype(np.float32),
+            overlay_text=f"{ring.values[-1]:,.0f} {name}",
+            scale_min=0.0,
+            graph_size=ImVec2(-1, 2.2 * imgui.get_font_size()),
+        )
+
+
+def _compiling(times: Mapping[str, float]) -> None:
+    """Draw how long the programs took that the driver compiled, dearest first."""
+    if not times or not imgui.tree_node_ex(f"Compiling: {sum(times.values()):.0f} ms###compiling"):
+        return
+    if imgui.begin_table("compiled", 2, imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop):
+        for path, spent in sorted(times.items(), key=lambda item: -item[1]):
+            imgui.table_next_row()
+            imgui.table_next_column()
+            imgui.text_unformatted(Path(path).name)
+            imgui.set_item_tooltip(path)
+            imgui.table_next_column()
+            imgui.text(f"{spent:.1f} ms")
+        imgui.end_table()
+    imgui.tree_pop()

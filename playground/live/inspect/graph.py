@@ -1,0 +1,146 @@
+"""The window of the passes as a graph: thumbnails, runs, times; a click shows a texture from above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.errors import counted
+from playground.live import theme
+from playground.live.overlay import Area
+from playground.live.panel_rows import fitting
+from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.inspect.pass_graph import Wiring
+from playground.workbench.inspect.toggles import Graph
+
+_THUMB = 84.0
+_WIDE, _GAP_X, _GAP_Y = 108.0, 46.0, 16.0
+
+
+@dataclass
+class _Drawing:
+    """What every node of one turn needs."""
+
+    wiring: Wiring
+    actions: Actions
+    look: Theme
+    origin: ImVec2
+    high: float = 0.0
+    boxes: dict[str, tuple[float, float]] = field(default_factory=dict)  # each node's corner
+
+
+def draw_graph(actions: Actions, look: Theme, area: Area) -> None:
+    """Draw it while it is asked for."""
+    graph, sketch = actions.see.graph, actions.session.sketch
+    if not graph.on or sketch is None:
+        return
+    x, y, wide, high = area
+    scale, margin = look.scale, 30 * look.scale
+    imgui.set_next_window_pos(ImVec2(x + margin, y + margin), imgui.Cond_.appearing)
+    size = ImVec2(max(wide - 2 * margin, 200.0), max(min(0.62 * high, high - 2 * margin), 160.0))
+    imgui.set_next_window_size(size, imgui.Cond_.appearing)
+    flags = imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
+    flags |= imgui.WindowFlags_.horizontal_scrollbar | imgui.WindowFlags_.no_nav_inputs
+    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.95))
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 8 * scale)
+    visible, stays = imgui.begin("Passes###graph", True, flags)
+    graph.on = bool(stays)
+    if visible:
+        wiring = graph.wiring(sketch)
+        _switches(graph, actions)
+        corner = imgui.get_cursor_screen_pos()
+        lines = 3 if actions.session.engine.profiling else 2
+        drawing = _Drawing(
+            wiring, actions, look, corner, (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
+        )
+        _nodes(drawing)
+    imgui.end()
+    imgui.pop_style_var()
+    imgui.pop_style_color()
+
+
+def _switches(graph: Graph, actions: Actions) -> None:
+    _, graph.inner = imgui.checkbox("Inside techniques", graph.inner)
+    imgui.same_line()
+    _, graph.timed = imgui.checkbox("Time each pass", graph.timed)
+    if graph.timed:
+        actions.see.costs_shown = True
+    imgui.same_line()
+    imgui.text_disabled("a click shows a texture from above")
+
+
+def _nodes(drawing: _Drawing) -> None:
+    wiring, scale, origin = drawing.wiring, drawing.look.scale, drawing.origin
+    step = (_WIDE + _GAP_X) * scale, drawing.high + _GAP_Y * scale
+    for node, (column, row) in wiring.places.items():
+        drawing.boxes[node] = origin.x + column * step[0], origin.y + row * step[1]
+    draw = imgui.get_window_draw_list()
+    for giver, reader in wiring.edges:
+        (x0, y0), (x1, y1) = drawing.boxes[giver], drawing.boxes[reader]
+        start = ImVec2(x0 + _WIDE * scale, y0 + drawing.high / 2)
+        end, bend = ImVec2(x1, y1 + drawing.high / 2), _GAP_X * scale
+        first, second = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
+        draw.add_bezier_cubic(start, first, second, end, theme.packed(theme.LINE), 2 * scale)
+        draw.add_circle_filled(end, 3 * scale, theme.packed(theme.DIM))
+    for node, ref in wiring.refs.items():
+        _node(node, ref, drawing)
+
+
+def _node(node: str, ref: str, drawing: _Drawing) -> None:
+    actions, scale = drawing.actions, drawing.look.scale
+    session, thumbnails = actions.session, actions.see.graph.thumbnails
+    x, y = drawing.boxes[node]
+    corner, far = ImVec2(x, y), ImVec2(x + _WIDE * scale, y + drawing.high)
+    imgui.set_cursor_screen_pos(corner)
+    is_view = node.partition(".")[0] == "view"
+    if imgui.invisible_button(f"node {node}", ImVec2(far.x - x, far.y - y)):
+        actions.show(None if is_view else ref)
+    hovered = imgui.is_item_hovered()
+    if hovered:
+        imgui.set_tooltip(_told(node, actions))
+    shown = session.map.ref == ref if session.map is not None else node == "view"
+    draw = imgui.get_window_draw_list()
+    draw.add_rect_filled(corner, far, theme.packed(theme.RAISED if hovered else theme.FIELD), 6 * scale)
+    if shown:
+        draw.add_rect(corner, far, theme.packed(theme.ACCENT), 6 * scale, 2 * scale)
+    left, top = x + (_WIDE - _THUMB) / 2 * scale, y + 6 * scale
+    low, high = ImVec2(left, top), ImVec2(left + _THUMB * scale, top + _THUMB * scale)
+    texture = thumbnails.get(ref)
+    if texture is None:
+        draw.add_rect(low, high, theme.packed(theme.LINE))
+    else:
+        dim = 1.0 if thumbnails.is_current(ref) else 0.45  # of another picture than the last
+        tint = theme.packed((1.0, 1.0, 1.0), dim)
+        draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
+    mine = [path for path in session.engine.runs if path == node or path.startswith(f"{node}.")]
+    ran = any(path in mine for path in session.engine.ran)
+    lines = [(node, theme.INK), (counted(sum(session.engine.runs[p] for p in mine), "run"), theme.DIM)]
+    if ran:
+        lines[1] = lines[1][0], theme.ACCENT
+    if session.engine.profiling:
+        spent = [session.times[path] for path in mine if path in session.times]
+        lines.append((f"{sum(spent):.2f} ms" if spent else "", theme.DIM))
+    line = imgui.get_text_line_height()
+    for number, (text, ink) in enumerate(lines):
+        text = fitting(text, (_WIDE - 8) * scale)
+        across = x + (_WIDE * scale - imgui.calc_text_size(text).x) / 2
+        draw.add_text(ImVec2(across, high.y + number * line), theme.packed(ink), text)
+
+
+def _told(node: str, actions: Actions) -> str:
+    """Return what a node's tooltip says: its technique, its texture's size and format."""
+    session = actions.session
+    plan = session.plan
+    lines = [node]
+    spec = plan.flat.specs.get(node) if plan is not None else None
+    if spec is not None:
+        lines.append(spec.use)
+    if plan is not None and spec is not None:
+        for output, ref in plan.flat.outputs[node].items():
+            step = plan.step(ref.path)
+            if step is not None:
+                form = next((o.format for o in step.kernel.outputs if o.name == ref.output), "")
+                lines.append(f"{output}  {step.size[0]} x {step.size[1]} {form}")
+    return "\n".join(lines)

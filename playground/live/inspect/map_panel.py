@@ -1,0 +1,166 @@
+"""The panel's part about a map: its legend with units, how its numbers are spread."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
+
+from playground.live import theme
+from playground.live.inspect import plots
+from playground.live.panel_rows import fitting
+from playground.live.theme import Theme
+from playground.sketch.map_sketch import Map
+from playground.workbench.actions import Actions
+from playground.workbench.inspect.histogram import BINS, Histogram
+from playground.workbench.inspect.legend import STEPS, ends_of, ticks
+
+_HIGH = 120.0
+_CHANNELS = ("red", "green", "blue", "alpha")
+_INKS = ((0.95, 0.42, 0.38), (0.45, 0.80, 0.45), (0.45, 0.62, 0.98), (0.75, 0.75, 0.75))
+_SHARE = 0.02
+
+
+def draw_spread(actions: Actions, look: Theme) -> None:
+    """Draw it where a map is shown."""
+    session = actions.session
+    if session.map is None:
+        return
+    if session.map.value("channel") != 0:
+        _legend(session.map, actions, look)
+    if not imgui.tree_node_ex("Histogram###histogram"):
+        return
+    actions.see.spread_shown = True
+    found = actions.see.counter.latest
+    if found is None:
+        imgui.text_disabled("counting …")
+    else:
+        _plot(found, actions, look)
+        _table(found)
+        if not found.whole:
+            imgui.text_disabled(fitting(f"of {found.read:,} texels, whole rows of it", 300 * look.scale))
+        if not actions.see.counter.fresh:
+            imgui.text_disabled("of a moment ago; counting anew …")
+        _ranges(found, session.map, actions)
+    imgui.tree_pop()
+
+
+def metres_of(actions: Actions) -> float | None:
+    """Return how many metres the map's number 1 is, where it shows heights; None elsewhere."""
+    session = actions.session
+    if session.map is None or session.plan is None or session.map.ref.partition(":")[2] != "height":
+        return None
+    return session.plan.land.relief
+
+
+def _legend(shown: Map, actions: Actions, look: Theme) -> None:
+    """Draw the ramp's colours with round numbers under them, metres where heights are shown."""
+    ramp = shown.value("ramp")
+    colours = actions.see.colours(int(ramp) if isinstance(ramp, int) else 0)
+    low, high = ends_of(shown)
+    metres = metres_of(actions)
+    unit, factor = (" m", metres) if metres is not None else ("", 1.0)
+    corner, wide = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
+    bar, line = 12 * look.scale, imgui.get_text_line_height()
+    imgui.invisible_button("##legend", ImVec2(wide, bar + line + 4 * look.scale))
+    draw = imgui.get_window_draw_list()
+    for step, colour in enumerate(colours):
+        # Each goes to the end, under the next, so that no seam is seen.
+        start, end = ImVec2(corner.x + wide * step / STEPS, corner.y), ImVec2(corner.x + wide, corner.y + bar)
+        draw.add_rect_filled(start, end, theme.packed(colour))
+    if high == low:
+        return
+    marks = ticks(low * factor, high * factor)
+    for which, mark in enumerate(marks):
+        x = corner.x + wide * (mark / factor - low) / (high - low) if factor else corner.x
+        draw.add_line(
+            ImVec2(x, corner.y + bar), ImVec2(x, corner.y + bar + 3 * look.scale), theme.packed(theme.INK)
+        )
+        text = f"{mark:g}{unit if which == len(marks) - 1 else ''}"
+        size = imgui.calc_text_size(text).x
+        left = min(max(x - size / 2, corner.x), corner.x + wide - size)
+        draw.add_text(ImVec2(left, corner.y + bar + 3 * look.scale), theme.packed(theme.DIM), text)
+    if imgui.is_item_hovered():
+        share = (imgui.get_io().mouse_pos.x - corner.x) / wide
+        number = low + share * (high - low)
+        imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
+
+
+def _plot(found: Histogram, actions: Actions, look: Theme) -> None:
+    plots.begin()
+    shown = actions.session.map
+    assert shown is not None
+    _, logarithmic = imgui.checkbox("Logarithmic", actions.see.logarithmic)
+    actions.see.logarithmic = logarithmic
+    span = found.high - found.low
+    edges = found.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
+    tallest = max(int(channel.bins.max()) for channel in found.channels)
+    implot.push_style_var(implot.StyleVar_.plot_padding, ImVec2(4, 4))
+    flags = plots.PLAIN | implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
+    if implot.begin_plot("##spread", ImVec2(-1, _HIGH * look.scale), flags):
+        locked = implot.AxisFlags_.lock.value
+        implot.setup_axes("", "", locked, locked | implot.AxisFlags_.no_tick_labels.value)
+        implot.setup_axis_limits(implot.ImAxis_.x1, found.low, found.low + (span or 1.0), imgui.Cond_.always)
+        if logarithmic:
+            implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+        floor = 0.5 if logarithmic else 0.0
+        top = 1.3 * tallest if logarithmic else 1.05 * tallest
+        implot.setup_axis_limits(implot.ImAxis_.y1, floor, max(top, 1.0), imgui.Cond_.always)
+        for number, channel in enumerate(found.channels):
+            spec = implot.Spec()
+            alone = len(found.channels) == 1
+            ink = ImVec4(*(theme.INK if alone else _INKS[number]), 1.0)
+            spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
+            heights = np.maximum(channel.bins.astype(np.float64), floor)
+            implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
+            implot.plot_shaded(_CHANNELS[number], edges, heights, floor, spec)
+        limits = plots.line(0, 1.0)
+        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), limits)
+        implot.end_plot()
+    implot.pop_style_var()
+
+
+def _table(found: Histogram) -> None:
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+    if not imgui.begin_table("spread", 5, flags):
+        return
+    for title in ("", "least", "greatest", "mean", "deviation"):
+        imgui.table_next_column()
+        imgui.text_disabled(title)
+    for number, channel in enumerate(found.channels):
+        imgui.table_next_row()
+        imgui.table_next_column()
+        imgui.text_colored(theme.colour(_INKS[number]), _CHANNELS[number])
+        for value in (channel.lowest, channel.highest, channel.mean, channel.deviation):
+            imgui.table_next_column()
+            imgui.text_unformatted("none" if math.isnan(value) else f"{value:.4g}")
+    imgui.end_table()
+    for number, channel in enumerate(found.channels):
+        if channel.nans or channel.infinities:
+            text = f"{_CHANNELS[number]}: {channel.nans:,} NaN, {channel.infinities:,} infinite"
+            imgui.text_colored(theme.colour(theme.ALARM), text)
+
+
+def _ranges(found: Histogram, shown: Map, actions: Actions) -> None:
+    """Draw what sets the map's range from the numbers."""
+    channel = shown.value("channel")
+    which = max(int(channel) - 1, 0) if isinstance(channel, int) else 0
+    if which >= len(found.channels) or not found.channels[which].count:
+        return
+    mine = found.channels[which]
+    wanted: tuple[float, float] | None = None
+    if imgui.button("All of it"):
+        wanted = mine.lowest, mine.highest
+    imgui.set_item_tooltip("The map's range from the least to the greatest number")
+    imgui.same_line()
+    if imgui.button("All but outliers"):
+        wanted = found.between(which, _SHARE)
+    imgui.set_item_tooltip("Without the least and the greatest 2 in 100")
+    imgui.same_line()
+    if imgui.button("Around the mean"):
+        actions.session.set_map("middle", mine.mean)
+    imgui.set_item_tooltip('The middle of "cool and warm" is the mean')
+    if wanted is not None and wanted[0] < wanted[1]:
+        for name, value in zip(("lowest", "highest"), wanted, strict=True):
+            actions.session.set_map(name, value)

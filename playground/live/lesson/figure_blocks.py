@@ -1,0 +1,163 @@
+"""Blocks that are pictures: each draws its buttons and sliders, and the live view shows the picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from playground.errors import ParameterError
+from playground.lessons.model import Compare, Figure, Slider, Steps
+from playground.live import theme
+from playground.live.lesson.page import Page
+from playground.live.parameter_row import draw_menu, draw_parameter
+from playground.live.sliders import slide_whole
+from playground.sketch.assign import resolve
+from playground.sketch.values import write
+from playground.workbench.lesson.figure_state import path_of
+from playground.workbench.lesson.figure_view import comparable
+from playground.workbench.lesson.reader import BOTH
+from playground.workbench.parameter_list import Item
+
+_ON, _OFF = theme.ACCENT, theme.LINE
+
+
+def draw_figure(block: Figure, page: Page) -> None:
+    """Draw a figure: its caption, and what may be dragged."""
+    with page.frame(block.name, _bar(page, block)):
+        _show(block, page)
+        _parameters(block, block.sliders, page)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
+def draw_steps(block: Steps, page: Page) -> None:
+    """Draw the turns of a repeated kernel: a slider over them, and buttons to play them."""
+    reading, last = page.reading, len(block.scenes) - 1
+    at = min(reading.at.get(block.name, 0), last)
+    with page.frame(block.name, _bar(page, block)):
+        _player(block, page, at, last)
+        imgui.set_next_item_width(-1)
+        chosen = slide_whole(
+            "##turns", at, (0, last), lambda n: page.say("turn", block.turns[n], block.turns[-1])
+        )
+        if chosen is not None:
+            reading.playing = ""
+            reading.move(block, chosen)
+        if block.captions:
+            page.text(block.captions[at], size=theme.SMALL)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
+def draw_slider(block: Slider, page: Page) -> None:
+    """Draw one parameter that is swept: its own widget, and a button that plays."""
+    reading, last = page.reading, len(block.scenes) - 1
+    at = min(reading.at.get(block.name, 0), last)
+    with page.frame(block.name, _bar(page, block)):
+        _player(block, page, at, last)
+        if reading.is_on(block):
+            _parameters(block, (block.parameter,), page)
+        else:
+            imgui.set_next_item_width(-1)
+            chosen = slide_whole("##values", at, (0, last), lambda n: _named(block, n))
+            if chosen is not None:
+                reading.move(block, chosen)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
+def draw_compare(block: Compare, page: Page) -> None:
+    """Draw a choice of variants; two of them can be seen at once, parted by a line."""
+    reading = page.reading
+    on = reading.at.get(block.name) if reading.is_on(block) else None
+    with page.frame(block.name, _bar(page, block)):
+        first = True
+        if len(block.scenes) == 2 and comparable(*block.scenes):
+            first = False
+            note = f"A: {block.labels[0]}\nB: {block.labels[1]}"
+            if page.button(page.say("both"), note, on=on == BOTH):
+                reading.choose(block, BOTH)
+        for index, label in enumerate(block.labels):
+            if not first:
+                page.beside(label)
+            first = False
+            if page.button(f"{label}##{index}", block.alt, on=on == index):
+                reading.choose(block, index)
+        if on == BOTH:
+            page.text(f"A: {block.labels[0]} | B: {block.labels[1]}", size=theme.SMALL)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
+def _show(block: Figure, page: Page) -> None:
+    reading = page.reading
+    on = reading.is_on(block)
+    shows = page.say("show" if not on else "coming" if reading.stage.busy else "on_view")
+    if page.button(shows, block.alt or page.say("show_note"), on=on) and not on:
+        reading.show(block)
+    if on and reading.stage.changed:
+        imgui.same_line()
+        if page.button(page.say("reset"), page.say("reset_note")):
+            reading.reset(block)
+
+
+def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
+    """Draw buttons that go through a series."""
+    reading, on = page.reading, page.reading.is_on(block)
+    if not on:
+        if page.button(page.say("show"), block.alt):
+            reading.show(block)
+        imgui.same_line()
+    playing = reading.playing == block.name
+    for label, by in (("<", -1), (page.say("rest" if playing else "play"), 0), (">", 1)):
+        if by >= 0:
+            imgui.same_line()
+        if page.button(label, "" if by else block.alt, on=playing and not by, enabled=0 <= at + by <= last):
+            if by:
+                reading.playing = ""
+                reading.move(block, at + by)
+            else:
+                reading.play_or_rest(block)
+    if on and reading.stage.changed and isinstance(block, Slider):
+        imgui.same_line()
+        if page.button(page.say("reset"), page.say("reset_note")):
+            reading.reset(block)
+
+
+def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> None:
+    """Draw parameters of the picture in view, as the panel draws them."""
+    actions, draft = page.actions, page.actions.session.shown
+    scene = block.scene if isinstance(block, Figure) else block.scenes[0]
+    if not paths or scene is None or draft is None or not page.reading.is_on(block):
+        return
+    if actions.session.path != path_of(scene) or page.reading.stage.busy:
+        return
+    listing = page.memory.listing
+    items = {item.leaf: item for section in listing.sections(draft) for item in section.items}
+    values = listing.values(draft)
+    for path in paths:
+        item = _item(path, items, page)
+        if item is None:
+            continue
+        draw_parameter(item, values, Path(draft.sketch.folder), page.memory, actions, page.look)
+    if actions.session.shown is not draft:
+        page.reading.playing = ""
+    if page.memory.menu:
+        draw_menu({item.label: item for item in items.values()}, values, page.memory, actions)
+
+
+def _item(path: str, items: dict[str, Item], page: Page) -> Item | None:
+    draft = page.actions.session.shown
+    assert draft is not None
+    try:
+        leaf = resolve(draft.base.graph, path)[0].path
+    except ParameterError:
+        return None
+    return items.get(leaf)
+
+
+def _named(block: Slider, at: int) -> str:
+    """Return a value of a sweep, with the name of what it is of."""
+    parameter = resolve(block.scenes[at].sketch.graph, block.parameter)[0].parameter
+    return f"{block.label or parameter.title}: {write(parameter, block.values[at])}"
+
+
+def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> tuple[float, float, float]:
+    return _ON if page.reading.is_on(block) else _OFF

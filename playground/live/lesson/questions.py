@@ -1,0 +1,98 @@
+"""Blocks that ask or tell: questions, exercises, numbers, prose."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from playground.lessons.measuring import named_in
+from playground.lessons.model import Exercise, Measure, Prose, Question
+from playground.live import theme
+from playground.live.lesson.markdown_runs import plain
+from playground.live.lesson.page import Page
+
+
+def draw_prose(block: Prose, page: Page) -> None:
+    """Draw a paragraph, a list, a table, a formula."""
+    words = f"{'#' * block.level} {block.words}" if block.kind == "heading" else block.words
+    page.text(words)
+
+
+def draw_question(block: Question, page: Page) -> None:
+    """Draw a question; its answer waits behind a button."""
+    reading = page.reading
+    with page.frame(block.name, theme.WARM):
+        page.label(page.say("question"), theme.WARM)
+        page.text(block.ask)
+        chosen = reading.chosen.get(block.name, -1)
+        for index, choice in enumerate(block.choices):
+            _choice(block, index, choice, chosen, page)
+        right = bool(block.choices) and chosen == block.right
+        if chosen >= 0:
+            page.text(page.say("right" if right else "wrong"))
+        if right:
+            page.text(block.answer)
+        else:
+            _behind(block.name, "answer", block.answer, page)
+
+
+def draw_exercise(block: Exercise, page: Page) -> None:
+    """Draw an exercise; hint and solution wait behind buttons."""
+    reading = page.reading
+    with page.frame(block.name, theme.WARM):
+        page.label(page.say("exercise"), theme.WARM)
+        page.text(block.ask)
+        if block.hint:
+            _behind(block.name, "hint", block.hint, page)
+            page.beside(page.say("solution"))
+        _behind(block.name, "solution", block.solution, page)
+        if (block.name, "solution") in reading.shown and block.scene is not None:
+            if page.button(page.say("solution_picture"), block.alt, on=reading.is_on(block)):
+                reading.show(block)
+
+
+def draw_measure(block: Measure, page: Page) -> None:
+    """Draw a number that is computed here and now, in its sentence where it has one."""
+    reading = page.reading
+    failed = reading.numbers.failed.get((page.lesson.name, block.name))
+    if not block.words and failed is None:
+        return  # it stands in the prose
+    with page.frame(block.name, theme.LINE):
+        waits = any(reading.numbers.waits(page.lesson, name) for name in named_in(block.words))
+        page.label(page.say("measuring") if waits else page.say("measured"))
+        if failed is not None:
+            page.text(page.say("unmeasured", failed), size=theme.SMALL, dim=True)
+        page.text(block.words)
+
+
+def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -> None:
+    """Draw one of several answers, as wide as the page."""
+    on = chosen == index
+    imgui.push_id(index)
+    if on:
+        good = index == block.right
+        imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if good else theme.ALARM))
+    marked = imgui.radio_button("##choice", on)
+    imgui.same_line()
+    if on:
+        imgui.pop_style_color()
+    imgui.begin_group()
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + imgui.get_style().frame_padding.y / 2)
+    page.text(choice)
+    imgui.end_group()
+    if marked or imgui.is_item_clicked(0):
+        page.reading.chosen[block.name] = index
+    imgui.pop_id()
+    if imgui.is_item_hovered():
+        imgui.set_tooltip(plain(choice))
+
+
+def _behind(name: str, what: str, words: str, page: Page) -> None:
+    """Draw a button, and what it uncovers."""
+    shown, key = page.reading.shown, (name, what)
+    if key not in shown:
+        if page.button(page.say(what)):
+            shown.add(key)
+        return
+    page.text(words)
+    if page.button(f"{page.say('hide')}##{what}"):
+        shown.discard(key)

@@ -1,0 +1,114 @@
+"""What the mouse does over the picture: it turns the land or the sun, moves a divider, or paints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.live import theme
+from playground.live.dividers import divider_at, moved
+from playground.live.overlay import Area
+from playground.workbench.camera_drag import Gesture
+from playground.workbench.framing import moved as moved_by
+from playground.workbench.painting import Painting
+from playground.workbench.session import Session
+
+_ROUND = 48  # corners of the circle that shows a brush
+
+
+@dataclass
+class Hand:
+    """The mouse, and what it holds."""
+
+    session: Session
+    painting: Painting
+    divider: str = ""  # the line that is held
+    on_divider: bool = False  # the mouse is on a line
+    strokes: bool = False  # it paints
+
+    def act(self, area: Area, density: float) -> None:
+        """Do what the mouse says over the picture, unless it is the panel's."""
+        io, session = imgui.get_io(), self.session
+        if self.strokes and not imgui.is_mouse_down(0):
+            self.painting.release()
+            self.strokes = False
+        if io.want_capture_mouse or session.plan is None or session.sketch is None:
+            return
+        left, right = _dragged(0), _dragged(1)
+        if io.key_ctrl:
+            if left and (io.mouse_delta.x or io.mouse_delta.y):
+                session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
+            return
+        if self._divide(io.mouse_pos.x - area[0], area[2]) or (not io.key_shift and self._paint(area)):
+            left = False
+        gesture = Gesture(
+            height=area[3],
+            across=io.mouse_delta.x,
+            down=io.mouse_delta.y,
+            wheel=io.mouse_wheel,
+            orbiting=left and not io.key_shift,
+            panning=right or (left and io.key_shift),
+        )
+        if gesture.acts and session.orbits:
+            by_hand = session.shown is not None and session.shown.edits.camera is not None
+            # Keyframes move the camera; a drag begins where it stood in the picture that is seen.
+            plan, sketch = session.plan, session.sketch
+            camera = sketch.camera if by_hand else sketch.at(plan.time).camera
+            session.look(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
+        if imgui.is_mouse_down(0):
+            gone = imgui.get_mouse_drag_delta(0, 0.0)
+            x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
+            session.point((x, y, x - gone.x * density, y + gone.y * density))
+
+    def _divide(self, across: float, width: float) -> bool:
+        """Move the line that is held, or take hold of the one under the mouse; say whether one is held."""
+        session = self.session
+        if session.map is not None or session.sketch is None:
+            return False
+        if imgui.is_mouse_clicked(0):
+            self.divider = divider_at(session.sketch, across, width)
+        elif not imgui.is_mouse_down(0) and not imgui.is_mouse_released(0):
+            self.divider = ""
+        motion = imgui.get_io().mouse_delta
+        if self.divider and motion.x:
+            session.set(self.divider, moved(across, width))
+        if motion.x or motion.y:
+            self.on_divider = bool(self.divider or divider_at(session.sketch, across, width))
+        if self.on_divider:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        return bool(self.divider)
+
+    def _paint(self, area: Area) -> bool:
+        """Paint where the left button is down, and show the brush; say whether the button is the brush's."""
+        painting, io = self.painting, imgui.get_io()
+        if not painting.on or not self.session.orbits:
+            return False
+        place = (io.mouse_pos.x - area[0]) / area[2], 1 - (io.mouse_pos.y - area[1]) / area[3]
+        if imgui.is_mouse_clicked(0):
+            self.strokes = True
+            painting.press(place)
+        elif self.strokes and (io.mouse_delta.x or io.mouse_delta.y):
+            painting.move(place)
+        self._show_brush(place, area)
+        return self.strokes
+
+    def _show_brush(self, place: tuple[float, float], area: Area) -> None:
+        """Draw the circle that the brush covers, as it lies on the land."""
+        corners: list[ImVec2 | tuple[int | float, int | float] | list[int | float]] = [
+            ImVec2(area[0] + x * area[2], area[1] + (1 - y) * area[3])
+            for x, y in self.painting.outline(place, _ROUND)
+        ]
+        if corners:
+            draw = imgui.get_background_draw_list()
+            draw.add_polyline(corners, theme.packed(theme.WARM), 2, imgui.ImDrawFlags_.closed)
+
+
+def _dragged(button: int) -> bool:
+    """Say whether the mouse's way since the last turn was a drag.
+
+    The way to where a button went down is none; the way to where it came up is one.
+    """
+    return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(
+        button
+    )

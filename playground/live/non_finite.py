@@ -1,0 +1,72 @@
+"""Show over the picture which pass made the first number that is not finite, and lead to its texture."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.engine.non_finite import NotFinite
+from playground.live import theme
+from playground.live.theme import Theme
+from playground.workbench.actions import Actions
+from playground.workbench.non_finite import FiniteWatch, said
+
+_MAGENTA = (1.0, 0.42, 1.0)  # readable on dark ground; the texels themselves are as the map has them
+_RING = 14.0  # [units of scale 1] radius of the mark around the first texel
+
+Area = tuple[float, float, float, float]  # x, y from above, width, height, in the window's units
+
+
+def ref_of(first: NotFinite) -> str:
+    """Return the texture that it is in, as a map takes it."""
+    return f"{first.path}:{first.output}"
+
+
+def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
+    """Return where a map over an area shows the first texel, in the window's units, y from above."""
+    x, y, wide, high = area
+    across, up = first.size
+    worst = max(across / wide, up / high)
+    east = (first.texel[0] + 0.5 - across / 2) / worst + wide / 2
+    north = (first.texel[1] + 0.5 - up / 2) / worst + high / 2
+    return x + east, y + high - north
+
+
+def draw_not_finite(watch: FiniteWatch, actions: Actions, look: Theme, area: Area) -> None:
+    """Draw the sentence in the picture's upper left corner; a click goes to the texture and back."""
+    if not watch.found:
+        return
+    session, first = actions.session, watch.found[0]
+    ref = ref_of(first)
+    shows = session.map is not None and session.map.ref == ref
+    if shows:
+        centre = ImVec2(*place_in(first, area))
+        draw = imgui.get_background_draw_list()
+        draw.add_circle(centre, _RING * look.scale, theme.packed((0, 0, 0), 0.8), 0, 4 * look.scale)
+        draw.add_circle(centre, _RING * look.scale, theme.packed(_MAGENTA), 0, 2 * look.scale)
+    margin = 14 * look.scale
+    imgui.set_next_window_pos(ImVec2(area[0] + margin, area[1] + margin))
+    widest = max(min(area[2] - 2 * margin, 460 * look.scale), 80.0)
+    imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(widest, area[3]))
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 6 * look.scale)
+    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.92))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_nav_inputs
+    flags |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
+    flags |= imgui.WindowFlags_.no_focus_on_appearing
+    imgui.begin("not finite", None, flags)
+    imgui.push_text_wrap_pos(widest - 2 * imgui.get_style().window_padding.x)
+    imgui.text_colored(theme.colour(_MAGENTA), said(watch.found))
+    imgui.pop_text_wrap_pos()
+    if len(watch.found) > 1:
+        imgui.set_item_tooltip("\n".join(map(str, watch.found)))
+    else:
+        imgui.set_item_tooltip(str(first))
+    if shows:
+        if imgui.small_button("Back to the picture"):
+            actions.show(None)
+    elif session.can_show(ref):
+        if imgui.small_button("Show it"):
+            actions.show(ref)
+        imgui.set_item_tooltip("That texture from above, those texels in magenta")
+    imgui.end()
+    imgui.pop_style_color()
+    imgui.pop_style_var()

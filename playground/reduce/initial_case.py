@@ -1,0 +1,215 @@
+"""Find what fails, and in which pass: the case that the search begins with.
+
+Passes are tried in the order in which they run, so the first that fails has been given
+nothing wrong. What fails only sometimes is refused, since no candidate could be believed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from playground.engine.frame import Frame
+from playground.errors import DataError, ParameterError, nearest
+from playground.gpu.context import ContextInfo
+from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.reduce.case import Case
+from playground.reduce.child import Task
+from playground.reduce.failures import (
+    Commanded,
+    Died,
+    Differs,
+    Fault,
+    Finding,
+    NotFinite,
+    OffReference,
+    Refused,
+    Side,
+)
+from playground.reduce.inline import lay_flat
+from playground.reduce.probe import Probe
+from playground.reduce.worker import LIMIT, Worker
+from playground.shots.compare import TOLERANCE
+from playground.shots.suite import ShotCase, check
+from playground.sketch.model import Sketch
+
+KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "command")
+"""What failing may mean; "" is to look for it."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What fails, as it was asked."""
+
+    sketch: Sketch
+    kind: str = ""  # one of KINDS
+    shot: str = ""
+    frame: tuple[int, int] = (64, 36)  # pixels
+    time: float = 0.0  # [s]
+    steps: Mapping[str, int] = field(default_factory=dict)
+    path: str = ""  # the pass to look at; "": the first that fails
+    driver: str = ""  # "": both, one after the other
+    pattern: str = ""  # of an error's message
+    command: str = ""
+    environment: Mapping[str, str] = field(default_factory=dict)  # of the other side
+    other_device: int | None = None
+    tolerance: float = 0.0
+    anywhere: bool = False  # NaN at other texels than before counts too
+    software: bool = False
+    device: int | None = None
+    limit: float = LIMIT  # [s] a candidate
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """A case that fails, and what tries others."""
+
+    case: Case
+    finding: Finding
+    probe: Probe
+    renderers: tuple[ContextInfo, ...]  # of each side; none where a command judges
+
+
+class Bench:
+    """The folder and the processes that candidates are tried in; use it with ``with``."""
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        self._stack = ExitStack()
+        self._folder = Path()
+        self.workers: list[Worker] = []
+
+    def __enter__(self) -> Bench:
+        asked = self.question
+        self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="playground-reduce-")))
+        make = {"software": asked.software, "limit": asked.limit}
+        self.workers = [self._stack.enter_context(Worker(device=asked.device, **make))]  # type: ignore[arg-type]
+        if asked.kind == "against":
+            device = asked.device if asked.other_device is None else asked.other_device
+            other = Worker(device=device, environment=asked.environment, **make)  # type: ignore[arg-type]
+            self.workers.append(self._stack.enter_context(other))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def begin(self) -> Beginning:
+        """Return the case to shrink; raise ``DataError`` where nothing fails, or only sometimes."""
+        asked = self.question
+        sketch = asked.sketch.for_shot(asked.sketch.shot(asked.shot)) if asked.shot else asked.sketch
+        case = lay_flat(sketch, frame=asked.frame, time=asked.time, steps=dict(asked.steps))
+        refused = ""
+        for fault, candidate in self._possible(case):
+            probe = Probe(fault, self.workers, self._folder, asked.limit)
+            finding = probe.find(candidate)
+            refused = refused or probe.refused
+            if finding is None:
+                continue
+            probe.renew()
+            again = probe.find(candidate)
+            if again is None or not fault.same(finding, again):
+                raise DataError(f"it fails only sometimes ({finding.word}): nothing can be told from one try")
+            if asked.kind == "command":
+                return Beginning(candidate, finding, probe, ())
+            renderers = tuple(self.workers[number].info for number in range(len(self.workers)))
+            return Beginning(candidate, finding, probe, renderers)
+        if refused:
+            raise DataError(f"{asked.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
+        raise DataError(_nothing(asked))
+
+    def _possible(self, case: Case) -> Iterator[tuple[Fault, Case]]:
+        """Yield what may be the fault, and where, in the order in which it is looked for."""
+        asked = self.question
+        if asked.kind == "command":
+            yield Commanded(asked.command), self._chosen(case)[-1]
+        elif asked.kind == "shot":
+            yield self._off_reference(), case
+        elif asked.kind:
+            for fault in self._faults(asked.kind):
+                yield from ((fault, one) for one in self._chosen(case))
+        else:
+            # A pass may fail in any way before the next is drawn, which may take long.
+            faults = [fault for kind in ("error", "crash", "nan") for fault in self._faults(kind)]
+            yield from ((fault, one) for one in self._chosen(case) for fault in faults)
+            yield from ((fault, one) for fault in self._faults("drivers") for one in self._chosen(case))
+
+    def _chosen(self, case: Case) -> list[Case]:
+        """Return the case looking at each pass in turn, or at the one that was asked for."""
+        names = [one.name for one in case.passes]
+        if not self.question.path:
+            return [case.looking_at(name) for name in names]
+        wanted = self.question.path.replace(".", "_")
+        inside = [name for name in names if name == wanted or name.startswith(f"{wanted}_")]
+        if not inside:
+            raise ParameterError(f"--pass {self.question.path}: no such pass{nearest(wanted, names)}")
+        return [case.looking_at(name) for name in inside]
+
+    def _faults(self, kind: str) -> list[Fault]:
+        asked = self.question
+        if kind == "against":
+            driver = asked.driver or "auto"
+            names = ("here", " ".join(f"{k}={v}" for k, v in asked.environment.items()) or "the other device")
+            return [Differs((Side(0, driver), Side(1, driver)), names, asked.tolerance)]
+        compute = self.workers[0].info.compute
+        if kind == "drivers":
+            if not compute:
+                if asked.kind:
+                    opengl = self.workers[0].info.opengl
+                    raise DataError(f"this context is {opengl}; the compute driver needs 4.3")
+                return []
+            sides = (Side(0, FRAGMENT), Side(0, COMPUTE))
+            return [Differs(sides, (FRAGMENT, COMPUTE), asked.tolerance)]
+        drivers = [asked.driver] if asked.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
+        if kind == "nan":
+            return [NotFinite(driver, asked.anywhere) for driver in drivers]
+        if kind == "error":
+            return [Refused(asked.pattern, driver) for driver in drivers]
+        word = kind if asked.kind else ""  # a hang counts too where nothing was asked for
+        return [Died(word, driver) for driver in drivers]
+
+    def _off_reference(self) -> Fault:
+        asked = self.question
+        shot = asked.sketch.shot(asked.shot)
+        worker = self.workers[0]
+        shown = asked.sketch.for_shot(shot)
+        steps = tuple(asked.steps.items())
+        seen = worker.look(Task(shown, "", asked.driver or "auto", shot.size, shot.time, steps))
+        if seen.values is None:
+            raise DataError(f"shot '{shot.name}' gives no picture: {seen.told.splitlines()[0]}")
+        case = ShotCase(asked.sketch, shot)
+        outcome = check(case, Frame(seen.values, asked.sketch.name, shot.time), worker.info)
+        if outcome.reference is None:
+            raise DataError(
+                f"shot '{shot.name}' has no reference for {worker.info.slug}: nothing to differ from"
+            )
+        if outcome.ok:
+            raise DataError(f"shot '{shot.name}' is as its reference; nothing fails")
+        fault = OffReference(seen.values, [outcome.reference.pixels], TOLERANCE)
+        if not fault.wrong.any():
+            raise DataError(f"shot '{shot.name}' fails, but no pixel is off by more than {TOLERANCE} of 255")
+        fault.sides = (Side(0, asked.driver or "auto"),)
+        return fault
+
+
+def _nothing(asked: Question) -> str:
+    """Say that nothing fails, in the words of what was asked."""
+    name = asked.sketch.name
+    if asked.kind == "shot":
+        return (
+            f"shot '{asked.shot}' of {name} is off its reference, but not once its techniques are laid flat;"
+            " a compute shader that stands for a whole technique may be at fault: try --driver fragment"
+        )
+    said = {
+        "": "it compiles and draws, every value is finite, and both drivers give the same bits",
+        "drivers": "both drivers give the same",
+        "against": "both sides give the same",
+        "nan": "every value of every pass is finite",
+        "error": f"the compiler refuses nothing with a message that {asked.pattern!r} finds",
+        "crash": "the driver does not crash",
+        "hang": f"nothing takes longer than {asked.limit:g} s",
+        "command": "the command says that all is well",
+    }[asked.kind]
+    return f"{name} does not fail: {said}"

@@ -1,0 +1,182 @@
+"""Lay a loaded sketch flat: techniques of several passes become passes, includes become text."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from playground.engine.plan import Plan, PlanNode, Step, Turns, make_plan
+from playground.errors import SketchError
+from playground.reduce.case import Case, Pass
+from playground.reduce.tokens import tidy
+from playground.sketch.flatten import Ref, Source
+from playground.sketch.model import Kernel, Sketch, Value
+from playground.sketch.reserved_names import MATCHES, WIRED
+from playground.sketch.source import SourceText
+from playground.sketch.variants import standing
+
+_IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
+_DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
+_CONDITION = re.compile(r"\s*#\s*(if|ifdef|ifndef|else|elif|endif)\b")
+
+
+def lay_flat(
+    sketch: Sketch, *, frame: tuple[int, int], time: float = 0.0, steps: dict[str, int] | None = None
+) -> Case:
+    """Return the sketch as a case that looks at its picture.
+
+    Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and
+    ``SketchError`` for a loop of several passes, which has no place in a flat sketch.
+    """
+    plan = make_plan(sketch, frame_size=frame, time=time, steps=steps)
+    leaves = list(plan.walk())
+    if len(leaves) == 1 and leaves[0].kernel.kind.startswith("plain"):
+        return _plain(leaves[0], plan)
+    maker = _Maker(plan, leaves[-1].path)
+    passes = tuple(maker.one(node) for node in plan.nodes)
+    land = plan.land
+    assert land.size is not None and land.extent is not None
+    return Case(
+        passes,
+        passes[-1].name,
+        land.size,
+        land.extent,
+        land.relief,
+        land.base_elevation or None,
+        sketch.camera,
+        sketch.samples,
+        frame,
+        time,
+        tuple((maker.name(path), turns) for path, turns in plan.steps.items()),
+        tuple(maker.files.items()),
+    )
+
+
+def _plain(step: Step, plan: Plan) -> Case:
+    suffix = Path(step.kernel.path).suffix
+    text = "\n".join(line.code for line in step.kernel.source.lines if line.code.strip()) + "\n"
+    name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
+    one = Pass(name, text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
+    return Case((one,), name, frame=plan.frame_size, time=plan.time, samples=1)
+
+
+class _Maker:
+    def __init__(self, plan: Plan, last: str) -> None:
+        self.plan = plan
+        self.last = last
+        self.files: dict[str, str] = {}
+
+    def name(self, path: str) -> str:
+        """Return the pass's name: the picture itself is the view."""
+        if path == self.last:
+            return "view"
+        return "view_" if path == "view" else path.replace(".", "_")
+
+    def one(self, node: PlanNode) -> Pass:
+        repeat = 0
+        feedback: tuple[tuple[str, str], ...] = ()
+        step = node
+        firsts: dict[str, Source | None] = {}
+        if isinstance(node, Turns):
+            inside = node.body[0]
+            if len(node.body) != 1 or isinstance(inside, Turns):
+                raise SketchError(
+                    f"pass '{node.path}' is a loop of several passes, which cannot be laid flat;"
+                    " reduce one of its kernels alone"
+                )
+            repeat, step = node.repeat, inside
+            feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
+            firsts = {name: first for name, first, _ in node.feedback}
+        assert isinstance(step, Step)
+        variant = standing(step.kernel, ("compute",))
+        text = written(step.kernel)
+        beside = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
+        inputs = []
+        for name, source in step.inputs:
+            first = firsts.get(name, source)
+            if isinstance(first, Ref):
+                inputs.append((name, f"{self.name(first.path)}:{first.output}"))
+            elif not name.startswith("initial"):
+                text, beside = unwired(text, name), unwired(beside, name)
+        return Pass(
+            self.name(step.path),
+            text,
+            beside,
+            tuple(inputs),
+            tuple((name, self._value(step.kernel, name, value)) for name, value in step.values.items()),
+            None if step.size == self.plan.land.size else step.size,
+            repeat,
+            feedback,
+        )
+
+    def _value(self, kernel: Kernel, name: str, value: Value) -> Value:
+        parameter = kernel.parameter(name)
+        if parameter is None or parameter.widget.kind != "file":
+            return value
+        place = Path(str(value))
+        known = {source: short for short, source in self.files.items()}
+        if str(place) in known:
+            return known[str(place)]
+        short = place.name if place.name not in self.files else f"{len(self.files)}-{place.name}"
+        self.files[short] = str(place)
+        return short
+
+
+def written(kernel: Kernel) -> str:
+    """Return a kernel's text, tidy: its includes in place, without comments but for annotations."""
+    return tidy("\n".join(_without_guards(_lines(kernel.source))))
+
+
+def _lines(source: SourceText) -> list[str]:
+    found = []
+    for line in source.lines:
+        if line.pragma:
+            if not line.chain:
+                found.append(line.pragma)
+        elif line.code.strip():
+            note = line.comment.strip() if line.comment.startswith("!") else ""
+            shown = note and line.code.lstrip().startswith("uniform")
+            found.append(f"{line.code}  //{note}" if shown else line.code)
+    return found
+
+
+def _without_guards(lines: list[str]) -> list[str]:
+    """Leave out include guards, and what they keep from standing twice."""
+    found: list[str] = []
+    seen: set[str] = set()
+    stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
+    skip_define = ""
+    for index, line in enumerate(lines):
+        if skip_define and _DEFINE.match(line):
+            skip_define = ""
+            continue
+        condition = _CONDITION.match(line)
+        word = condition.group(1) if condition else ""
+        guard = _IFNDEF.match(line)
+        following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
+        if word.startswith("if"):
+            if guard and guard.group(1) in seen:
+                stack.append("twice")
+                continue
+            if guard and following and following.group(1) == guard.group(1):
+                stack.append("guard")
+                seen.add(guard.group(1))
+                skip_define = guard.group(1)
+                continue
+            stack.append("other")
+        elif word == "endif" and stack:
+            kind = stack.pop()
+            if kind != "other":
+                continue
+        if "twice" not in stack:
+            found.append(line)
+    return found
+
+
+def unwired(text: str, name: str) -> str:
+    """Return a text whose input has a name that no output has: it then stays unwired.
+
+    An input that nothing is wired to would else take the latest earlier output of its name.
+    """
+    fresh = name if name.startswith("no_") else f"no_{name}"
+    return re.sub(rf"\b({WIRED}|{MATCHES}|){name}\b", lambda found: f"{found.group(1)}{fresh}", text)

@@ -1,0 +1,145 @@
+"""Draw an unbroken shot again under conditions that must not matter, and count what a comparison refuses."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from shutil import copyfile
+
+import numpy as np
+
+from playground.gpu.context import ContextInfo
+from playground.paths import GLSL, SKETCHES
+from playground.shots.mutants.harmless import Drawing, Process, processes
+from playground.shots.mutants.redraw import Task
+from playground.shots.mutants.tiers import judged
+from playground.shots.suite import Taken
+from playground.sketch.allowed_files import is_absolute, is_file
+from playground.sketch.assign import values_of
+from playground.sketch.model import Shot, Sketch, kernels_of
+from playground.sketch.variants import any_variants
+
+LIMIT = 600.0
+"""[s] A process of a few drawings may take that long, on a slow machine with a cold shader cache."""
+
+
+@dataclass(frozen=True)
+class Redrawn:
+    """What came of drawing the shot once more."""
+
+    process: Process
+    drawing: Drawing
+    refused: str  # what the same build's comparison says against it; "": nothing
+    identical: bool  # to the last bit
+
+    @property
+    def words(self) -> str:
+        """How it was drawn."""
+        return f"process: {self.process.words}; drawing: {self.drawing.words}"
+
+
+def again(
+    sketch: Sketch,
+    shot: Shot,
+    expected: Taken,
+    renderer: ContextInfo,
+    count: int,
+    *,
+    software: bool = False,
+    device: int | None = None,
+    limit: float = LIMIT,
+) -> Iterator[Redrawn]:
+    """Yield what came of each of ``count`` drawings of a shot, that should be the expected picture.
+
+    A process that dies or takes longer than ``limit`` seconds counts as refused drawings.
+    """
+    for process in processes(count, _drivers(sketch, renderer)):
+        pictures = _drawn_by(process, sketch, shot, software, device, limit)
+        for number, drawing in enumerate(process.drawings):
+            found = pictures[min(number, len(pictures) - 1)]  # after an error there is nothing more
+            if isinstance(found, str):
+                yield Redrawn(process, drawing, found, False)
+                continue
+            judgement = judged(found, expected, renderer)[0]
+            refused = "" if judgement.ok else judgement.sentence
+            # The form of a kernel is part of what is drawn, and other drivers take other forms.
+            if (
+                not refused
+                and process.all_forms
+                and drawing.driver == "auto"
+                and found.drawn != expected.drawn
+            ):
+                refused = "the picture passes, but the hash of what was drawn has changed"
+            yield Redrawn(process, drawing, refused, bool(np.array_equal(found.array, expected.array)))
+
+
+def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
+    """Return the drivers whose pictures must be the same.
+
+    Other renderers than the processor's may round differently in the two; a fast variant may
+    differ from the canonical form within the bound that it states.
+    """
+    if not renderer.software or any_variants(sketch.graph):
+        return ("auto",)
+    return ("auto", "fragment", "compute") if renderer.compute else ("auto", "fragment")
+
+
+def _drawn_by(
+    process: Process, sketch: Sketch, shot: Shot, software: bool, device: int | None, limit: float
+) -> list[Taken | str]:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        file = _moved(sketch, folder / "moved") if process.moved else sketch.file
+        environment = {**os.environ, **dict(process.environment)}
+        # The child finds the same playground as this process, however that was found.
+        environment["PYTHONPATH"] = os.pathsep.join(p or str(Path.cwd()) for p in sys.path)
+        if process.cold:
+            environment["MESA_SHADER_CACHE_DIR"] = str(folder / "cache")
+        task = Task(file, shot, process.drawings, software, device)
+        try:
+            done = subprocess.run(
+                [sys.executable, "-P", "-m", "playground.shots.mutants.redraw"],
+                input=pickle.dumps(task),
+                capture_output=True,
+                env=environment,
+                cwd=folder if process.elsewhere else None,
+                timeout=limit,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return [f"the process took more than {limit:g} s and was stopped"]
+        try:
+            found: list[Taken | str] = pickle.loads(done.stdout)
+        except (EOFError, pickle.UnpicklingError):
+            said = done.stderr.decode(errors="replace").strip()
+            return [f"the process died, with status {done.returncode}{': ' if said else ''}{said[-500:]}"]
+        return found
+
+
+def _moved(sketch: Sketch, folder: Path) -> str:
+    """Copy a sketch, with its own texts and data files, into a folder; return the copy's file.
+
+    A technique of the library that is opened alone stays where it is.
+    """
+    file, home = Path(sketch.file), Path(sketch.folder)
+    if file.is_relative_to(GLSL) and not file.is_relative_to(SKETCHES):
+        return sketch.file
+    values = values_of(sketch)
+    own = {path for path in map(Path, sketch.files) if path.is_relative_to(home)}
+    for place, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = str(values[f"{place}.{parameter.name}"])
+            if parameter.widget.kind == "file" and text and not is_absolute(text) and is_file(home / text):
+                own.add(home / text)
+    target = folder / home.name  # a folder may give the sketch its name
+    for path in own:
+        copy = target / path.relative_to(home)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copyfile(path, copy)
+    return str(target / file.relative_to(home))

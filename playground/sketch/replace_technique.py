@@ -1,0 +1,130 @@
+"""Fill a pass of a sketch with another technique.
+
+A technique fits a pass if its outputs have the same names as those of the technique
+it replaces, and if each of its inputs can be wired. Whether the land's size suits it is
+found out by drawing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.sketch.allowed_files import TECHNIQUES
+from playground.sketch.assign import resolve
+from playground.sketch.find import is_part, shipped_names
+from playground.sketch.flatten import flatten
+from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.techniques import read_technique
+from playground.sketch.values import coerce
+from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
+
+
+def choices(sketch: Sketch, pass_name: str) -> list[str]:
+    """List what may fill a pass, as ``use`` names it: the shipped, then the sketch's own (``./x``).
+
+    What fills it now is always among them; a technique whose files are wrong is not.
+    Raises ``SketchError`` if there is no such pass.
+    """
+    spec = _pass(sketch, pass_name)
+    outputs = set(output_names(spec.technique))
+    found = []
+    whole = [name for name in shipped_names() if not is_part(name)]
+    for use in dict.fromkeys([*whole, *_own_names(sketch), spec.use]):
+        if use == spec.use or _fits(sketch, spec, use, outputs):
+            found.append(use)
+    return found
+
+
+def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
+    """Return the sketch with a pass filled by ``use``, as ``choices`` names it.
+
+    Wires to inputs that remain stay, and so do values whose parameters still exist and
+    take them. Raises ``SketchError`` when the technique is missing, wrong, or cannot be wired.
+    """
+    spec = _pass(sketch, pass_name)
+    if use == spec.use:
+        return sketch
+    return _refilled(sketch, spec, use, _read(sketch, use))
+
+
+def _pass(sketch: Sketch, name: str) -> PassSpec:
+    spec = sketch.graph.find(name)
+    if spec is None:
+        raise SketchError(
+            f"no pass '{name}' in sketch {sketch.name}{nearest(name, [p.name for p in sketch.graph.passes])}"
+        )
+    return spec
+
+
+def _read(sketch: Sketch, use: str) -> Technique:
+    folder = Path(sketch.folder)
+    return read_technique(use, folder, folder)
+
+
+def _own_names(sketch: Sketch) -> list[str]:
+    """Name the files beside the sketch that could be techniques; library files and other sketches as well."""
+    beside = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
+    return sorted({f"./{p.stem}" for p in beside if p.is_file()})
+
+
+def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:
+    try:
+        technique = _read(sketch, use)
+        if set(output_names(technique)) != outputs:
+            return False
+        if spec.name == "view" and _formats(technique) != _formats(spec.technique):
+            return False  # a picture of linear light is a step on the way to the one that is shown
+        _refilled(sketch, spec, use, technique)
+    except PlaygroundError:
+        return False
+    return True
+
+
+def _formats(technique: Technique) -> list[str]:
+    """Return the formats of a technique's outputs."""
+    found = technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
+    return [output.format for output in found]
+
+
+def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) -> Sketch:
+    outputs = output_names(technique)
+    feedback = tuple((i, o) for i, o in spec.feedback if takes_input(technique, i) and o in outputs)
+    filled = replace(
+        spec,
+        use=use,
+        technique=technique,
+        inputs=tuple((name, source) for name, source in spec.inputs if takes_input(technique, name)),
+        values=_kept(technique, spec.values),
+        feedback=feedback,
+        repeat=spec.repeat if feedback or not spec.feedback else "",
+    )
+    passes = tuple(filled if other is spec else other for other in sketch.graph.passes)
+    prefix = f"{spec.name}."
+    own = [(path.removeprefix(prefix), value) for path, value in sketch.overrides if path.startswith(prefix)]
+    overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
+    overrides += [(prefix + path, value) for path, value in _kept(technique, own)]
+    graph = replace(sketch.graph, passes=passes)
+    main = tuple(path for path in sketch.main if _is_there(graph, path))
+    result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
+    flatten(result)
+    return result
+
+
+def _is_there(technique: Technique, path: str) -> bool:
+    try:
+        return bool(resolve(technique, path))
+    except ParameterError:
+        return False
+
+
+def _kept(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
+    found = []
+    for path, value in values:
+        try:
+            found.append((path, coerce(resolve(technique, path)[0].parameter, value, path)))
+        except ParameterError:
+            continue
+    return tuple(found)

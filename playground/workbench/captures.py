@@ -1,0 +1,221 @@
+"""Capture from the window: what is asked for, the job at work, and what came of it.
+
+The pictures are drawn in another process from the sketch as it stands, so that the window
+goes on; one job at a time.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
+from playground.capture.job_process import Working
+from playground.capture.sheet import USUAL_SIZE
+from playground.capture.sweep import read_sweep, swept
+from playground.capture.video import QUALITY, check_video
+from playground.errors import DataError, ParameterError, PlaygroundError, counted
+from playground.paths import shown
+from playground.sketch.keyframes import duration
+from playground.sketch.model import LARGEST_PICTURE, LARGEST_SIDE, Parameter, Sketch
+from playground.sketch.values import is_whole, length_of
+
+if TYPE_CHECKING:
+    from playground.workbench.actions import Actions
+
+MULTIPLES = (1, 2, 4, 8)
+_PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
+_TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}
+
+
+@dataclass
+class Wish:
+    """What is typed and chosen in the capture's window."""
+
+    kind: str = PICTURE
+    multiple: int = 1  # of the picture's size in the window; 0: the size that is typed
+    size: tuple[int, int] = (3840, 2160)
+    seconds: float = 0.0  # 0: to the last keyframe, or ten
+    start: float = 0.0
+    fps: int = 30
+    ending: str = ".mp4"
+    quality: str = QUALITY
+    sweeps: list[str] = field(default_factory=lambda: ["", ""])
+
+
+@dataclass
+class Capturing:
+    """The capture's state in one window."""
+
+    wish: Wish = field(default_factory=Wish)
+    shown: bool = False
+    working: Working | None = None
+    last: Path | None = None  # the file or folder that was made last
+    failed: str = ""  # why the last one was not made
+
+    def start(self, actions: Actions) -> None:
+        """Begin what is wished for; what cannot be done is said."""
+        if self.working is not None:
+            return
+        self.failed = ""
+        try:
+            job = job_of(self.wish, actions)
+        except PlaygroundError as error:
+            self.failed = str(error)
+            actions.say(self.failed)
+            return
+        engine = actions.session.engine
+        self.working = Working(job, software=engine.info.software, driver=engine.driver)
+
+    def look(self, actions: Actions) -> None:
+        """Take in how far the job is; say it once it has ended."""
+        finished = self.working.poll() if self.working is not None else None
+        if self.working is None or finished is None:
+            return
+        job, took = self.working.job, time.monotonic() - self.working.started
+        self.working = None
+        for note in finished.notes:
+            actions.say(note)
+        if finished.stopped:
+            actions.say("the capture was stopped" + ("; its pictures stay" if job.kind == PICTURES else ""))
+        elif finished.path is None:
+            self.failed = finished.error
+            actions.say(finished.error)
+        else:
+            self.last = actions.saved = finished.path
+            width, height = job.size
+            what = "pictures of " if job.kind in (PICTURES, SHEET) else ""
+            actions.say(f"saved {shown(finished.path)}, {what}{width} x {height} pixels, in {took:.1f} s")
+
+    def close(self) -> None:
+        """Stop what is at work."""
+        if self.working is not None:
+            self.working.close()
+            self.working = None
+
+
+def window_size(actions: Actions) -> tuple[int, int]:
+    """Return the size of the picture in the window, in pixels; (0, 0) before the first."""
+    plan = actions.session.plan
+    return plan.frame_size if plan is not None else (0, 0)
+
+
+def size_of(wish: Wish, actions: Actions) -> tuple[int, int]:
+    """Return the size in pixels that is wished for; raise ``ParameterError``."""
+    width, height = window_size(actions)
+    if wish.kind == SHEET and wish.multiple:
+        scale = USUAL_SIZE[0] * wish.multiple / max(width, 1)
+        return max(round(width * scale), 1), max(round(height * scale), 1)
+    size = (width * wish.multiple, height * wish.multiple) if wish.multiple else wish.size
+    if wish.kind == FILM and wish.ending != ".gif":
+        size = size[0] + size[0] % 2, size[1] + size[1] % 2
+    most = LARGEST_PICTURE if wish.kind in (PICTURE, PICTURES) else LARGEST_SIDE
+    if not all(1 <= side <= most for side in size):
+        raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
+    return size
+
+
+def job_of(wish: Wish, actions: Actions) -> Job:
+    """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
+    session = actions.session
+    if session.sketch is None:
+        raise DataError("there is no picture to save yet")
+    sketch = session.map.of(session.sketch) if session.map is not None else session.sketch
+    turns = session.repeats
+    steps = {path: turn for path, turn in session.steps.items() if turn < turns.get(path, 0)}
+    size = size_of(wish, actions)
+    moves = wish.kind in (FILM, PICTURES)
+    time_of = wish.start if moves else session.clock.time
+    fps, sweeps = Fraction(max(wish.fps, 1)), tuple(filter(None, (s.strip() for s in wish.sweeps)))
+    if wish.kind == FILM:
+        check_video(actions.folder / f"film{wish.ending}", size, fps, wish.quality)
+    if wish.kind == SHEET:
+        if not sweeps:
+            raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
+        at = sketch.at(time_of)
+        swept(at, [read_sweep(at, text) for text in sweeps])
+        if steps:
+            raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
+    return Job(
+        wish.kind,
+        sketch,
+        actions.folder,
+        size,
+        time_of,
+        steps,
+        seconds_of(wish, sketch) if moves else None,
+        fps,
+        wish.ending,
+        wish.quality,
+        sweeps,
+    )
+
+
+def seconds_of(wish: Wish, sketch: Sketch) -> float:
+    """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
+    left = duration(sketch) - wish.start
+    return wish.seconds if wish.seconds > 0.0 else left if left > 0.0 else 10.0
+
+
+def summary(wish: Wish, actions: Actions) -> str:
+    """Return in a few words what would be made."""
+    try:
+        width, height = size_of(wish, actions)
+    except ParameterError as error:
+        return str(error)
+    sketch = actions.session.sketch
+    if wish.kind in (FILM, PICTURES) and sketch is not None:
+        count = round(seconds_of(wish, sketch) * wish.fps)
+        return f"{counted(count, 'picture')} of {width} x {height} pixels"
+    return f"{width} x {height} pixels" + (" each" if wish.kind == SHEET else "")
+
+
+def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:
+    """Return a sweep of a parameter, or of a part of it, over its range."""
+    low, high = _TURN.get(part, (parameter.widget.low, parameter.widget.high))
+    default = parameter.default
+    if low is None or high is None:
+        number = float(default) if isinstance(default, int | float) else 1.0
+        low, high = 0.0, 2.0 * abs(number) or 1.0
+    if parameter.widget.kind == "menu":
+        return f"{path}={','.join(parameter.widget.choices)}"
+    if parameter.type == "bool":
+        return f"{path}=false,true"
+    where = f"{path}.{part}" if part else path
+    if is_whole(parameter.type):
+        return f"{where}={round(low)}..{round(high)},{min(round(high) - round(low) + 1, 9)}"
+    return f"{where}={low:g}..{high:g},9"
+
+
+def parts_of(parameter: Parameter) -> tuple[str, ...]:
+    """Return the parts that a parameter is swept by, ("",) for one number, () for what cannot be."""
+    if parameter.type == "sampler2D" or parameter.widget.kind == "file":
+        return ()
+    count = length_of(parameter.type)
+    return ("",) if count == 1 else _PARTS.get(parameter.widget.kind, tuple("xyzw"))[:count]
+
+
+def open_folder(path: Path) -> str:
+    """Show a file's folder, or a folder, in the system's file manager; return a sentence where that fails."""
+    folder = path if path.is_dir() else path.parent
+    try:
+        if sys.platform == "win32":
+            os.startfile(folder)
+        else:
+            program = "open" if sys.platform == "darwin" else "xdg-open"
+            subprocess.Popen(
+                [program, str(folder)],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+    except OSError:
+        return f"no program to show folders was found; it is {folder}"
+    return ""

@@ -1,0 +1,73 @@
+"""Which files a sketch stands on, so that they can be watched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from playground.engine.files import find_file
+from playground.errors import DataError, PlaygroundError
+from playground.paths import GLSL, current_folder
+from playground.sketch.allowed_files import Signature
+from playground.sketch.assign import values_of
+from playground.sketch.model import Sketch, kernels_of
+
+
+def files_of(sketch: Sketch) -> frozenset[Path]:
+    """Return every file of a sketch: its texts, and the images and elevation files its parameters name.
+
+    A file that is missing is among them, where it is expected.
+    """
+    return frozenset({Path(name) for name in sketch.files}) | data_files(sketch)
+
+
+def data_files(sketch: Sketch) -> frozenset[Path]:
+    """Return the images and elevation files that a sketch's parameters name, there or missing."""
+    found: set[Path] = set()
+    values = values_of(sketch)
+    for prefix, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = values.get(f"{prefix}.{parameter.name}")
+            if parameter.widget.kind != "file" or not text:
+                continue
+            try:
+                found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
+            except DataError:
+                found.add(Path(sketch.folder, str(text)))
+    return frozenset(found)
+
+
+def watched(
+    path: Path,
+    sketches: Iterable[Sketch],
+    errors: Iterable[PlaygroundError],
+    places: Mapping[Path, Signature | None],
+) -> frozenset[Path]:
+    """Return every file worth watching for the sketch in a file.
+
+    ``places`` are where its files were looked for, and what was there. One where nothing
+    is counts inside the sketch's folder and the library only: nothing else is likely to come
+    from elsewhere.
+    """
+    roots = (path.resolve().parent, GLSL)
+    found = {path}
+    found |= {p for p, there in places.items() if there or any(p.is_relative_to(r) for r in roots)}
+    for sketch in sketches:
+        found |= files_of(sketch)
+    for error in errors:
+        found |= files_named_by(error)
+    return frozenset(found)
+
+
+def files_named_by(error: PlaygroundError) -> frozenset[Path]:
+    """Return the files that an error points at; those of its includes as well."""
+    named = [d.file for d in error.diagnostics]
+    named += [place.rpartition(":")[0] for d in error.diagnostics for place in d.chain]
+    return frozenset(path_named(name) for name in filter(None, named))
+
+
+def path_named(name: str) -> Path:
+    """Return the file that a diagnostic names, as its user would, as an absolute path."""
+    here = current_folder() / name
+    path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else here
+    return path if path.is_file() else here

@@ -1,0 +1,270 @@
+"""What a person changed by hand, and how it survives when the files change under it.
+
+A draft is a sketch as its files say it, with the techniques chosen by hand in it and
+the values and the camera set by hand over it. All of it is frozen: an edit makes a new
+draft, so undoing is keeping the old one.
+
+What is set by hand outlives a reload. In full, for a parameter that is set by hand:
+
+* it keeps its value while the files change elsewhere, and also where its declaration
+  changes: another default, label, step or wider range;
+* where the sketch's own ``set`` (or the land's size, extent, relief or base elevation)
+  now says another value than it said, the file is the newer word (see ``words``): it is
+  taken, and a notice says so, unless it is the very value that the hand had set;
+* where its range no longer holds the value, the nearest end of the range is taken, and
+  a notice says so;
+* where its type is another now, or its menu has lost the choice, it goes back to the
+  file's value, and a notice says so; a choice that stands elsewhere in its menu stays;
+* where it is gone, with its line, its pass or its technique, its value waits and is
+  there again when it returns, as long as that has the same type and a range that holds
+  it; so does a value that the technique of the moment does not take.
+
+A parameter that is not set by hand shows what the files say, new defaults included. A
+camera set by hand stays until the file moves the camera, and a technique chosen by
+hand until the file fills that pass with another. A locked parameter keeps its value,
+by hand or not, whatever the files say, as long as it can be kept at all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from playground.errors import ParameterError, PlaygroundError
+from playground.sketch.assign import LAND, check_value, resolve, values_of
+from playground.sketch.model import Camera, Parameter, Sketch, Value
+from playground.sketch.replace_technique import with_technique
+from playground.sketch.values import is_whole, write
+from playground.workbench.edit_merge import newer_word, notice, said_by_files
+
+
+@dataclass(frozen=True, slots=True)
+class Edits:
+    """What was set by hand."""
+
+    values: tuple[
+        tuple[str, Value], ...
+    ] = ()  # parameter path → value; some may not fit the sketch of the moment
+    techniques: tuple[tuple[str, str], ...] = ()  # pass → use
+    camera: Camera | None = None  # None: the file's
+    locked: tuple[str, ...] = ()  # parameter paths that only a hand on their own row moves
+
+    def with_value(self, path: str, value: Value) -> Edits:
+        """Return them with a parameter set."""
+        return replace(self, values=(*(v for v in self.values if v[0] != path), (path, value)))
+
+    def without(self, path: str) -> Edits:
+        """Return them without what was set for a parameter."""
+        return replace(self, values=tuple(v for v in self.values if v[0] != path))
+
+    def with_lock(self, path: str, locked: bool) -> Edits:
+        """Return them with a parameter locked, or no longer."""
+        others = tuple(p for p in self.locked if p != path)
+        return replace(self, locked=(*others, path) if locked else others)
+
+    def has(self, path: str) -> bool:
+        """Say whether a parameter is set by hand."""
+        return any(p == path for p, _ in self.values)
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A sketch as its files say it, and what was changed by hand."""
+
+    file: Sketch  # as loaded
+    base: Sketch  # with the techniques chosen by hand
+    edits: Edits = Edits()
+
+    @cached_property
+    def applied(self) -> dict[str, Value]:
+        """The values set by hand that fit the sketch of the moment, by path; the others wait."""
+        found = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
+        return {path: value for path, value in found if value is not None}
+
+    @cached_property
+    def sketch(self) -> Sketch:
+        """The sketch to draw."""
+        sketch = self.base.with_values(self.applied) if self.applied else self.base
+        return sketch if self.edits.camera is None else sketch.with_camera(self.edits.camera)
+
+    def with_edits(self, edits: Edits) -> Draft:
+        """Return the same files with other values or another camera set by hand."""
+        return replace(self, edits=edits)
+
+    def without(self, path: str) -> Draft:
+        """Return the draft with a parameter as the file says, by whatever name it was set."""
+        mine = _leaves(self.base, path)
+        return self.with_edits(
+            replace(
+                self.edits,
+                values=tuple(
+                    v for v in self.edits.values if v[0] != path and not mine & _leaves(self.base, v[0])
+                ),
+            )
+        )
+
+    def choose(self, pass_name: str, use: str) -> Draft:
+        """Return the draft with another technique in a pass; raise ``SketchError`` if it cannot be there."""
+        others = tuple(t for t in self.edits.techniques if t[0] != pass_name)
+        in_file = self.file.graph.find(pass_name)
+        chosen = () if in_file is not None and in_file.use == use else ((pass_name, use),)
+        return self.with_techniques((*others, *chosen))
+
+    def with_techniques(self, techniques: tuple[tuple[str, str], ...]) -> Draft:
+        """Return the draft with these techniques chosen by hand, and no others.
+
+        They are put into the file's own sketch, so that what a pass had comes back with
+        its technique. Raises ``SketchError`` if one cannot be there.
+        """
+        base = self.file
+        for name, use in techniques:
+            base = with_technique(base, name, use)
+        return Draft(self.file, base, replace(self.edits, techniques=techniques))
+
+    def reset(self) -> Draft:
+        """Return the draft as the files say it."""
+        return Draft(self.file, self.file)
+
+
+def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
+    """Return a value as a sketch takes it; None where it has no such parameter, of its type and range.
+
+    Text is read as on the command line.
+    """
+    try:
+        found = check_value(sketch, path, value)
+    except ParameterError:
+        return None
+    if path in LAND or isinstance(value, str):
+        return found
+    return found if _shape(found) == _shape(value) else None
+
+
+def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
+    """Return the draft after its files changed, and a sentence for each edit that gave way."""
+    notes: list[str] = []
+    edits, note = with_camera_of(old.edits, old.file.camera, loaded.camera)
+    notes += filter(None, [note])
+    base, techniques = _with_techniques(old.file, loaded, edits.techniques, notes)
+    values = tuple(_kept(old, base, notes))
+    return Draft(loaded, base, replace(edits, techniques=techniques, values=values)), notes
+
+
+def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
+    """Return edits without their camera where the file has moved its own, and a sentence if one is due."""
+    if edits.camera is None or now == was:
+        return edits, ""
+    note = "" if edits.camera == now else "camera: the file's new one is taken"
+    return replace(edits, camera=None), note
+
+
+def _with_techniques(
+    before: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
+) -> tuple[Sketch, tuple[tuple[str, str], ...]]:
+    """Return the sketch with the techniques that still can be chosen, and which they are."""
+    base, stay = loaded, []
+    for name, use in chosen:
+        was, now = before.graph.find(name), loaded.graph.find(name)
+        if now is not None and now.use == use:
+            continue  # it has become the file's own
+        if now is None or (was is not None and was.use != now.use):
+            notes.append(f"{name}: the technique chosen here gave way to the file's")
+            continue
+        try:
+            base = with_technique(base, name, use)
+            stay.append((name, use))
+        except PlaygroundError as error:
+            notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
+    return base, tuple(stay)
+
+
+def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
+    """Return the values by hand after a reload; add a sentence to the notes for each that gave way."""
+    values = _with_locked(old, values_of(base))
+    before, after = (said_by_files(sketch, [p for p, _ in values]) for sketch in (old.base, base))
+    kept: list[tuple[str, Value]] = []
+    for path, value in values:
+        was, now = _parameter(old.base, path), _parameter(base, path)
+        if path not in LAND and (now is None or taken(old.base, path, value) is None):
+            kept.append((path, value))  # it waits
+            if now is None and was is not None:
+                notes.append(f"{path} is gone; what was set here is kept in case it returns")
+            continue
+        said = newer_word(path, before, after, old.edits.locked)
+        if said is not None:
+            notes += filter(None, [notice(base, path, value, said)])
+            continue
+        if path in LAND:
+            kept.append((path, value))
+            continue
+        assert was is not None and now is not None
+        stays, note = _moved(was, now, value, path, base)
+        if stays is not None:
+            kept.append((path, stays))
+        if note:
+            notes.append(note)
+    return kept
+
+
+def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]:
+    """Return the values by hand, and those of locked parameters that the files would now change."""
+    found = list(old.edits.values)
+    if old.edits.locked:
+        now = values_of(old.sketch)
+        for path in old.edits.locked:
+            leaves = _leaves(old.base, path)
+            moved = any(leaf in after and after[leaf] != now[leaf] for leaf in leaves)
+            if moved and not old.edits.has(path):
+                found.append((path, now[min(leaves)]))
+    return found
+
+
+def _moved(was: Parameter, now: Parameter, value: Value, path: str, base: Sketch) -> tuple[Value | None, str]:
+    """Return what becomes of a value whose parameter is declared anew (None: it goes), and why."""
+    if was.type != now.type or (was.widget.kind == "menu") != (now.widget.kind == "menu"):
+        noun = (was.type, now.type) if was.type != now.type else (was.widget.kind, now.widget.kind)
+        return None, f"{path} was {noun[0]} and is {noun[1]} now: back to the file's value"
+    if now.widget.kind == "menu" and isinstance(value, int) and was.widget.choices != now.widget.choices:
+        choice = was.widget.choices[value]
+        if choice in now.widget.choices:
+            return now.widget.choices.index(choice), ""
+        return None, f"{path}: its menu has no '{choice}' any more: back to the file's value"
+    if taken(base, path, value) is not None:
+        return value, ""
+    low, high = now.widget.low, now.widget.high
+    if low is None or high is None or isinstance(value, str | bool):
+        return None, f"{path} no longer takes {write(was, value)}: back to the file's value"
+    nearest = _clamped(now, value, low, high)
+    if taken(base, path, nearest) is None:
+        return None, f"{path} no longer takes {write(was, value)}: back to the file's value"
+    return nearest, (
+        f"{path} = {write(was, value)} is outside its new range {low:g} to {high:g}:"
+        f" {write(now, nearest)} is taken"
+    )
+
+
+def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Value:
+    numbers = value if isinstance(value, tuple) else (value,)
+    held = [min(max(float(n), low), high) for n in numbers]
+    found = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
+    return found if isinstance(value, tuple) else found[0]
+
+
+def _leaves(sketch: Sketch, path: str) -> set[str]:
+    """Return the paths of the parameters that a path stands for; none where it is gone."""
+    try:
+        return {target.path for target in resolve(sketch.graph, path)}
+    except ParameterError:
+        return set()
+
+
+def _parameter(sketch: Sketch, path: str) -> Parameter | None:
+    try:
+        return resolve(sketch.graph, path)[0].parameter
+    except ParameterError:
+        return None
+
+
+def _shape(value: Value) -> object:
+    """Return what type a value is of: a number that is whole is no real one, and a pair no triple."""
+    return tuple(map(type, value)) if isinstance(value, tuple) else type(value)

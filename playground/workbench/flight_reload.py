@@ -1,0 +1,106 @@
+"""Follow saves in flight: read the sketch again, try it in a process of its own, hand over what is good.
+
+What is wrong is kept as ``error``, and the last good sketch is flown over until it is fixed.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+
+from playground.engine.sandbox import TrySketch
+from playground.errors import ContextError, PlaygroundError
+from playground.sketch.allowed_files import Signature, noting_places
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+from playground.workbench.dependencies import watched
+from playground.workbench.reload_stages import Tester, explained
+from playground.workbench.watcher import Watcher
+
+
+class SaveFollower:
+    """One sketch's; use it with ``with``.
+
+    ``values`` are set over what its files say, ``shown`` is the sketch that is flown over,
+    ``wake`` is called from another thread when something was saved.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        shown: Sketch,
+        values: Mapping[str, object],
+        trial: Tester,
+        driver: str,
+        wake: Callable[[], None],
+    ) -> None:
+        self.error: PlaygroundError | None = None
+        self._path = path
+        self._shown = shown
+        self._values = dict(values)
+        self._trial = trial
+        self._driver = driver
+        self._tried: Sketch | None = None  # waits for the trial's answer
+        self._watcher = Watcher(wake)
+        self._places: Mapping[Path, Signature | None] = {}
+        self._follow(time.time())
+
+    def __enter__(self) -> SaveFollower:
+        self._watcher.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._watcher.stop()
+
+    @property
+    def waits(self) -> bool:
+        """Whether an answer of the trial is awaited."""
+        return self._tried is not None
+
+    def turn(self) -> Sketch | None:
+        """Take in what was saved; return a sketch that has proved good and is another than the one shown."""
+        if self._watcher.take():
+            self._read()
+        if self._tried is None:
+            return None
+        report = self._trial.poll()
+        if report is None:
+            return None
+        good, self._tried = self._tried, None
+        # Without a context the child can try nothing; this one may well have what it takes.
+        if not report.ok and not isinstance(report.error, ContextError):
+            self.error = report.error or PlaygroundError("the trial failed without saying why")
+            self._follow(time.time())
+            return None
+        self._shown, self.error = good, None
+        return good
+
+    def refuse(self, error: Exception) -> None:
+        """Say that the sketch returned last cannot be flown over after all."""
+        self.error = explained(error, self._path)
+
+    def _read(self) -> None:
+        read_at = time.time()
+        self._tried = None
+        try:
+            with noting_places() as self._places:
+                found = load(self._path).with_values(self._values)
+        except Exception as error:
+            self.error = explained(error, self._path)
+        else:
+            # One that was refused is tried again: what it stands on may be another now.
+            if found == self._shown and self.error is None:
+                return
+            self._tried = found
+            self._trial.submit(TrySketch(found, drivers=(self._driver,)))
+        self._follow(read_at)
+
+    def _follow(self, read_at: float) -> None:
+        sketches = [sketch for sketch in (self._shown, self._tried) if sketch is not None]
+        errors = [self.error] if self.error is not None else []
+        files = watched(self._path, sketches, errors, self._places)
+        self._watcher.follow(files, read_at=read_at, read=self._places)

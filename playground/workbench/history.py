@@ -1,0 +1,229 @@
+"""Undo and redo: what each step changed, from what to what.
+
+Nobody has to tell it of an edit. It is shown the state at the end of every turn and
+keeps what differs from the turn before, so that whatever can be set can be undone. A
+step holds only the things that it changed: undoing it leaves all else alone, also
+after the files have been reloaded in between.
+
+What changes while a mouse button is held is one step, and so is what goes on changing
+in the same way within a moment, as the wheel does. A reload is no step: what it takes
+away, it says. Saving moves values into the file: for the steps before it, "as the file
+says" then means what the file said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import cast
+
+from playground.sketch.model import Camera, Value
+from playground.workbench.edits import Edits
+
+MOMENT = 0.7
+"""[s] within which a change of the same things belongs to the step before."""
+MOST = 200
+"""Steps that are kept; the oldest go first."""
+
+KEYFRAMES = "keyframes"
+
+Key = tuple[str, str]
+"""What can change: ("value", path), ("technique", pass), ("lock", path), ("step", path), ("camera", "")
+("keyframes", "") or ("time", "")."""
+State = Mapping[Key, object]
+"""What is set, by what it is; what is as the file says is not in it."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """What one action changed."""
+
+    before: State  # of each thing that changed; None: as the file said
+    after: State
+    name: str = ""  # in words, where whoever did it gave one
+    at: float = 0.0  # [s] when it last went on
+
+
+def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
+    """Return everything that is set by hand."""
+    found: dict[Key, object] = {("value", path): value for path, value in edits.values}
+    found |= {("technique", name): use for name, use in edits.techniques}
+    found |= {("lock", path): True for path in edits.locked}
+    found |= {("step", path): turn for path, turn in steps.items()}
+    if edits.camera is not None:
+        found["camera", ""] = edits.camera
+    return found
+
+
+def edits_of(state: State) -> Edits:
+    """Return the edits that a state holds."""
+    return Edits(
+        tuple((path, cast(Value, value)) for (kind, path), value in state.items() if kind == "value"),
+        tuple((name, cast(str, use)) for (kind, name), use in state.items() if kind == "technique"),
+        cast("Camera | None", state.get(("camera", ""))),
+        tuple(path for (kind, path), _ in state.items() if kind == "lock"),
+    )
+
+
+def steps_of(state: State) -> dict[str, int]:
+    """Return the repeats that a state stops early."""
+    return {path: cast(int, turn) for (kind, path), turn in state.items() if kind == "step"}
+
+
+class History:
+    """The steps so far, oldest first, and how many of them are done."""
+
+    def __init__(self, most: int = MOST) -> None:
+        self.steps: list[Step] = []
+        self.done = 0  # the first so many are; the others can be done again
+        self._most = most
+        self._seen: object = None  # the edits that were looked at last, to know at once that nothing moved
+        self._state: dict[Key, object] | None = None
+        self._of: object = None  # the files that the state stands on
+        self._due: dict[Key, object] = {}  # what an undo has asked for and is not there yet
+        self._open = False  # the last step goes on while the button is held
+        self._name = ""
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a step to take back."""
+        return self.done > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a step to do again."""
+        return self.done < len(self.steps)
+
+    def call(self, name: str) -> None:
+        """Give the next change a name, for one that its parts would not explain."""
+        self._name = name
+
+    def look(self, edits: Edits, steps: Mapping[str, int], of: object, *, held: bool, now: float) -> None:
+        """Take in the state at the end of a turn.
+
+        ``of`` is the sketch as its files say it: another one is a reload. ``held``: a mouse
+        button is down. ``now``: seconds of any clock.
+        """
+        if self._open and not held:
+            self._close()
+        seen = edits, tuple(steps.items())
+        before, self._state = self._state, self._state if seen == self._seen else state_of(edits, steps)
+        assert self._state is not None
+        self._seen = seen
+        if before is None or of is not self._of:
+            self._of = of
+            return
+        changed = {key for key in {*before, *self._state} if before.get(key) != self._state.get(key)}
+        for key in list(changed):
+            if key in self._due and self._due[key] == self._state.get(key):
+                del self._due[key]
+                changed.discard(key)
+        if changed:
+            after = {key: self._state.get(key) for key in changed}
+            self._add({key: before.get(key) for key in changed}, after, held=held, now=now)
+
+    def jump(self, before: float, after: float, *, held: bool, now: float) -> None:
+        """Take in that time was set, from one moment [s] to another."""
+        self._add({("time", ""): before}, {("time", ""): after}, held=held, now=now)
+
+    def record(self, before: State, after: State, name: str, *, now: float) -> None:
+        """Take in a step that is more than what is set by hand; ``settle`` tells the state after it."""
+        self._close()
+        self._name = name
+        self._add(before, after, held=False, now=now)
+
+    def undo(self) -> State:
+        """Take a step back; return what has to be set, None for what is to be as the file says."""
+        if not self.can_undo:
+            return {}
+        self.done -= 1
+        return self._asked(self.steps[self.done].before)
+
+    def redo(self) -> State:
+        """Do a step again; return what has to be set."""
+        if not self.can_redo:
+            return {}
+        self.done += 1
+        return self._asked(self.steps[self.done - 1].after)
+
+    def saved(self, before: State) -> None:
+        """Take in that these are in the file from now on, and what the file said before."""
+        self.steps = [
+            replace(step, before=_said(step.before, before), after=_said(step.after, before))
+            for step in self.steps
+        ]
+
+    def _asked(self, wanted: State) -> State:
+        self._open = False
+        self._due |= wanted
+        return wanted
+
+    def settle(self, edits: Edits, steps: Mapping[str, int]) -> None:
+        """Take a state for granted: an undo has made it. What is still to come of it is no step either."""
+        self._seen, self._state = (edits, tuple(steps.items())), state_of(edits, steps)
+        there = self._state
+        self._due = {key: value for key, value in self._due.items() if there.get(key) != value}
+
+    def _close(self) -> None:
+        """End the step that went on while a button was held; one that came back to where it began is none."""
+        self._open = False
+        if self.done == len(self.steps) and self.steps and not self.steps[-1].after:
+            del self.steps[-1]
+            self.done -= 1
+
+    def _add(self, before: State, after: State, *, held: bool, now: float) -> None:
+        name, self._name = self._name, ""
+        last = self.steps[self.done - 1] if self.done else None
+        again = (
+            last is not None
+            and self.done == len(self.steps)
+            and last.name == name
+            and (self._open or (before.keys() == last.before.keys() and now - last.at < MOMENT))
+        )
+        if again and last is not None:
+            first, latest = {**before, **last.before}, {**last.after, **after}
+            moved = [key for key in first if first[key] != latest[key]]
+            self.steps[-1] = Step({k: first[k] for k in moved}, {k: latest[k] for k in moved}, name, now)
+        else:
+            self.steps = [*self.steps[: self.done], Step(before, after, name, now)][-self._most :]
+        self.done, self._open = len(self.steps), True
+        if not held:
+            self._close()
+
+
+def applied(state: State, changes: State) -> dict[Key, object]:
+    """Return a state with changes made to it; None takes a thing out."""
+    found = {**state, **changes}
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, object], str]) -> str:
+    """Return a step's name.
+
+    ``name_of`` gives a parameter's label from its path, ``write`` its value as text.
+    """
+    if step.name:
+        return step.name
+    kinds = {kind for kind, _ in step.after}
+    if len(step.after) != 1:
+        return f"{len(step.after)} parameters" if kinds == {"value"} else f"{len(step.after)} things"
+    ((kind, path), after), before = next(iter(step.after.items())), next(iter(step.before.values()))
+    if kind == "camera":
+        return "Camera" if after is not None else "Camera back to the file's"
+    if kind == "time":
+        return f"Time {_seconds(before)} to {_seconds(after)}"
+    if kind == "technique":
+        return f"{path}: {after}" if after is not None else f"{path}: the file's technique"
+    if kind == "lock":
+        return f"{'Lock' if after else 'Unlock'} {name_of(path)}"
+    if kind == "step":
+        return f"{path}: step {after}" if after is not None else f"{path}: all steps"
+    return f"{name_of(path)}: {write(path, before)} to {write(path, after)}"
+
+
+def _said(state: State, before: State) -> State:
+    return {key: before.get(key) if value is None else value for key, value in state.items()}
+
+
+def _seconds(value: object) -> str:
+    return f"{value:.2f} s" if isinstance(value, float) else "0 s"

@@ -1,0 +1,303 @@
+"""Two states of a sketch side by side: A is kept as it was, B is what is worked on.
+
+A is a draft, with its texts in memory, and its picture. While nothing but B changes, that
+picture stays. When the camera, the time, the size or the texture that is shown moves on, A
+is drawn again from its draft; where that can no longer be done, since an image that it
+reads is another now or a pass does not draw, its picture stays, and a notice says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.engine.plan import Plan, repeats_of
+from playground.errors import PlaygroundError
+from playground.sketch.model import Sketch
+from playground.workbench.clock import is_animated
+from playground.workbench.edits import Draft
+from playground.workbench.inspect.blend import Beside
+from playground.workbench.last_frame import Painter, Picture
+from playground.workbench.memory import Compared
+from playground.workbench.preview import hastily
+from playground.workbench.resume import first_draft
+from playground.workbench.session import Session
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from playground.engine.engine import Engine
+
+Stamp = tuple[int, int]
+PERIOD = 0.5
+"""[s] that each of the two is seen while they flicker."""
+
+
+class Mode(Enum):
+    """How the two are shown."""
+
+    DIVIDER = "divider"
+    FLICKER = "flicker"
+    DIFFERENCE = "difference"
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One state."""
+
+    path: Path  # of the sketch's file
+    draft: Draft
+    steps: Mapping[str, int]  # repeats that are stopped early
+    files: Mapping[Path, Stamp | None]  # images and heightmaps it reads, as they were
+
+
+class Compare:
+    """A, and how it is shown beside what one session shows."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.mode = Mode.DIVIDER
+        self.split = 0.5  # share of the picture's width where the two meet
+        self.gain = 8.0  # of the difference
+        self.held = False  # the line between them is in the hand
+        self.draws = 0  # pictures of A that were drawn
+        self.beside: Beside | None = None  # who paints the two
+        self._kept: Kept | None = None
+        self._painter: Painter | None = None
+        self._picture: Picture | None = None
+        self._drawn: object = None  # what A's picture shows
+        self._hasty = False  # as of ``workbench.preview``
+        self._told = False  # that A cannot be drawn
+        self._recalled: Draft | None = None  # A of an earlier session, while it is tried
+
+    @property
+    def on(self) -> bool:
+        """Whether there is an A."""
+        return self._kept is not None
+
+    @property
+    def kept(self) -> Kept | None:
+        """A itself, to be taken up again later."""
+        return self._kept
+
+    @property
+    def picture(self) -> moderngl.Texture | None:
+        """A's picture; None where there is no A."""
+        return self._picture.texture if self.on and self._picture is not None else None
+
+    # ── keeping, swapping ────────────────────────────────────────────────────
+
+    def toggle(self) -> None:
+        """Keep what is shown as A, or let A go."""
+        if self.on:
+            self.end()
+        else:
+            self.keep()
+
+    def keep(self) -> None:
+        """Take what is shown for A."""
+        self._kept, self._drawn, self._told = self._now(), None, False
+
+    def take_up(self, kept: Kept) -> None:
+        """Compare with an A that was kept before; it is let go where another sketch is open by now."""
+        self._kept, self._drawn, self._told = kept, None, False
+
+    def keep_other(self, draft: Draft, steps: Mapping[str, int]) -> None:
+        """Take another state of the sketch that is shown for A; it is drawn as B is seen."""
+        now = self._now()
+        if now is not None:
+            self._kept, self._drawn, self._told = replace(now, draft=draft, steps=dict(steps)), None, False
+
+    def end(self) -> None:
+        """Let A go."""
+        self._kept = None
+        self.release()
+
+    def back(self) -> None:
+        """Go on from A, which stays."""
+        if self._kept is not None:
+            self._take(self._kept)
+
+    def swap(self) -> None:
+        """Go on from A, and take what was shown for A."""
+        now, before = self._now(), self._kept
+        if before is not None and now is not None:
+            self._take(before)
+            self._kept, self._drawn, self._told = now, None, False
+
+    # ── over a restart ───────────────────────────────────────────────────────
+
+    def remembered(self) -> Compared | None:
+        """Return what brings A back in a later session; None where there is none."""
+        if self._kept is None:
+            return None
+        steps = tuple(sorted(self._kept.steps.items()))
+        return Compared(self._kept.draft.edits, steps, self.mode.value, self.split, self.gain)
+
+    def recall(self, compared: Compared) -> bool:
+        """Compare with A of an earlier session, over the files as they are now; say whether that is done.
+
+        Until it has proved good it is tried as what is saved is: ask again.
+        """
+        session = self.session
+        if session.shown is None or session.plan is None:
+            return False
+        if self._recalled is None:
+            self._recalled, _ = first_draft(session.shown.file, compared.edits, {})
+        draft = self._recalled
+        report = session.tried(draft.sketch)
+        if report is None:
+            return False
+        self._recalled = None
+        if not report.ok:
+            session.notes.append(f"A of the last session is left out: {report.error}")
+            return True
+        try:
+            plan = session.engine.plan_for(draft.sketch, session.plan.frame_size, session.clock.time)
+        except PlaygroundError as error:
+            session.notes.append(f"A of the last session is left out: {error}")
+            return True
+        files = {path: _stamp(path) for path in _files_of(plan)}
+        self._kept, self._drawn, self._told = (
+            Kept(session.path, draft, dict(compared.steps), files),
+            None,
+            False,
+        )
+        self.split, self.gain = compared.split, compared.gain
+        self.mode = next((mode for mode in Mode if mode.value == compared.mode), Mode.DIVIDER)
+        return True
+
+    def _now(self) -> Kept | None:
+        session = self.session
+        if session.shown is None or session.plan is None:
+            return None
+        files = {path: _stamp(path) for path in _files_of(session.plan)}
+        return Kept(session.path, session.shown, dict(session.steps), files)
+
+    def _take(self, kept: Kept) -> None:
+        session = self.session
+        if session.shown is not None and kept.draft.file is not session.shown.file:
+            session.notes.append("A is of the files as they were; the next save brings those of now")
+        session.shown = kept.draft
+        session.steps.clear()
+        session.steps.update(kept.steps)
+        session.look_again()
+
+    # ── A's picture ──────────────────────────────────────────────────────────
+
+    def follow(self, picture: moderngl.Texture) -> None:
+        """Bring A's picture to the size, camera and time of B's, which the session has just drawn."""
+        kept, session = self._kept, self.session
+        if kept is None:
+            return
+        if kept.path != session.path:
+            self.end()  # another sketch was opened
+            return
+        plan = session.plan
+        if plan is None:
+            return
+        if self._painter is not None and self._painter.ctx is not session.engine.ctx:
+            self._picture = self._painter = self._drawn = None  # they went with a context that was lost
+        if self._picture is None:
+            self._painter = Painter(session.engine.ctx)
+            self._picture = Picture(self._painter)
+        wanted = self._wanted(kept, plan)
+        if self._drawn is None and kept.draft is session.shown and kept.steps == session.steps:
+            with session.engine.borrowed():
+                self._picture.keep(picture)
+            self._drawn, self._hasty = wanted, session.hasty
+        elif wanted != self._drawn:
+            self._draw(kept, plan, hasty=session.engine.info.software)
+            self._drawn = wanted
+        elif self._hasty and not session.hasty:
+            self._draw(kept, plan, hasty=False)
+
+    def release(self) -> None:
+        """Give back what was made in the engine's context; it is drawn again where it is needed."""
+        for made in (self._picture, self._painter, self.beside):
+            if made is not None:
+                made.release()
+        self._picture = self._painter = self.beside = self._drawn = None
+
+    def _wanted(self, kept: Kept, plan: Plan) -> object:
+        shown = self.session.map
+        time = plan.time if is_animated(kept.draft.sketch) else 0.0
+        seen = plan.frame_size, plan.sketch.camera, plan.interpolated
+        return kept.draft, seen, time, shown, self.session.engine
+
+    def _draw(self, kept: Kept, plan: Plan, *, hasty: bool) -> None:
+        assert self._picture is not None
+        session, engine = self.session, self.session.engine
+        sketch = self._seen_as(kept.draft.sketch, plan)
+        chosen = hastily(sketch) if hasty else sketch
+        changed = [path for path, stamp in kept.files.items() if _stamp(path) != stamp]
+        try:
+            if changed:
+                raise PlaygroundError(f"{changed[0].name} is another file now")
+            with as_before(engine, plan):
+                repeats = repeats_of(chosen, time=plan.time)
+                # A save may have left fewer steps than it stopped at.
+                steps = {path: step for path, step in kept.steps.items() if step < repeats.get(path, 0)}
+                texture = _drawn(engine, chosen, plan, steps)
+                self._picture.keep(texture)
+        except Exception as error:
+            if not self._told:
+                session.notes.append(f"A stays as it was drawn last: {error}")
+            self._told, self._hasty = True, False
+            return
+        self.draws += 1
+        self._hasty = chosen is not sketch
+
+    def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
+        """Return a sketch as B is seen: by its camera, and the same texture if one is shown."""
+        shown = self.session.map
+        seen = sketch.with_camera(plan.sketch.camera)
+        return shown.of(seen) if shown is not None else seen
+
+
+@contextmanager
+def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
+    """Draw something else, and have the engine tell of the picture before it all the same."""
+    ran, texels, times, triangles = engine.ran, engine.texels, engine.times, engine.triangles
+    runs, profiling = engine.runs.copy(), engine.profiling
+    engine.profiling = False
+    try:
+        yield
+    finally:
+        # All of it is kept, so that nothing runs; what was computed for the picture is current again.
+        try:
+            _drawn(engine, plan.sketch, plan, plan.steps)
+        finally:
+            engine.profiling = profiling
+            engine.ran, engine.texels, engine.times = ran, texels, times
+            engine.runner.draws.drawn = triangles
+            engine.runs.clear()
+            engine.runs.update(runs)
+
+
+def _drawn(engine: Engine, sketch: Sketch, plan: Plan, steps: Mapping[str, int]) -> moderngl.Texture:
+    """Draw a sketch as a plan does its own."""
+    size, fills = plan.frame_size, plan.interpolated
+    return engine.draw(sketch, size=size, time=plan.time, steps=steps, interpolated=fills)
+
+
+def _files_of(plan: Plan) -> list[Path]:
+    """Return the images and heightmaps that a picture was made from."""
+    found = []
+    for step in plan.walk():
+        for parameter in step.kernel.parameters:
+            if parameter.widget.kind == "file" and step.values.get(parameter.name):
+                found.append(Path(str(step.values[parameter.name])))
+    return found
+
+
+def _stamp(path: Path) -> Stamp | None:
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size

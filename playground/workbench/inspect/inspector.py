@@ -1,0 +1,222 @@
+"""Say what lies under the mouse: every pass's number there, where on the land that is, how steep.
+
+It reads what the last picture was made from, a texel of each texture; it draws nothing of
+the sketch, and asks again only when the mouse or the picture has moved on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from playground.engine.plan import Plan
+from playground.engine.view_inputs import height_seen
+from playground.gpu.textures import read_texels
+from playground.sketch.flatten import Ref
+from playground.workbench.inspect.surface_point import Ground
+from playground.workbench.session import Session
+
+if TYPE_CHECKING:
+    import moderngl
+
+Pixel = tuple[int, int]
+"""Across and up, from the lower left."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What one texture has at a place."""
+
+    name: str  # "pass" or "pass:output"
+    texel: tuple[int, int]
+    values: tuple[float, ...]
+    metres: float | None = None  # where the number is a height
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place of the land."""
+
+    east: float  # [m] from the land's south-west corner
+    north: float
+    height: float  # [m] above the land's height 0
+    above_sea: float  # [m]
+    normal: tuple[float, float, float]  # a unit vector: east, north, up
+    slope: float  # [degrees] from level
+
+
+@dataclass(frozen=True)
+class Found:
+    """All that is known of a pixel."""
+
+    pixel: Pixel
+    picture: tuple[int, ...]  # the picture's own colour, 0..255, display-encoded
+    spot: Spot | None  # None: sky, or no land in the picture
+    readings: tuple[Reading, ...]
+    shown: Reading | None = None  # in a map: the texture that it shows
+    missing: tuple[str, ...] = ()  # passes that this picture was made without
+
+
+@dataclass
+class Inspector:
+    """What lies under the mouse in one session."""
+
+    session: Session
+    on: bool = False
+    inner: bool = False  # passes inside techniques as well
+    reads: int = 0  # how often anything was asked for
+    _ground: Ground | None = None
+    _asked: object = None
+    _found: Found | None = field(default=None, repr=False)
+
+    def toggle(self) -> None:
+        """Look closely, or no longer."""
+        self.on = not self.on
+
+    def at(self, pixel: Pixel, picture: moderngl.Texture) -> Found | None:
+        """Return what lies under a pixel of the picture; None outside it.
+
+        ``picture`` is what the session's last ``frame`` returned.
+        """
+        width, height = picture.size
+        if not (0 <= pixel[0] < width and 0 <= pixel[1] < height):
+            return None
+        asked = pixel, self.session.draws, self.inner, id(self.session.engine)
+        if asked != self._asked:
+            self._asked = asked
+            with self.session.engine.borrowed():
+                self._found = self._look(pixel, picture)
+            self.reads += 1
+        return self._found
+
+    def release(self) -> None:
+        """Give back what was made in the engine's context."""
+        if self._ground is not None:
+            self._ground.release()
+        self._ground = self._asked = None
+
+    def _look(self, pixel: Pixel, picture: moderngl.Texture) -> Found:
+        session, plan = self.session, self.session.plan
+        colour = read_texels(picture, pixel, (1, 1))[0, 0]
+        bytes_ = tuple(round(float(c) * 255) for c in colour[:3])
+        if plan is None:
+            return Found(pixel, bytes_, None, ())
+        if session.map is not None:
+            return self._look_at_map(plan, pixel, bytes_, picture.size)
+        ref = height_seen(plan)
+        heights = self._texture(plan, ref)
+        extent, relief = plan.land.extent, plan.land.relief
+        if heights is None or extent is None or relief is None or not session.orbits:
+            return Found(pixel, bytes_, None, ())
+        if self._ground is None or self._ground.ctx is not session.engine.ctx:
+            self._ground = Ground(session.engine.ctx)
+        place = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
+        hit = self._ground.under(plan.eye, place, heights, extent, relief)
+        if hit is None:
+            return Found(pixel, bytes_, None, ())
+        readings, missing = self._readings(plan, hit[:2])
+        return Found(pixel, bytes_, spot_of(plan, heights, hit), readings, None, missing)
+
+    def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
+        assert self.session.map is not None
+        ref = self.session.map.ref
+        shown = self._texture(plan, ref)
+        texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
+        if shown is None or texel is None:
+            return Found(pixel, colour, None, ())
+        share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
+        heights = self._texture(plan, height_seen(plan))
+        spot = None
+        if heights is not None:
+            high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
+            spot = spot_of(plan, heights, (*share, float(high)))
+        readings, missing = self._readings(plan, share)
+        return Found(pixel, colour, spot, readings, self._reading(plan, ref, shown, texel), missing)
+
+    def _readings(
+        self, plan: Plan, share: tuple[float, float]
+    ) -> tuple[tuple[Reading, ...], tuple[str, ...]]:
+        """Return every pass's number at the node of its own that is nearest to a place of the land."""
+        found, missing = [], []
+        for name in names_of(plan, inner=self.inner):
+            texture = self._texture(plan, name)
+            if texture is None:
+                missing.append(name)
+            else:
+                found.append(self._reading(plan, name, texture, _node(share, texture.size)))
+        return tuple(found), tuple(missing)
+
+    def _reading(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Reading:
+        values = tuple(read_texels(texture, texel, (1, 1))[0, 0].tolist())
+        relief = plan.land.relief
+        is_height = len(values) == 1 and name.partition(":")[2] == "height" and relief is not None
+        return Reading(name, texel, values, values[0] * relief if is_height and relief is not None else None)
+
+    def _texture(self, plan: Plan, name: str) -> moderngl.Texture | None:
+        """Return the texture of that name which the last picture was made from; None where it had none."""
+        path, _, output = name.partition(":")
+        ref: Ref | None = plan.flat.outputs.get(path, {}).get(output) if name else None
+        result = self.session.engine.results.get(ref.path) if ref is not None else None
+        return result.textures.get(ref.output) if result is not None and ref is not None else None
+
+
+def names_of(plan: Plan, *, inner: bool) -> list[str]:
+    """Return the textures of the sketch's own passes as "pass:output", those inside them too if asked for."""
+    found = []
+    for path, outputs in plan.flat.outputs.items():
+        if path.partition(".")[0] != "view" and (inner or "." not in path):
+            found += [f"{path}:{output}" for output in outputs]
+    return found
+
+
+def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) -> tuple[int, int] | None:
+    """Return which texel of a texture ``shown`` texels large ``view/map`` puts at a pixel; None beside it.
+
+    In single precision and in the same order as there.
+    """
+    whole, texels = np.array(size, np.float32), np.array(shown, np.float32)
+    worst = (texels / whole).max()
+    half = np.float32(0.5)
+    place = (np.array(pixel, np.float32) + half - half * whole) * worst + half * texels
+    if (place < 0).any() or (place >= texels).any():
+        return None
+    return int(place[0]), int(place[1])
+
+
+def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> Spot:
+    """Return the land's place there; ``hit``: shares east and north, and the height between the texels.
+
+    The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
+    """
+    land, (nx, ny) = plan.land, heights.size
+    assert land.extent is not None and land.relief is not None
+    x, y = _node(hit[:2], heights.size)
+    west, south, east, north = max(x - 1, 0), max(y - 1, 0), min(x + 1, nx - 1), min(y + 1, ny - 1)
+    texels = read_texels(heights, (west, south), (east - west + 1, north - south + 1))[..., 0]
+    block = texels.astype(np.float64) * land.relief
+    row, column = block[y - south], block[:, x - west]
+    steps = land.extent[0] / max(nx - 1, 1), land.extent[1] / max(ny - 1, 1)
+    rise = tuple(
+        float(line[-1] - line[0]) / ((len(line) - 1) * step) if len(line) > 1 else 0.0
+        for line, step in zip((row, column), steps, strict=True)
+    )
+    steep = math.hypot(*rise)
+    long = math.hypot(steep, 1.0)
+    high = hit[2] * land.relief
+    return Spot(
+        hit[0] * land.extent[0],
+        hit[1] * land.extent[1],
+        high,
+        high + (land.base_elevation or 0.0),
+        (-rise[0] / long, -rise[1] / long, 1.0 / long),
+        math.degrees(math.atan(steep)),
+    )
+
+
+def _node(share: tuple[float, float], size: tuple[int, int]) -> tuple[int, int]:
+    """Return the node nearest to a place, in shares of the land's sides."""
+    x, y = (min(max(round(s * (n - 1)), 0), n - 1) for s, n in zip(share, size, strict=True))
+    return x, y

@@ -1,0 +1,82 @@
+"""The colours of a map's ramp, drawn by the very functions that draw the map."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
+from playground.paths import GLSL
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from playground.sketch.map_sketch import Map
+
+STEPS = 64
+_MAIN = """
+uniform int ramp;
+uniform float steps;
+out vec4 colour;
+void main() { colour = vec4(ramp_colour(ramp, (gl_FragCoord.x - 0.5) / (steps - 1.0)), 1.0); }
+"""
+Colour = tuple[float, float, float]
+
+
+def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
+    """Return ``STEPS`` display-encoded colours of a ramp, evenly from its begin to its end.
+
+    The context is the caller's to make current and to leave as it was; nothing stays in it.
+    """
+    text = "#version 330\n" + (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8") + _MAIN
+    program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=text)
+    triangle = ctx.vertex_array(program, [])
+    texture = make_texture(ctx, (STEPS, 1), "rgba32f")
+    framebuffer = make_framebuffer(ctx, [texture])
+    try:
+        program["ramp"].value = ramp  # type: ignore[union-attr]
+        program["steps"].value = float(STEPS)  # type: ignore[union-attr]
+        framebuffer.use()
+        ctx.disable(ctx.BLEND | ctx.DEPTH_TEST | ctx.CULL_FACE)
+        triangle.render(ctx.TRIANGLES, vertices=3)
+        values = np.frombuffer(texture.read(), np.float32).reshape(STEPS, 4)
+    finally:
+        for made in (framebuffer, texture, triangle, program):
+            made.release()
+    return tuple((float(r), float(g), float(b)) for r, g, b, _ in values)
+
+
+def ends_of(shown: Map) -> tuple[float, float]:
+    """Return the numbers at the two ends of a map's legend.
+
+    Around a middle they are as far from it on either side, whatever the map's range begins with.
+    """
+    low, high, middle = (_number(shown, name) for name in ("lowest", "highest", "middle"))
+    if _number(shown, "ramp") != 4:
+        return low, high
+    reach = max(abs(high - middle), abs(low - middle))
+    return middle - reach, middle + reach
+
+
+@lru_cache(maxsize=256)
+def ticks(low: float, high: float, most: int = 5) -> tuple[float, ...]:
+    """Return round numbers between two, at most so many."""
+    span = abs(high - low)
+    if not (0 < span < 1e30):
+        return (low,)
+    step = 10.0 ** np.floor(np.log10(span / max(most - 1, 1)))
+    for factor in (1, 2, 2.5, 5, 10, 20):
+        if span / (step * factor) <= most - 1:
+            step *= factor
+            break
+    first = np.ceil(min(low, high) / step - 1e-9)
+    last = np.floor(max(low, high) / step + 1e-9)
+    return tuple(float(n * step) + 0.0 for n in np.arange(first, last + 1))
+
+
+def _number(shown: Map, name: str) -> float:
+    value = shown.value(name)
+    return float(value) if isinstance(value, int | float) else 0.0

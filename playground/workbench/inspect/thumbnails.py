@@ -1,0 +1,157 @@
+"""Small pictures of textures: drawn small by the graphics card, only when stale, one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.triangle import TRIANGLE
+from playground.sketch.colour import linear_to_srgb
+from playground.workbench.session import Session
+
+if TYPE_CHECKING:
+    import moderngl
+
+SIDE = 64
+"""Texels of a thumbnail."""
+APART = 0.1
+"""[s] from one that is drawn to the next."""
+_NO_NUMBER = (1.0, 0.0, 1.0)
+_FRAGMENT = """#version 330
+uniform sampler2D shown;
+uniform float side;
+out vec4 value;
+void main() {
+    ivec2 size = textureSize(shown, 0);
+    value = texelFetch(shown, min(ivec2(gl_FragCoord.xy / side * vec2(size)), size - 1), 0);
+}
+"""
+
+
+class Thumbnails:
+    """Those of one session's textures, by name."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.made = 0  # how many were drawn so far
+        self._kept: dict[str, tuple[object, moderngl.Texture]] = {}  # what each is of, and the thumbnail
+        self._shrink: _Shrink | None = None
+        self._last = -APART
+
+    def get(self, name: str) -> moderngl.Texture | None:
+        """Return the thumbnail of "pass:output" as it was drawn last, ``SIDE`` texels a side; rgba8."""
+        kept = self._kept.get(name)
+        return kept[1] if kept is not None else None
+
+    def is_current(self, name: str) -> bool:
+        """Say whether the last picture was made from this very texture."""
+        found, kept = self._source(name), self._kept.get(name)
+        return found is not None and kept is not None and kept[0] == found[1]
+
+    def refresh(self, names: Iterable[str], now: float) -> bool:
+        """Draw the first that is stale, unless another was drawn a moment ago; say whether more are stale.
+
+        ``now``: seconds of any clock. What has another name is given back.
+        """
+        wanted = list(names)
+        for name in [name for name in self._kept if name not in wanted]:
+            self._kept.pop(name)[1].release()
+        stale = [n for n in wanted if self._source(n) is not None and not self.is_current(n)]
+        if stale and now - self._last >= APART:
+            self._last = now
+            self._draw(stale.pop(0))
+        return bool(stale)
+
+    def release(self) -> None:
+        """Give all of them back; they are drawn again where they are needed."""
+        kept, self._kept = self._kept, {}
+        shrink, self._shrink = self._shrink, None
+        for _, texture in kept.values():
+            texture.release()
+        if shrink is not None:
+            shrink.release()
+
+    def _draw(self, name: str) -> None:
+        found = self._source(name)
+        assert found is not None
+        texture, of = found
+        engine = self.session.engine
+        if self._shrink is not None and self._shrink.ctx is not engine.ctx:
+            self._shrink, self._kept = None, {}  # they went with a context that was lost
+        with engine.borrowed():
+            if self._shrink is None:
+                self._shrink = _Shrink(engine.ctx)
+            values = self._shrink.values(texture)
+            kept = self._kept.get(name)
+            small = kept[1] if kept is not None else make_texture(engine.ctx, (SIDE, SIDE), "rgba8")
+            small.filter = (engine.ctx.LINEAR, engine.ctx.LINEAR)
+            small.write(picture_of(values, texture.components, encoded=texture.dtype == "f1").tobytes())
+        self._kept[name] = of, small
+        self.made += 1
+
+    def _source(self, name: str) -> tuple[moderngl.Texture, object] | None:
+        plan, engine = self.session.plan, self.session.engine
+        if plan is None:
+            return None
+        path, _, output = name.partition(":")
+        if path.partition(".")[0] == "view" and self.session.map is not None:
+            return None  # that is the map
+        ref = plan.flat.outputs.get(path, {}).get(output)
+        result = engine.results.get(ref.path) if ref is not None else None
+        if ref is None or result is None:
+            return None
+        texture = result.textures[ref.output]
+        return texture, (id(engine), result.number, engine.runs[ref.path])
+
+
+def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -> NDArray[np.uint8]:
+    """Return texels, (ny, nx, 4), as a picture of bytes.
+
+    One or two components are numbers, from the least to the greatest; more are light, and
+    ``encoded`` colours are as the eye takes them already.
+    What is no number is magenta.
+    """
+    shown = values[..., :1] if components < 3 else values[..., :3]
+    finite = np.isfinite(shown)
+    tidy = np.where(finite, shown, 0.0).astype(np.float64)
+    if components < 3:
+        low = float(tidy[finite].min()) if finite.any() else 0.0
+        high = float(tidy[finite].max()) if finite.any() else 0.0
+        tidy = np.repeat((tidy - low) / ((high - low) or 1.0), 3, axis=2)
+        finite = np.repeat(finite, 3, axis=2)
+    else:
+        tidy = np.clip(tidy, 0.0, 1.0)
+        tidy = tidy if encoded else np.asarray(linear_to_srgb(tidy))
+    colour = np.where(finite.all(axis=2, keepdims=True), tidy, np.array(_NO_NUMBER))
+    alpha = np.ones((*colour.shape[:2], 1))
+    whole: NDArray[np.float64] = np.concatenate([colour, alpha], axis=2)
+    return np.rint(np.clip(whole, 0, 1) * 255).astype(np.uint8)
+
+
+class _Shrink:
+    """Draws a texture into few texels, each one of its own, and reads those."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.ctx = ctx
+        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
+        self._triangle = ctx.vertex_array(self._program, [])
+        self._texture = make_texture(ctx, (SIDE, SIDE), "rgba32f")
+        self._framebuffer = make_framebuffer(ctx, [self._texture])
+
+    def values(self, texture: moderngl.Texture) -> NDArray[np.float32]:
+        self._framebuffer.use()
+        self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
+        self.ctx.clear_samplers(0, 1)
+        texture.use(0)
+        self._program["shown"].value = 0  # type: ignore[union-attr]
+        self._program["side"].value = float(SIDE)  # type: ignore[union-attr]
+        self._triangle.render(self.ctx.TRIANGLES, vertices=3)
+        return np.frombuffer(self._texture.read(), np.float32).reshape(SIDE, SIDE, 4)
+
+    def release(self) -> None:
+        for made in (self._framebuffer, self._texture, self._triangle, self._program):
+            made.release()

@@ -1,0 +1,212 @@
+"""Shaders that a reader breaks, mends or edits: each as a copy that is drawn in place of its file.
+
+Nothing is written. A page that is turned puts its copies away; what was typed in them is
+there again when they are opened the next time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from playground.errors import PlaygroundError
+from playground.lessons.excerpt import Excerpt, excerpt
+from playground.lessons.figure_renders import Picture, draw, faulty
+from playground.lessons.model import Break, Code, Scene
+from playground.paths import GLSL, shown
+from playground.sketch.model import kernels_of
+from playground.sketch.source import read_text
+from playground.sketch.text_overrides import with_texts
+from playground.workbench.actions import Actions
+from playground.workbench.inspect.compare import as_before
+from playground.workbench.lesson.figure_view import Stage
+from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
+from playground.workbench.reload_stages import Stage as Coming
+
+_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
+_SAME = 0.25
+"""Mean difference of two pictures, of 255, below which they are the same."""
+
+WHOLE, BROKEN, MENDED, TOLD = "", "broken", "mended", "told"
+"""How far a fault has come: TOLD where the lesson has mended it."""
+
+
+@dataclass
+class Faults:
+    """Those of one reader; ``say`` gives words of the interface by key."""
+
+    actions: Actions
+    stage: Stage
+    say: Callable[[str], str]
+    state: dict[str, str] = field(default_factory=dict)  # of each fault, by block
+    typed: dict[str, str] = field(default_factory=dict)  # what was typed in a copy, by block
+
+    def __post_init__(self) -> None:
+        self.copies = Copies(self.actions)
+        self._on: Break | None = None  # the fault whose copy stands in
+        self._editing: dict[Path, str] = {}  # which block each copy is of
+        self._to_check = False
+
+    @property
+    def texts(self) -> Mapping[str, str]:
+        """What stands in for files, by absolute path."""
+        return {str(path): copy.base for path, copy in self.copies.open.items()}
+
+    @property
+    def waits(self) -> bool:
+        """Whether a mend is still to be looked at."""
+        return self._to_check and not self.stage.busy
+
+    # ── faults ───────────────────────────────────────────────────────────────
+
+    def break_it(self, block: Break) -> None:
+        """Draw a fault, and open the text that it is in."""
+        if block.scene is None:
+            return
+        self.leave()
+        path = file_of(block)
+        try:
+            text = self.typed.get(block.name) or faulty(block)
+        except PlaygroundError as error:
+            self.actions.say(str(error))
+            return
+        begins = _KERNEL.search(text)
+        line = line_of(text, begins[0]) if begins else 1  # the fault itself is to be found
+        self._open(block, path, text, line)
+        self._on, self.state[block.name] = block, BROKEN
+        self.stage.show(block.scene, (block.name, 1), self.texts)
+        self._to_check = text != faulty(block)
+
+    def focus(self, block: Break) -> None:
+        """Bring the copy of a fault to the front, also where its window was closed."""
+        self.copies.focus(file_of(block))
+
+    def mend_it(self, block: Break) -> None:
+        """Draw the file's own text again."""
+        if block.scene is None:
+            return
+        self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
+        self._on, self._to_check = None, False
+        self.state[block.name] = TOLD
+        self.stage.show(block.scene, (block.name, 0), self.texts)
+
+    def check(self) -> bool:
+        """Look whether the reader's own mend shows the whole picture; say whether there was one."""
+        session, block = self.actions.session, self._on
+        if not self._to_check or block is None or block.scene is None or self.stage.busy:
+            return False
+        self._to_check = False
+        if session.error is not None or session.plan is None or session.stage is not Coming.NONE:
+            return True
+        path = file_of(block)
+        text = self.copies.text_of(path)
+        if text is None:
+            return True
+        try:
+            with as_before(session.engine, session.plan):
+                same = self._difference(block.scene, {str(path): text}) < _SAME
+        except PlaygroundError as error:
+            self.actions.say(str(error))
+            return True
+        if same and self.state[block.name] != MENDED:
+            self.actions.say(self.say("mended"))
+        self.state[block.name] = MENDED if same else BROKEN
+        return True
+
+    def _difference(self, scene: Scene, texts: Mapping[str, str]) -> float:
+        small = Picture("", scene).smaller().scene
+        engine = self.actions.session.engine
+        whole = draw(engine, small).array.astype(np.float64)
+        mine = draw(engine, replace(small, sketch=with_texts(small.sketch, texts))).array
+        return float(np.abs(whole - mine)[..., :3].mean())
+
+    # ── code ─────────────────────────────────────────────────────────────────
+
+    def excerpt(self, block: Code) -> Excerpt:
+        """Return the code as it is now: in the copy, or in the file; raise ``SketchError`` if it is gone."""
+        path = file_of(block)
+        text = self.copies.text_of(path)
+        return excerpt(block.file, block.anchor, read_text(path) if text is None else text)
+
+    def edit(self, block: Code) -> None:
+        """Open a copy of the code's file at its place."""
+        path = file_of(block)
+        try:
+            line = self.excerpt(block).line
+            if not self.copies.focus(path, line):
+                text = self.copies.text_of(path) or self.typed.get(block.name) or read_text(path)
+                self._open(block, path, text, line)
+                self._draw()
+        except PlaygroundError as error:
+            self.actions.say(str(error))
+            return
+        sketch = self.actions.session.sketch
+        if sketch is not None and not _uses(sketch.graph, path):
+            self.actions.say(self.say("not_in_view").format(shown(path)))
+
+    def is_edited(self, block: Code) -> bool:
+        """Say whether a copy with another text stands in for the code's file."""
+        text = self.copies.text_of(file_of(block))
+        return text is not None and text != read_text(file_of(block))
+
+    def put_back(self, block: Code) -> None:
+        """Draw the file's own text again, and forget what was typed."""
+        self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
+        if self._on is not None and file_of(self._on) == file_of(block):
+            self.typed.pop(self._on.name, None)
+            self.leave()
+        self._draw()
+
+    # ── copies ───────────────────────────────────────────────────────────────
+
+    def leave(self) -> None:
+        """Take a fault off the stage: another picture comes."""
+        if self._on is not None:
+            self.copies.close(file_of(self._on))
+            if self.state[self._on.name] == BROKEN:
+                self.state[self._on.name] = WHOLE
+            self._on, self._to_check = None, False
+
+    def put_away(self, *, drawn: bool = True) -> None:
+        """Close all copies; ``drawn``: and draw the files themselves."""
+        self.leave()
+        if self.copies.open:
+            self.copies.close()
+        if drawn and self.actions.session.texts:
+            self._draw()
+
+    def forget(self) -> None:
+        """Forget what was typed and mended: another lesson is opened."""
+        self.put_away()
+        self.state.clear()
+        self.typed.clear()
+
+    def _open(self, block: Break | Code, path: Path, text: str, line: int) -> None:
+        def apply(new: str) -> None:
+            self.typed[block.name] = new
+            self._draw()
+            self._to_check = self._on is not None
+
+        def leave(new: str) -> None:
+            self.typed[block.name] = new
+
+        copy = Copy(path, text, apply=apply, leave=leave, note=self.say("applied"), label=self.say("copy"))
+        self.copies.edit(copy, line)
+
+    def _draw(self) -> None:
+        self.stage.set_texts(self.texts)
+
+
+def file_of(block: Break | Code) -> Path:
+    """Return the file that a block is about."""
+    return (GLSL / block.file).resolve()
+
+
+def _uses(technique: object, path: Path) -> bool:
+    return str(path) in {file for _, kernel in kernels_of(technique) for file in kernel.files}  # type: ignore[arg-type]

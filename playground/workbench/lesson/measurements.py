@@ -1,0 +1,64 @@
+"""The numbers of a lesson, computed on the session's own engine while nothing else is to be done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from playground.errors import PlaygroundError
+from playground.lessons.measuring import Number, filled, measured, named_in
+from playground.lessons.model import Block, Lesson, Measure, Words, words_of
+from playground.workbench.inspect.compare import as_before
+from playground.workbench.reload_stages import Stage
+from playground.workbench.session import Session
+
+Known = dict[str, Number]
+
+
+@dataclass
+class Numbers:
+    """What the measures of the lessons read so far came to."""
+
+    session: Session
+    known: dict[str, Known] = field(default_factory=dict)  # by lesson and measure
+    failed: dict[tuple[str, str], str] = field(default_factory=dict)  # why there is no number
+    wanted: list[tuple[str, Measure]] = field(default_factory=list)
+
+    def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
+        """Ask for all numbers that blocks of a lesson show."""
+        names = {name for block in blocks for words in words_of(block) for name in named_in(words)}
+        names |= {block.name for block in blocks if isinstance(block, Measure)}
+        found = self.known.setdefault(lesson.name, {})
+        self.wanted = [
+            (lesson.name, measure)
+            for measure in lesson.measures
+            if measure.name in names
+            and measure.name not in found
+            and (lesson.name, measure.name) not in self.failed
+        ]
+
+    def waits(self, lesson: Lesson, name: str) -> bool:
+        """Say whether a number is still to be computed."""
+        return any((lesson.name, name) == (other, measure.name) for other, measure in self.wanted)
+
+    @property
+    def ready(self) -> bool:
+        """Whether a number is wanted, and the picture rests."""
+        session = self.session
+        return bool(self.wanted) and session.plan is not None and session.stage is Stage.NONE
+
+    def compute(self) -> bool:
+        """Compute the next number that is wanted, where the picture rests; say whether one was."""
+        session = self.session
+        if not self.ready or session.plan is None:
+            return False
+        lesson, measure = self.wanted.pop(0)
+        try:
+            with as_before(session.engine, session.plan):
+                self.known[lesson][measure.name] = measured(session.engine, measure)
+        except PlaygroundError as error:
+            self.failed[lesson, measure.name] = error.diagnostics[0].message
+        return True
+
+    def fill(self, words: Words, lesson: Lesson) -> Words:
+        """Return words with the numbers of now; "…" stands for one that is not there yet."""
+        return filled(words, self.known.get(lesson.name, {}), comma=lesson.language == "fr")

@@ -1,0 +1,276 @@
+"""A reader and the lessons: which page is open, what of it is on the stage, what was asked and answered.
+
+Draws nothing. Whoever does calls ``turn`` once a turn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.errors import PlaygroundError
+from playground.lessons.library import LANGUAGES, preferred_language
+from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, Scene, Section, Slider, Steps
+from playground.lessons.read import Summary
+from playground.workbench.actions import Actions
+from playground.workbench.lesson.bugs import Faults
+from playground.workbench.lesson.figure_state import steps_of
+from playground.workbench.lesson.figure_view import Stage, comparable
+from playground.workbench.lesson.labels import words_in
+from playground.workbench.lesson.measurements import Numbers
+from playground.workbench.lesson.progress import Progress, progress_file, write_progress
+from playground.workbench.lesson.shelf import Shelf
+from playground.workbench.text_file import unsaved
+
+_TURN, _VALUE = 0.8, 0.5
+"""[s] that a turn, and a value of a sweep, is seen while it plays."""
+
+BOTH = -1
+"""The place of a comparison where two pictures are seen at once."""
+
+Seen = Steps | Slider | Compare | Figure | Exercise
+
+
+@dataclass
+class Reading:
+    """One reader's."""
+
+    actions: Actions
+    progress: Progress
+    file: Path = field(default_factory=progress_file)  # where the progress is remembered
+    begins: Callable[[], None] = lambda: None  # told before a lesson takes the stage
+    play: Callable[[Path], None] | None = None  # opens a sketch as the reader's own
+    lesson: Lesson | None = None
+    at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
+    shown: set[tuple[str, str]] = field(default_factory=set)  # what was asked for: (block, "answer")
+    chosen: dict[str, int] = field(default_factory=dict)  # the answers given, by question
+    playing: str = ""  # the series that plays
+    to_top: bool = False  # a page was turned: it is to be seen from its top
+
+    def __post_init__(self) -> None:
+        self.stage = Stage(self.actions, self.begins)
+        self.numbers = Numbers(self.actions.session)
+        self.faults = Faults(self.actions, self.stage, lambda key: words_in(self.language)[key])
+        self._shelf = Shelf(self.actions.say)
+        self._due = math.inf  # when what plays goes on
+        self._hid = False  # the parameters' panel, to make room
+
+    # ── pages ────────────────────────────────────────────────────────────────
+
+    @property
+    def language(self) -> str:
+        """The code of the language that is read."""
+        return self.progress.language if self.progress.language in LANGUAGES else preferred_language()
+
+    @property
+    def section(self) -> Section | None:
+        """The page that is open."""
+        sections = self.lesson.sections if self.lesson else ()
+        return sections[self.index] if sections else None
+
+    @property
+    def index(self) -> int:
+        """Which of the lesson's pages is open, from 0."""
+        if self.lesson is None:
+            return 0
+        return min(self.progress.sections.get(self.lesson.name, 0), len(self.lesson.sections) - 1)
+
+    @property
+    def summaries(self) -> list[Summary]:
+        """All lessons, in their order."""
+        return self._shelf.listed(self.language)
+
+    def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
+        """Open a lesson, at the page where it was left; say whether that could be done.
+
+        By default the one read last, or the first. ``show``: its picture takes the stage.
+        """
+        names = [one.name for one in self.summaries]
+        name = name or (self.progress.lesson if self.progress.lesson in names else next(iter(names), ""))
+        if language:
+            self.progress.language = language
+        try:
+            lesson = self._shelf.read(name, self.language, words_in(self.language)["untranslated"])
+        except PlaygroundError as error:
+            self.actions.say(str(error))
+            return False
+        if self.lesson is None or lesson.name != self.lesson.name:
+            self.at, self.shown, self.chosen = {}, set(), {}
+            self.faults.forget()
+        if self.lesson is None or not self.progress.shown:
+            self._make_room()
+        self.lesson, self.progress.lesson, self.progress.shown = lesson, name, True
+        self.go(self.progress.sections.get(name, 0) if page is None else page, show=show)
+        return True
+
+    def speak(self, language: str) -> None:
+        """Read on in another language."""
+        if self.lesson is not None:
+            self.open(self.lesson.name, language=language, show=False)
+
+    def go(self, page: int, *, show: bool = True) -> None:
+        """Open a page of the lesson; ``show``: its first picture takes the stage."""
+        if self.lesson is None:
+            return
+        last = len(self.lesson.sections) - 1
+        page = min(max(page, 0), last)
+        self.progress.sections[self.lesson.name] = page
+        if page == last and self.lesson.name not in self.progress.done:
+            self.progress.done.append(self.lesson.name)
+        self.playing, self.to_top = "", True
+        self.faults.put_away()
+        section = self.lesson.sections[page]
+        self.numbers.want(self.lesson, section.blocks)
+        self.remember()
+        first = self._picture_of(page)
+        if not show or first is None:
+            return
+        if unsaved(self.actions.editing) or (self.stage.own is None and self.stage.changed):
+            self.actions.say(words_in(self.language)["yours_stays"])
+            return
+        self.show(first)
+
+    def _picture_of(self, page: int) -> Block | None:
+        """Return what a page shows first; of one without, while nothing is shown yet, the one before."""
+        sections = self.lesson.sections if self.lesson else ()
+        mine, *earlier = [
+            [b for b in section.blocks if isinstance(b, Figure | Steps | Slider | Compare)]
+            for section in reversed(sections[: page + 1])
+        ]
+        if mine or self.stage.key is not None:
+            return next(iter(mine), None)
+        return next((blocks[-1] for blocks in earlier if blocks), None)
+
+    def turn_page(self, pages: int) -> None:
+        """Go so many pages on or back."""
+        if self.lesson is not None and self.progress.shown:
+            self.go(self.index + pages)
+
+    def toggle(self) -> None:
+        """Show the panel, or no longer."""
+        if self.lesson is None:
+            self.open(show=False)
+            return
+        self.progress.shown = not self.progress.shown
+        if self.progress.shown:
+            self._make_room()
+        else:
+            self.playing = ""
+            self.actions.panel_shown = self.actions.panel_shown or self._hid
+            if self.stage.own is not None and self.stage.changed:
+                self.actions.say(words_in(self.language)["not_kept"])
+        self.remember()
+
+    def _make_room(self) -> None:
+        """Hide the parameters: a page has those that it is about."""
+        self._hid, self.actions.panel_shown = self.actions.panel_shown, False
+
+    def remember(self) -> None:
+        """Write down where the reader is."""
+        complaint = write_progress(self.progress, self.file)
+        if complaint:
+            self.actions.say(complaint)
+
+    # ── pictures ─────────────────────────────────────────────────────────────
+
+    def is_on(self, block: Seen, index: int | None = None) -> bool:
+        """Say whether a picture of a block is on the stage."""
+        key = self.stage.key
+        return (
+            key is not None and key[0] == block.name and (index is None or self.at.get(block.name) == index)
+        )
+
+    def show(self, block: Block) -> None:
+        """Put a block's picture on the stage; of a series the one it was left at."""
+        if isinstance(block, Figure | Exercise) and block.scene is not None:
+            self._put(block.scene, block.name, 0)
+        elif isinstance(block, Compare):
+            both = len(block.scenes) == 2 and comparable(*block.scenes)
+            self.choose(block, self.at.get(block.name, BOTH if both else 0))
+        elif isinstance(block, Steps | Slider):
+            self.move(block, self.at.get(block.name, 0))
+
+    def move(self, block: Steps | Slider, index: int) -> None:
+        """Show another turn, or another value."""
+        index = min(max(index, 0), len(block.scenes) - 1)
+        scene = block.scenes[index]
+        if not self.is_on(block) or self.stage.busy:
+            self._put(scene, block.name, index)
+        elif isinstance(block, Steps):
+            self.stage.stop_at(steps_of(scene), (block.name, index))
+        else:
+            self.actions.session.set(block.parameter, block.values[index])
+        self.at[block.name] = index
+
+    def choose(self, block: Compare, index: int) -> None:
+        """Show one of several pictures, or ``BOTH``."""
+        if index == BOTH:
+            self.faults.leave()
+            self.stage.compare(block.scenes[0], block.scenes[1], block.name)
+        else:
+            self._put(block.scenes[index], block.name, index)
+        self.at[block.name] = index
+
+    def play_or_rest(self, block: Steps | Slider) -> None:
+        """Have a series play from where it is, from its beginning when it is over; or rest."""
+        if self.playing == block.name:
+            self.playing = ""
+            return
+        at = self.at.get(block.name, 0)
+        self.move(block, 0 if at >= len(block.scenes) - 1 else at)
+        self.playing, self._due = block.name, self.actions.now() + _pause(block)
+
+    def reset(self, block: Seen) -> None:
+        """Show a block's picture as the lesson has it."""
+        self.playing = ""
+        self.show(block)
+
+    def go_back(self) -> None:
+        """Show again what was open before the lessons."""
+        self.playing = ""
+        self.faults.put_away(drawn=False)
+        self.stage.go_back()
+        if self.stage.own is not None:  # it is gone: the lesson's picture stays, without copies
+            self.faults.put_away()
+
+    def _put(self, scene: Scene, name: str, index: int) -> None:
+        if self.playing != name:
+            self.playing = ""
+        self.faults.leave()
+        self.stage.show(scene, (name, index), self.faults.texts)
+
+    # ── turns ────────────────────────────────────────────────────────────────
+
+    def turn(self, *, idle: bool) -> None:
+        """Take in what a turn has brought; ``idle``: there is time to compute."""
+        self.stage.turn()
+        if self.lesson is None or not self.progress.shown:
+            return
+        if self.playing and self.actions.now() >= self._due and not self.stage.busy:
+            self._play()
+        if idle and not self.playing and not self.faults.check():
+            self.numbers.compute()
+
+    def patience(self, now: float) -> float:
+        """Say how long nothing needs to be done here [s]."""
+        if self.lesson is None or not self.progress.shown:
+            return math.inf
+        if self.playing:
+            return max(self._due - now, 0.0)
+        return 0.0 if self.numbers.ready or self.faults.waits else math.inf
+
+    def _play(self) -> None:
+        block = self.lesson.named.get(self.playing) if self.lesson else None
+        if not isinstance(block, Steps | Slider):
+            self.playing = ""
+            return
+        self.move(block, self.at.get(block.name, 0) + 1)
+        self._due = self.actions.now() + _pause(block)
+        if self.at[block.name] >= len(block.scenes) - 1:
+            self.playing = ""
+
+
+def _pause(block: Steps | Slider) -> float:
+    return _TURN if isinstance(block, Steps) else _VALUE

@@ -1,0 +1,59 @@
+"""Which textures of a sketch a map can show, and the range that suits one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.sketch.map_sketch import Map
+from playground.sketch.model import Graph, Sketch, Technique, Value
+from playground.sketch.wiring import output_names
+
+if TYPE_CHECKING:
+    from playground.engine.plan import Plan
+
+
+def in_view(sketch: Sketch, ref: str) -> bool:
+    """Say whether a texture is one of the sketch's view: a map can show it, though no list has it."""
+    path, _, output = ref.partition(":")
+    found: Technique | None = None
+    for number, name in enumerate(path.split(".")):
+        around = found if number else sketch.graph
+        spec = around.find(name) if isinstance(around, Graph) else None
+        if spec is None or (number == 0 and name != "view"):
+            return False
+        found = spec.technique
+    return found is not None and output in output_names(found)
+
+
+def refs_of(plan: Plan) -> list[str]:
+    """List the textures of a plan that a map can show: those of the sketch's own passes, then inner ones."""
+    found = [
+        f"{path}:{output}"
+        for path, outputs in plan.flat.outputs.items()
+        for output in outputs
+        if path.partition(".")[0] != "view"
+    ]
+    return sorted(found, key=lambda ref: ref.count("."))
+
+
+def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
+    """Return the map with its channel and range chosen to suit a texture's values.
+
+    One or two components are shown as a number, from the lowest to the highest there
+    is; three or four as a colour from 0 to 1. Values that are not finite are left out.
+    """
+    known = {p.name for p in shown.kernel.parameters}
+    components = 1 if values.ndim == 2 else values.shape[2]
+    settings: dict[str, Value] = {"channel": 0 if components >= 3 else 1, "lowest": 0.0, "highest": 1.0}
+    if components < 3:
+        numbers = values if values.ndim == 2 else values[..., 0]
+        finite = numbers[np.isfinite(numbers)]
+        if finite.size and finite.min() < finite.max():
+            settings |= {"lowest": float(finite.min()), "highest": float(finite.max())}
+    for name, value in settings.items():
+        if name in known:
+            shown = shown.with_value(name, value)
+    return shown

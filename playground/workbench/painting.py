@@ -1,0 +1,240 @@
+"""The brush over the picture: strokes on a mask of the sketch, kept in a file of their own.
+
+A mask is a file parameter that its kernel lets be painted on. The file that the sketch names is
+never written to: painting begins a new one in the current folder and puts it in its place.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.files import find_file
+from playground.engine.plan import Step
+from playground.engine.view_inputs import height_seen
+from playground.errors import DataError, PlaygroundError
+from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
+from playground.sketch.model import Sketch
+from playground.terrain.pick import ground_under, seen_from
+from playground.terrain.sources import source_kind
+from playground.workbench.brush import Brush
+from playground.workbench.painted_mask import MOST_BY_FILE, MOST_TEXELS, Canvas
+from playground.workbench.session import Session
+
+NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
+"""A brush's radius, in shares of the land's longer side."""
+
+SAVES_EVERY = 0.1
+"""[s] Where the picture can follow a stroke by its file only; any file is written when the stroke ends."""
+
+
+class Painting:
+    """What is painted in one session."""
+
+    def __init__(self, session: Session, folder: Path, now: Callable[[], float] = time.perf_counter) -> None:
+        self.session = session
+        self.folder = folder  # where new masks go
+        self.brush = Brush(radius=0.0)
+        self._now = now
+        self._taken = False  # the brush is in the hand
+        self._canvases: dict[str, Canvas] = {}  # by the parameter's path
+        self._found: tuple[Sketch | None, Shown | None] = (None, None)
+        self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
+        self._last: tuple[float, float] | None = None  # where the stroke is
+        self._saved_at = 0.0
+
+    @property
+    def on(self) -> bool:
+        """Whether the brush is in the hand, and there is something to paint on."""
+        return self._taken and bool(self.target)
+
+    @property
+    def target(self) -> str:
+        """The path of the parameter that is painted on; "" where the sketch has none."""
+        sketch = self.session.sketch
+        if self._found[0] is not sketch:
+            self._found = sketch, _painted(sketch)
+        return self._found[1].path if self._found[1] else ""
+
+    @property
+    def files(self) -> frozenset[Path]:
+        """The masks that were begun: whoever watches files need not hear of these."""
+        return frozenset(canvas.path for canvas in self._canvases.values())
+
+    @property
+    def canvas(self) -> Canvas | None:
+        """The mask that was begun for what is painted on, if it is still in its place."""
+        canvas, sketch = self._canvases.get(self.target), self.session.sketch
+        if canvas is None or sketch is None:
+            return None
+        value = value_of(sketch, self.target, values_of(sketch))
+        return canvas if str(value) == str(canvas.path) else None
+
+    @property
+    def side(self) -> float:
+        """The land's longer side [m]."""
+        return max(self.session.plan.land.extent or (0.0,)) if self.session.plan else 0.0
+
+    def toggle(self) -> None:
+        """Take the brush, or put it down."""
+        if not self.target:
+            self.session.notes.append(
+                'this sketch has no mask to paint on: none of its files has the word "paint"'
+            )
+        self._taken = bool(self.target) and not self._taken
+        if not NARROWEST * self.side <= self.brush.radius <= WIDEST * self.side:
+            self.brush = replace(self.brush, radius=USUAL * self.side)
+
+    def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
+        """Return where on the land a place of the picture lies, both in shares; None in the sky."""
+        plan, heights = self.session.plan, self._land()
+        if plan is None or heights is None or plan.land.extent is None or plan.land.relief is None:
+            return None
+        return ground_under(plan.eye, place, heights, plan.land.extent, plan.land.relief)
+
+    def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
+        """Return the brush's circle as it lies on the land, in shares of the picture; [] in the sky."""
+        plan, heights, middle = self.session.plan, self._land(), self.ground(place)
+        if middle is None or heights is None or plan is None:
+            return []
+        if plan.land.extent is None or plan.land.relief is None:
+            return []
+        turns = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+        around = np.stack([np.cos(turns), np.sin(turns)], axis=1) * self.brush.radius
+        shares = np.clip(np.array(middle) + around / plan.land.extent, 0.0, 1.0)
+        return seen_from(plan.eye, shares, heights, plan.land.extent, plan.land.relief)
+
+    def press(self, place: tuple[float, float]) -> None:
+        """Begin a stroke at a place of the picture, in shares from its lower left."""
+        if self.canvas is not None and not self.canvas.holds():
+            # Somebody has taken the file away, or painted on it.
+            self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
+        if self._land() is None:
+            self.session.notes.append("the view shows no height, so there is no ground to paint on")
+        self._last = self.ground(place)
+        canvas = self._begun() if self._last is not None else None
+        if canvas is not None:
+            self._hand_over(canvas)
+            canvas.begin()
+            self._saved_at = -SAVES_EVERY
+            self.move(place)
+
+    def move(self, place: tuple[float, float]) -> None:
+        """Go on with the stroke."""
+        plan, canvas = self.session.plan, self.canvas
+        if plan is None or plan.land.extent is None or canvas is None:
+            return
+        now = self.ground(place)
+        if now is not None:
+            canvas.paint(self._last or now, now, plan.land.extent, self.brush)
+            if canvas.path in self.session.engine.painted:
+                self.session.look_again()
+            elif self._now() - self._saved_at >= SAVES_EVERY:
+                self._saved(canvas.save)
+                self._saved_at = self._now()
+        self._last = now
+
+    def release(self) -> None:
+        """End the stroke."""
+        self._last = None
+        if self.canvas is not None and not self.canvas.saved:
+            self._saved(self.canvas.save)
+
+    def undo(self) -> None:
+        """Take the last stroke back."""
+        if self.canvas is not None and not self._was_changed(self.canvas):
+            self._saved(self.canvas.undo)
+
+    def redo(self) -> None:
+        """Paint the stroke again that was taken back last."""
+        if self.canvas is not None and not self._was_changed(self.canvas):
+            self._saved(self.canvas.redo)
+
+    def clear(self) -> None:
+        """Take all paint away."""
+        canvas = self._begun()
+        if canvas is not None and not self._was_changed(canvas):
+            self._saved(canvas.clear)
+
+    def _was_changed(self, canvas: Canvas) -> bool:
+        """Say whether another program has painted on the file since; then it is taken in as it is."""
+        if canvas.holds() or not canvas.path.exists():
+            return False
+        self._saved(canvas.take_in)
+        self.session.notes.append(f"{canvas.path.name} was changed by another program: it stays as it is now")
+        return True
+
+    def _saved(self, act: Callable[[], None]) -> None:
+        try:
+            act()
+        except DataError as error:
+            self.session.notes.append(str(error))
+        self.session.look_again()
+
+    def _shows(self, step: Step, path: Path, size: tuple[int, int]) -> bool:
+        """Say whether the picture can show a canvas from memory: a source reads it, texel for texel."""
+        if step.kernel.kind != "source" or size != step.size:
+            return False
+        name = self.target.rpartition(".")[2]
+        return source_kind(step.kernel.registry).picture({**step.values, name: str(path)}, size) == path
+
+    def _hand_over(self, canvas: Canvas) -> None:
+        """Have the picture show a canvas from memory, where it can."""
+        step, painted = self._step_of(self.target), self.session.engine.painted
+        painted.pop(canvas.path, None)
+        ny, nx = canvas.mask.shape[:2]
+        if step is not None and self._shows(step, canvas.path, (nx, ny)):
+            painted[canvas.path] = canvas
+
+    def _step_of(self, path: str) -> Step | None:
+        """Return the step of the plan whose parameter has a path."""
+        sketch, plan = self.session.sketch, self.session.plan
+        if not path or sketch is None or plan is None:
+            return None
+        return plan.step(resolve(sketch.graph, path)[0].path.rpartition(".")[0])
+
+    def _begun(self) -> Canvas | None:
+        """Return the mask that is painted on, begun anew where the sketch names another file."""
+        if self.canvas is not None:
+            return self.canvas
+        path, sketch = self.target, self.session.sketch
+        step = self._step_of(path)
+        if sketch is None or step is None:
+            return None
+        leaf = resolve(sketch.graph, path)[0]
+        name = re.sub(r"[^\w.-]+", "-", f"{sketch.name}-{path}").strip("-.")
+        try:
+            file = str(value_of(sketch, path, values_of(sketch)))
+            of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
+            most = MOST_TEXELS if self._shows(step, self.folder, step.size) else MOST_BY_FILE
+            canvas = Canvas.begun(self.folder, name, of, step.size, most)
+        except PlaygroundError as error:
+            self.session.notes.append(str(error))
+            return None
+        self._canvases[path] = canvas
+        self.session.vouch_for(canvas.path)
+        self.session.set(path, str(canvas.path))
+        self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
+        return canvas
+
+    def _land(self) -> NDArray[np.float32] | None:
+        """Return the heights that the picture shows, read once for each picture; a stroke moves none."""
+        session = self.session
+        if self._last is None and self._heights[0] != session.draws:
+            ref = height_seen(session.plan) if session.plan is not None else ""
+            self._heights = session.draws, session.read_values(ref) if ref else None
+        return self._heights[1]
+
+
+def _painted(sketch: Sketch | None) -> Shown | None:
+    """Return the first parameter that may be painted on, those that a technique shows before those inside."""
+    if sketch is None:
+        return None
+    found = [shown for shown in shown_parameters(sketch) if shown.parameter.painted]
+    return min(found, key=lambda shown: not shown.exported, default=None)

@@ -1,0 +1,122 @@
+"""Values by chance, the same for the same seed: anywhere in their ranges, or near what they are.
+
+Each parameter draws from a sequence of its own, by its path, so that one more parameter in
+a sketch moves no other. What has no range, a file or a plain number, has nothing to be drawn
+from: it stays, and is only moved a little, in proportion to itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from random import Random
+
+from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.sketch.model import Parameter, Value
+from playground.sketch.values import is_whole, tidied
+from playground.workbench.number_format import snapped
+
+HEIGHTS = (5.0, 85.0)
+"""[degrees] above the horizon that a direction by chance lies: at the ends there is little to see."""
+
+
+def at_random(parameters: Iterable[tuple[str, Parameter]], seed: int) -> dict[str, Value]:
+    """Return a value anywhere in its range for each parameter that has one, by path.
+
+    Evenly over the slider's own way: a logarithmic one by its logarithm, a menu by its
+    choices, a colour by what is seen.
+    """
+    found = {path: _anywhere(parameter, Random(f"{seed} {path}")) for path, parameter in parameters}
+    return {path: value for path, value in found.items() if value is not None}
+
+
+def mutated(
+    parameters: Iterable[tuple[str, Parameter]], values: Mapping[str, Value], seed: int, strength: float
+) -> dict[str, Value]:
+    """Return a value near the one of now for each parameter, by path.
+
+    ``strength`` (0..1) is the standard deviation of the way it goes, in shares of its range,
+    and the chance that a menu or a checkbox changes at all.
+    """
+    found = {
+        path: _near(parameter, values[path], Random(f"{seed} {path}"), strength)
+        for path, parameter in parameters
+    }
+    return {path: value for path, value in found.items() if value is not None}
+
+
+def _anywhere(parameter: Parameter, chance: Random) -> Value | None:
+    kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
+    if kind == "menu":
+        return chance.randrange(len(parameter.widget.choices))
+    if kind == "checkbox":
+        return chance.random() < 0.5
+    if kind == "direction":
+        return round(chance.uniform(0, 360), 1), round(chance.uniform(*HEIGHTS), 1)
+    if kind == "colour":
+        return _colour(parameter, [chance.random() for _ in range(3)])
+    if low is None or high is None:
+        return None
+    return _number(parameter, [_on(parameter, chance.random()) for _ in range(_count(parameter))])
+
+
+def _near(parameter: Parameter, value: Value, chance: Random, strength: float) -> Value | None:
+    kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
+    if kind in ("menu", "checkbox"):
+        return _anywhere(parameter, chance) if chance.random() < strength else value
+    if isinstance(value, str):
+        return None
+    numbers = [float(n) for n in value] if isinstance(value, tuple) else [float(value)]
+    if kind == "direction":
+        azimuth = (numbers[0] + 360 * chance.gauss(0, strength)) % 360
+        elevation = numbers[1] + 90 * chance.gauss(0, strength)
+        return round(azimuth, 1), round(min(max(elevation, HEIGHTS[0]), HEIGHTS[1]), 1)
+    if kind == "colour":
+        seen = linear_to_srgb([min(max(n, 0.0), 1.0) for n in numbers[:3]]).tolist()
+        return _colour(parameter, [c + chance.gauss(0, strength) for c in seen], numbers[3:])
+    if low is None or high is None:
+        return _number(parameter, [n * math.exp(chance.gauss(0, strength)) for n in numbers])
+    return _number(
+        parameter, [_on(parameter, _share(parameter, n) + chance.gauss(0, strength)) for n in numbers]
+    )
+
+
+def _on(parameter: Parameter, share: float) -> float:
+    """Return the number at a share of the slider's way."""
+    low, high = parameter.widget.low, parameter.widget.high
+    assert low is not None and high is not None
+    share = min(max(share, 0.0), 1.0)
+    if parameter.widget.kind == "log_slider":
+        return float(low * (high / low) ** share)
+    return low + (high - low) * share
+
+
+def _share(parameter: Parameter, number: float) -> float:
+    """Return the share of the slider's way at which a number lies."""
+    low, high = parameter.widget.low, parameter.widget.high
+    assert low is not None and high is not None
+    if parameter.widget.kind == "log_slider":
+        return math.log(number / low) / math.log(high / low)
+    return (number - low) / (high - low)
+
+
+def _count(parameter: Parameter) -> int:
+    return len(parameter.default) if isinstance(parameter.default, tuple) else 1
+
+
+def _number(parameter: Parameter, numbers: list[float]) -> Value:
+    held = [snapped(parameter, n) for n in numbers]
+    found: tuple[float, ...] | tuple[int, ...]
+    if is_whole(parameter.type):
+        lowest, highest = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
+        found = tuple(min(max(round(n), lowest), highest) for n in held)
+    else:
+        found = tuple(tidied(n) for n in held)
+    return found if _count(parameter) > 1 else found[0]
+
+
+def _colour(parameter: Parameter, seen: list[float], alpha: list[float] | None = None) -> Value:
+    """Return a colour of eight bits a channel, so that it can be written as it is; alpha stays."""
+    steps = [round(min(max(c, 0.0), 1.0) * 255) / 255 for c in seen]
+    assert isinstance(parameter.default, tuple)
+    return (*srgb_to_linear(steps).tolist(), *(alpha or parameter.default[3:]))

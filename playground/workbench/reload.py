@@ -1,0 +1,39 @@
+"""Keep a session and its files together: what is saved is read, and what it stands on is watched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from playground.workbench.session import Session
+from playground.workbench.watcher import Watcher
+
+
+class Follower:
+    """A session, and the watcher that follows its files."""
+
+    def __init__(self, session: Session, watcher: Watcher) -> None:
+        self.session = session
+        self.watcher = watcher
+        self._stands_on: tuple[object, ...] = ()
+
+    def take(self, own: Iterable[Path] = ()) -> bool:
+        """Have the session read its files again if any was saved by others; say whether it did.
+
+        ``own`` are files that this process writes itself and shows already.
+        """
+        changed = self.watcher.take() - set(own)
+        if not changed or not (self.session.error or changed & self.session.files):
+            return False
+        self.session.reload(changed & self.session.files)
+        return True
+
+    def follow(self) -> None:
+        """Watch the files that the session stands on now."""
+        session = self.session
+        now = (session.shown, session.coming, session.error, session.places)
+        before = self._stands_on
+        if len(before) == len(now) and all(a is b for a, b in zip(now, before, strict=True)):
+            return
+        self._stands_on = now
+        self.watcher.follow(session.files, read_at=session.read_at, read=session.places)

@@ -1,0 +1,68 @@
+"""The stages that a saved sketch goes through before it is shown, and who tries it."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import Protocol
+
+from playground.engine.sandbox import TrialReport, TrySketch
+from playground.errors import PlaygroundError, SketchError
+from playground.paths import shown
+
+log = logging.getLogger("playground.live")
+
+
+class Tester(Protocol):
+    """What tries a sketch where it can do no harm: ``engine.sandbox.Trial``, or a test's stand-in."""
+
+    def submit(self, request: TrySketch) -> None:
+        """Hand over a sketch."""
+
+    def poll(self) -> TrialReport | None:
+        """Return the answer to the newest request, once."""
+
+
+class Stage(Enum):
+    """How far the coming draft has got."""
+
+    NONE = "nothing is coming"
+    TRIAL = "tried in the child"
+    DRAW = "to be drawn"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Reload:
+    """How a save came to be a picture."""
+
+    seconds: float  # from reading the files to the picture
+    trial: float  # [s] of it in the trial child
+
+
+def explained(error: Exception, sketch: Path) -> PlaygroundError:
+    """Return an error that a person can be shown, each of its diagnostics with a file.
+
+    One that names no file gets the sketch's own. A bug of the playground itself is an error too,
+    and the session outlives it.
+    """
+    if not isinstance(error, PlaygroundError):
+        log.error("the playground itself failed", exc_info=error)
+        message = f"a bug of the playground itself, {type(error).__name__}: {error}"
+        return PlaygroundError(message, file=sketch)
+    if all(diagnostic.file for diagnostic in error.diagnostics):
+        return error
+    file = shown(sketch)
+    placed = [d if d.file else replace(d, file=file) for d in error.diagnostics]
+    return type(error)(diagnostics=placed)
+
+
+def gone(sketch: Path) -> SketchError | None:
+    """Return what to say of a sketch whose file has vanished; None while it is there."""
+    if sketch.is_file():
+        return None
+    where = "from" if sketch.parent.is_dir() else "with its folder"
+    ways = "moved, renamed or deleted; put it back, or drop another sketch on the window"
+    return SketchError(f"the file is gone {where} {sketch.parent}: {ways}", file=sketch)

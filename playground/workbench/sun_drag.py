@@ -1,0 +1,32 @@
+"""Move the sun of a sketch with the mouse: every direction that its passes show turns alike."""
+
+from __future__ import annotations
+
+from playground.sketch.assign import shown_parameters, value_of, values_of
+from playground.sketch.model import Sketch
+from playground.workbench.camera_drag import HALF_TURN
+
+LOWEST = -10.0
+"""[degrees] A little below the horizon, so that a sunset can be gone through."""
+
+
+def suns_of(sketch: Sketch) -> dict[str, tuple[float, float]]:
+    """Return azimuth and elevation [degrees] of every direction that a pass shows, by path.
+
+    Those of the view count only where no pass has one: they light a mesh, not the land.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    leaves = values_of(sketch)
+    for shown in shown_parameters(sketch):
+        if shown.exported and shown.parameter.widget.kind == "direction":
+            value = value_of(sketch, shown.path, leaves)
+            if isinstance(value, tuple):
+                found[shown.path] = (float(value[0]), float(value[1]))
+    of_land = {path: value for path, value in found.items() if not path.startswith("view.")}
+    return of_land or found
+
+
+def turned(sun: tuple[float, float], across: float, up: float) -> tuple[float, float]:
+    """Return a direction after a drag, in shares of the picture's height to the right and upwards."""
+    azimuth, elevation = sun[0] + across * HALF_TURN, sun[1] + up * HALF_TURN / 2
+    return round(azimuth % 360.0, 2), round(min(max(elevation, LOWEST), 90.0), 2)

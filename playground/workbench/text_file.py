@@ -1,0 +1,179 @@
+"""A text file that is edited in the window: read, saved whole, and never over what others saved meanwhile."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import os
+import shutil
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from playground.errors import DataError
+from playground.paths import shown
+
+MOST = 8 * 2**20
+"""Bytes that a file may have."""
+
+
+@dataclass
+class OpenText:
+    """One file; ``base`` is its text as it was when last read or saved, with line feeds only."""
+
+    path: Path
+    base: str = ""
+    _bytes: bytes = b""
+    _ending: str = "\n"
+    _mark: bool = field(default=False)  # it begins with a byte order mark
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return shown(self.path)
+
+    @property
+    def kept(self) -> bool:
+        """Whether it is lost where it is not saved."""
+        return True
+
+    def saved(self) -> str:
+        """Return what is said when it was saved."""
+        return f"saved {self.title}"
+
+    @classmethod
+    def read(cls, path: Path) -> OpenText:
+        """Read a file; raise ``DataError`` in a sentence where it cannot be edited as a text."""
+        made = cls(path)
+        made.reload()
+        return made
+
+    def reload(self) -> str:
+        """Read the file as it is now, and return its text."""
+        data = self._on_disk()
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise DataError(f"not UTF-8 text (byte {error.start})", file=shown(self.path)) from None
+        self._bytes, self._mark = data, text.startswith("\ufeff")
+        self._ending = "\r\n" if "\r\n" in text else "\n"
+        self.base = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+        return self.base
+
+    def changed_outside(self) -> bool:
+        """Say whether the file is another than when it was last read or saved; gone counts as well."""
+        try:
+            return self._on_disk() != self._bytes
+        except DataError:
+            return True
+
+    def save(self, text: str, *, over: bool = False) -> bool:
+        """Save a text in one go; False, and nothing is written, if the file was changed meanwhile.
+
+        ``over`` saves all the same. Line ends and a byte order mark stay as the file had them.
+        Raises ``DataError`` where the file cannot be written.
+        """
+        if not over and self.changed_outside():
+            return False
+        lines = text.replace("\n", self._ending)
+        data = (("\ufeff" if self._mark else "") + lines).encode("utf-8")
+        target = self.path.resolve()  # a link stays a link
+        if target.exists() and not os.access(target, os.W_OK):
+            raise DataError("is read-only, so it was not saved", file=shown(self.path))
+        beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+        try:
+            with beside.open("wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            if target.exists():
+                shutil.copymode(target, beside)
+            beside.replace(target)
+        except OSError as error:
+            with suppress(OSError):
+                beside.unlink()
+            reason = error.strerror or str(error)
+            raise DataError(f"could not be saved: {reason}", file=shown(self.path)) from None
+        self.base, self._bytes = text, data
+        return True
+
+    def merged(self, mine: str) -> str | None:
+        """Return one text with both my changes and those saved meanwhile; None where they touch.
+
+        The file counts as read: a save after this one goes over it.
+        """
+        base = self.base
+        with_theirs = OpenText.read(self.path)
+        found = merge(base, mine, with_theirs.base)
+        if found is not None:
+            self.base, self._bytes = with_theirs.base, with_theirs._bytes
+            self._ending, self._mark = with_theirs._ending, with_theirs._mark
+        return found
+
+    def _on_disk(self) -> bytes:
+        try:
+            if self.path.stat().st_size > MOST:
+                raise DataError(f"larger than {MOST // 2**20} MiB", file=shown(self.path))
+            return self.path.read_bytes()
+        except FileNotFoundError:
+            raise DataError("there is no such file", file=shown(self.path)) from None
+        except OSError as error:
+            raise DataError(error.strerror or str(error), file=shown(self.path)) from None
+
+
+class TextView(Protocol):
+    """Whatever shows an open file and takes what is typed."""
+
+    @property
+    def changed(self) -> bool:
+        """Whether there is anything that is not saved."""
+
+    def written(self) -> str:
+        """Return the text as it stands in the editor."""
+
+
+class Editing:
+    """A file that is open in a window of our own, and where it is to be looked at."""
+
+    def __init__(self, text: OpenText) -> None:
+        self.text = text
+        self.line, self.column = 1, 1
+        self.asked = True  # it is to come to the front, at its line
+        self.view: TextView | None = None  # None until it is drawn for the first time
+
+
+def unsaved(open_files: Iterable[Editing]) -> list[str]:
+    """Return the names of open files with changes that are not saved."""
+    return [e.text.path.name for e in open_files if e.text.kept and e.view is not None and e.view.changed]
+
+
+def typed_in(editing: Editing) -> str | None:
+    """Return the text of an open file where it has changes that are not saved; else None."""
+    view = editing.view
+    return view.written() if view is not None and view.changed else None
+
+
+def merge(base: str, mine: str, theirs: str) -> str | None:
+    """Merge two texts that came from a third; None where both changed the same or adjoining lines.
+
+    The three-way merge of Khanna, Kunal and Pierce (A Formal Investigation of Diff3, 2007),
+    without its conflicts: where there is one, nothing is merged.
+    """
+    lines = base.splitlines(keepends=True)
+    changes: list[tuple[int, int, list[str]]] = []
+    for text in (mine, theirs):
+        other = text.splitlines(keepends=True)
+        matcher = difflib.SequenceMatcher(None, lines, other, autojunk=False)
+        for kind, low, high, start, end in matcher.get_opcodes():
+            if kind != "equal" and (change := (low, high, other[start:end])) not in changes:
+                changes.append(change)
+    changes.sort(key=lambda change: change[:2])
+    if any(after[0] <= before[1] for before, after in itertools.pairwise(changes)):
+        return None
+    found, at = [], 0
+    for low, high, instead in changes:
+        found += [*lines[at:low], *instead]
+        at = high
+    return "".join([*found, *lines[at:]])
