@@ -24,7 +24,6 @@ from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
-Form = tuple[Kernel, str]  # which form of a kernel runs, and by which driver
 _MAX_TEXTS = 512
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 
@@ -63,16 +62,16 @@ class KeyMaker:
     def keys_of(
         self,
         plan: Plan,
-        form: Callable[[Step], Form],
-        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        driver: Callable[[Step], str],
+        given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
     ) -> Keys:
         """Return the keys of a plan.
 
-        ``form`` chooses what runs, ``given`` says what the engine gives a kernel beside its
+        ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it beside its
         parameters, ``continued`` are the paths of draws that a later draw goes on from.
         """
-        made = _Made(self.text_of, self._content, form, given, continued)
+        made = _Made(self.text_of, self._content, driver, given, continued)
         for node in plan.nodes:
             made.add(node, "", {}, {})
         return made.keys
@@ -130,8 +129,8 @@ class _Made:
         self,
         text_of: Callable[[Kernel], _Text],
         content: Callable[[Path], str],
-        form: Callable[[Step], Form],
-        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        driver: Callable[[Step], str],
+        given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
     ) -> None:
         self.keys = Keys()
@@ -140,7 +139,7 @@ class _Made:
         ] = {}  # loops that a step changes with, as its next reader sees it
         self.text_of = text_of
         self.content = content
-        self.form = form
+        self.driver = driver
         self.given = given
         self.continued = continued
 
@@ -151,9 +150,9 @@ class _Made:
         if isinstance(node, Turns):
             self._loop(node, fed, varying)
             return
-        kernel, driver = self.form(node)
+        kernel = node.kernel
         text = self.text_of(kernel)
-        parts: list[Any] = [text.digest, driver, node.size, node.window]
+        parts: list[Any] = [text.digest, self.driver(node), node.size, node.window]
         for parameter in kernel.parameters:
             value = node.values[parameter.name]
             if parameter.widget.kind == "file":
@@ -162,7 +161,7 @@ class _Made:
             elif parameter.name in text.used:
                 parts.append((parameter.name, value))
         parts += [(name, self._source(source, fed)) for name, source in node.inputs]
-        parts += list(self.given(kernel, node).items())
+        parts += list(self.given(node).items())
         if "iterations" in text.used:
             parts.append(node.whole)
         if node.path in self.continued:
@@ -192,7 +191,7 @@ class _Made:
             self.add(node, loop.path, names, changes)
         parts: list[Any] = [loop.path, *(self.keys.steps[path] for path in inside)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
-        if any("iterations" in self.text_of(self.form(step)[0]).used for step in walk(loop.body)):
+        if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
             parts.append(loop.whole)
         key = self.keys.loops[loop.path] = _digest(parts)
         self.keys.loop_loops[loop.path] = outer

@@ -91,8 +91,9 @@ class Runner:
         self.binder.release()
         self.programs.release()
 
-    def given_for(self, kernel: Kernel, step: Step) -> dict[str, Any]:
+    def given_for(self, step: Step) -> dict[str, Any]:
         """Return what the engine gives beside the parameters and the turn, where the text names it."""
+        kernel = step.kernel
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
@@ -106,9 +107,15 @@ class Runner:
                 found[name] = self._given[name]
         return found
 
-    def samples_for(self, plan: Plan, kernel: Kernel) -> int:
+    def given_for_key(self, step: Step) -> dict[str, Any]:
+        """Return all that the engine gives a step and that its textures depend on."""
+        given = self.given_for(step)
+        return {**given, "samples": self._samples_for(step.kernel)} if step.kernel.kind == "draw" else given
+
+    def _samples_for(self, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
-        return max(min(kernel.samples or plan.sketch.samples, self.info.max_samples), 1)
+        assert self._plan is not None, "look_at() comes first"
+        return max(min(kernel.samples or self._plan.sketch.samples, self.info.max_samples), 1)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
@@ -140,9 +147,8 @@ class Runner:
         assert self._plan is not None, "begin() comes first"
         if self.tell is not None:
             self.tell(step)
-        kernel = step.kernel
-        samples = self.samples_for(self._plan, kernel)
-        job = Job(step, self.given_for(kernel, step), inputs, turn, start, samples, keeps_surface)
+        given, samples = self.given_for(step), self._samples_for(step.kernel)
+        job = Job(step, given, inputs, turn=turn, start=start, samples=samples, keeps_surface=keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         try:
             return self._run(job, driver)

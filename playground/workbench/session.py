@@ -353,9 +353,9 @@ class Session(Drafts):
         seen = self._framed(chosen, size)
         steps, now = self._steps_for(sketch), self.clock.time
         texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
-        if self.engine.ground.message and not self._told_of_ground:
+        if self.engine.eye_height.message and not self._told_of_ground:
             self._told_of_ground = True
-            self.notes.append(self.engine.ground.message)
+            self.notes.append(self.engine.eye_height.message)
         if self._read_for is not sketch:
             self._note_read(sketch)
         self.hasty = chosen is not sketch
