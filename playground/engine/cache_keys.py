@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from playground.engine.files import content_hash
 from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
@@ -58,6 +58,7 @@ class KeyMaker:
         self._text = text
         self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
+        self._known: dict[str, _Known] = {}  # of the last plan, by the step's path
 
     def keys_of(
         self,
@@ -71,9 +72,10 @@ class KeyMaker:
         ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it beside its
         parameters, ``continued`` are the paths of draws that a later draw goes on from.
         """
-        made = _Made(self.text_of, self._content, driver, given, continued)
+        made = _Made(self.text_of, self._content, driver, given, continued, self._known)
         for node in plan.nodes:
             made.add(node, "", {}, {})
+        self._known = made.known
         return made.keys
 
     def text_of(self, kernel: Kernel) -> _Text:
@@ -122,8 +124,29 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     return _Text(_digest([header, text]), frozenset(used))
 
 
+class _Reads(NamedTuple):
+    """What a step's textures depend on besides the step itself."""
+
+    driver: str
+    files: list[str]  # contents
+    sources: list[tuple[str, str]]  # input → key of what it reads
+    given: Mapping[str, Any]
+    is_continued: bool  # by a later draw
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """The keys that a step had in the last plan; they stay while the step and what it reads do."""
+
+    step: Step
+    reads: str
+    unfinished: str
+    raw: str
+    shown: str
+
+
 class _Made:
-    """The keys of one plan, being made."""
+    """The keys of one plan, being made; ``before`` are those of the last one."""
 
     def __init__(
         self,
@@ -132,8 +155,11 @@ class _Made:
         driver: Callable[[Step], str],
         given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
+        before: Mapping[str, _Known],
     ) -> None:
         self.keys = Keys()
+        self.before = before
+        self.known: dict[str, _Known] = {}
         self.varies: dict[
             str, frozenset[str]
         ] = {}  # loops that a step changes with, as its next reader sees it
@@ -150,30 +176,44 @@ class _Made:
         if isinstance(node, Turns):
             self._loop(node, fed, varying)
             return
-        kernel = node.kernel
-        text = self.text_of(kernel)
-        parts: list[Any] = [text.digest, self.driver(node), node.size, node.window]
-        for parameter in kernel.parameters:
-            value = node.values[parameter.name]
-            if parameter.widget.kind == "file":
-                path = Path(str(value))
-                parts.append((parameter.name, parameter.sampling, path.suffix, self.content(path)))
-            elif parameter.name in text.used:
-                parts.append((parameter.name, value))
-        parts += [(name, self._source(source, fed)) for name, source in node.inputs]
-        parts += list(self.given(node).items())
-        if "iterations" in text.used:
-            parts.append(node.whole)
-        if node.path in self.continued:
-            parts.append("continued")
-        self.keys.unfinished[node.path] = _digest([node.path, parts])
-        self.keys.raw[node.path] = self.keys.steps[node.path] = _digest([node.repeat, parts])
-        if node.between is not None:
-            self.keys.steps[node.path] = _digest([self.keys.raw[node.path], *node.between])
-        varies = frozenset[str]().union(*(self._varies(source, varying) for _, source in node.inputs))
+        kernel, path = node.kernel, node.path
+        sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
+        files = [self.content(Path(str(node.values[p.name]))) for p in kernel.file_parameters]
+        reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
+        known, written = self.before.get(path), repr(reads)
+        if known is None or known.step is not node or known.reads != written:
+            known = self._keys_of(node, reads, written)
+        self.known[path] = known
+        self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
+        self.keys.steps[path] = known.shown
+        varies = frozenset[str]()
+        for _, source in node.inputs:
+            varies |= self._varies(source, varying) if source else varies
         if loop and kernel.repeat == "1" and kernel.reads("iteration"):
             varies |= {loop}
-        self.varies[node.path] = self.keys.step_loops[node.path] = varies
+        self.varies[path] = self.keys.step_loops[path] = varies
+
+    def _keys_of(self, step: Step, reads: _Reads, written: str) -> _Known:
+        """Return the keys of a step that reads so."""
+        kernel, text = step.kernel, self.text_of(step.kernel)
+        parts: list[Any] = [text.digest, reads.driver, step.size, step.window]
+        contents = iter(reads.files)
+        for parameter in kernel.parameters:
+            value = step.values[parameter.name]
+            if parameter.widget.kind == "file":
+                suffix = Path(str(value)).suffix
+                parts.append((parameter.name, parameter.sampling, suffix, next(contents)))
+            elif parameter.name in text.used:
+                parts.append((parameter.name, value))
+        parts += [*reads.sources, *reads.given.items()]
+        if "iterations" in text.used:
+            parts.append(step.whole)
+        if reads.is_continued:
+            parts.append("continued")
+        raw = shown = _digest([step.repeat, parts])
+        if step.between is not None:
+            shown = _digest([raw, *step.between])
+        return _Known(step, written, _digest([step.path, parts]), raw, shown)
 
     def _loop(self, loop: Turns, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
         inside = sorted({step.path for step in walk(loop.body)})

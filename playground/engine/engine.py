@@ -28,8 +28,9 @@ from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import Drawn
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan import Plan, Step, Window, continued, needed
 from playground.engine.plan_warnings import PlanWarnings
+from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
@@ -82,6 +83,7 @@ class Engine:
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.planner = Planner()
         self.warnings = PlanWarnings()
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
@@ -165,7 +167,7 @@ class Engine:
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
         self._refuse_released()
-        return make_plan(
+        return self.planner.plan(
             opened(sketch),
             frame_size=size,
             time=time,
@@ -431,7 +433,7 @@ class Engine:
             nodes = self.disk_caching.begin(execution, plan, ref)
         with self.borrowed():
             execution.run(nodes)
-        self.cache.trim()
+        self.cache.end()
         record.results = execution.results
         self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]

@@ -23,7 +23,6 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import GIVEN
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -97,13 +96,11 @@ class Runner:
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
-        for name in GIVEN:
-            if name in ("iteration", "iterations", "until", "stage", "size") or not kernel.reads(name):
-                continue
+        for name in kernel.given:
             if name == "spacing":
                 extent = self._given["extent"]
                 found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.whole_size, strict=True))
-            else:
+            elif name in self._given:
                 found[name] = self._given[name]
         return found
 

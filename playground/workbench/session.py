@@ -16,7 +16,8 @@ from playground.engine.engine import Engine
 from playground.engine.files import content_hash
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Plan, repeats_of
+from playground.engine.plan import Plan
+from playground.engine.planner import repeats_of
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.allowed_files import Signature, signature
 from playground.sketch.map_sketch import Map

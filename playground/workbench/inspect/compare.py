@@ -15,7 +15,8 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.plan import Plan, repeats_of
+from playground.engine.plan import Plan
+from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 from playground.workbench.clock import is_animated
