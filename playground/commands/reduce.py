@@ -241,17 +241,17 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
-    from playground.reduce.initial_case import Bench
+    from playground.reduce.initial_case import CandidateBench
     from playground.reduce.output import Account, claim, plain_texts, to_reproduce, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
-    with Bench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as tell:
         beginning = bench.begin()
         probe = beginning.probe
         found = beginning.finding
         # A refusal's word is its message; of the rest, what is told says where and how much.
-        note(found.word if found.messages else f"{found.word}: {found.told}")
+        note(found.kind if found.messages else f"{found.kind}: {found.details}")
         search = Search(beginning.case, beginning.finding, probe, seconds=limit, tries=tries, tell=tell)
         stopped = False
         try:
@@ -262,8 +262,8 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         if finding is None:
             note("what is left does not fail every time: say so where you report it")
             finding = search.finding
-        shader = plain_texts(search.best, probe, finding, bench.workers[0]) if plain else {}
-        finding = replace(finding, told=finding.told.replace(f"{probe.folder}{os.sep}", ""))
+        shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
+        finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
     account = Account(
         f"playground {' '.join(map(quoted, sys.argv[1:]))}",
         question.sketch.name,
@@ -275,7 +275,7 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         search.tries,
         search.state.seconds,
         search.finished,
-        to_reproduce(question, folder, search.best, probe.fault),
+        to_reproduce(question, folder, search.best, probe.failure),
     )
     for path in write_folder(folder, account, shader):
         print(path)

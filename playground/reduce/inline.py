@@ -143,7 +143,7 @@ def _lines(source: SourceText) -> list[str]:
 def _without_guards(lines: list[str]) -> list[str]:
     """Leave out include guards, and what they keep from standing twice."""
     found: list[str] = []
-    seen: set[str] = set()
+    results: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
     skip_define = ""
     for index, line in enumerate(lines):
@@ -155,12 +155,12 @@ def _without_guards(lines: list[str]) -> list[str]:
         guard = _IFNDEF.match(line)
         following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
         if word.startswith("if"):
-            if guard and guard.group(1) in seen:
+            if guard and guard.group(1) in results:
                 stack.append("twice")
                 continue
             if guard and following and following.group(1) == guard.group(1):
                 stack.append("guard")
-                seen.add(guard.group(1))
+                results.add(guard.group(1))
                 skip_define = guard.group(1)
                 continue
             stack.append("other")

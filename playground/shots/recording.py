@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.paths import shown
-from playground.shots.compare import difference_picture
-from playground.shots.flip import flip_picture
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
 from playground.shots.names import CHECKED, LOOSE, SCREENSHOTS, UNKEPT
 from playground.shots.references import accepted, home_of, reference_texts
@@ -31,7 +29,7 @@ from playground.shots.results import (
     read_result,
     write_result,
 )
-from playground.shots.suite import Outcome, ShotCase
+from playground.shots.suite import Outcome, ShotCase, images_of
 
 _CATCHES = {
     SAME_BUILD: "The same build drew both: any change of more than one level is found",
@@ -77,7 +75,7 @@ class Recorder:
         )
         if outcome.tier == OTHER_RENDERER:
             node.user_properties.append((LOOSE, own))
-        return self._keep(node, outcome.case, record, {} if outcome.ok else _pictures(outcome))
+        return self._keep(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
         """Leave the record of a shot of which there is no picture; returns what `record` does."""
@@ -214,17 +212,6 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     if judgement.seen is not None:
         numbers |= {"FLIP, mean": judgement.seen.mean, "FLIP, worst tile": judgement.seen.tile}
     return numbers
-
-
-def _pictures(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
-    actual, reference = outcome.frame.array, outcome.reference
-    if reference is None:
-        return {"actual": actual}
-    pictures = {"actual": actual, "expected": reference.pixels}
-    pictures["difference"] = difference_picture(actual, reference.pixels)
-    if actual.shape == reference.pixels.shape:
-        pictures["flip"] = flip_picture(actual, reference.pixels)
-    return pictures
 
 
 def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:

@@ -1,8 +1,8 @@
 """From sketches to the pictures they promise, and from pictures to what came of them.
 
 ``shots_of`` lists the cases, ``take`` draws one, ``check`` compares it with its reference,
-``save_pictures`` puts what there is to look at into a folder. No pytest, no options: a
-command or a report calls the same four.
+``images_of`` gives what there is to look at. No pytest, no options: a command or a report
+calls the same four.
 """
 
 from __future__ import annotations
@@ -11,12 +11,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from playground.engine.engine import Engine
 from playground.engine.error_place import told_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
 from playground.shots.flip import flip_picture
@@ -179,26 +181,17 @@ def check(
     return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
 
 
-def save_pictures(outcome: Outcome, folder: Path) -> dict[str, Path]:
-    """Write the actual picture, and the expected one and the differences if there is a reference.
+def images_of(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
+    """Return the actual image, and the expected one and the differences if there is a reference.
 
-    One of those is 16 times as strong as the pixels have it, the other, of pictures of one size,
-    is FLIP. Returns the files by the words actual, expected, difference and flip:
-    ``folder/<sketch>/<shot>.actual.png`` and so on. Raises ``DataError`` where the folder cannot
-    be written to.
+    One of those is 16 times as strong as the pixels have it, the other, of images of one size,
+    is FLIP. By the words actual, expected, difference and flip.
     """
-    pictures = {"actual": outcome.frame.array}
-    if outcome.reference is not None:
-        pictures["expected"] = outcome.reference.pixels
-        pictures["difference"] = difference_picture(outcome.frame.array, outcome.reference.pixels)
-        if outcome.frame.array.shape == outcome.reference.pixels.shape:
-            pictures["flip"] = flip_picture(outcome.frame.array, outcome.reference.pixels)
-    place = folder / outcome.case.sketch.name
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
-    files = {word: place / f"{outcome.case.shot.name}.{word}.png" for word in pictures}
-    for word, file in files.items():
-        write_png(file, pictures[word])
-    return files
+    actual, reference = outcome.frame.array, outcome.reference
+    if reference is None:
+        return {"actual": actual}
+    images = {"actual": actual, "expected": reference.pixels}
+    images["difference"] = difference_picture(actual, reference.pixels)
+    if actual.shape == reference.pixels.shape:
+        images["flip"] = flip_picture(actual, reference.pixels)
+    return images

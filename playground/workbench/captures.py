@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
@@ -55,7 +55,7 @@ class Capturing:
 
     wish: Wish = field(default_factory=Wish)
     shown: bool = False
-    working: Working | None = None
+    working: JobProcess | None = None
     last: Path | None = None  # the file or folder that was made last
     failed: str = ""  # why the last one was not made
 
@@ -71,7 +71,7 @@ class Capturing:
             actions.say(self.failed)
             return
         engine = actions.session.engine
-        self.working = Working(job, software=engine.info.software, driver=engine.driver)
+        self.working = JobProcess(job, software=engine.info.software, driver=engine.driver)
 
     def look(self, actions: Actions) -> None:
         """Take in how far the job is; say it once it has ended."""

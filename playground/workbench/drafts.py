@@ -15,7 +15,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from playground.engine.sandbox import TrialReport, TrySketch
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.assign import LAND
@@ -219,13 +219,13 @@ class Drafts(ABC):
         self.stage, self._aside = Stage.TRIAL, None
         self._submit(self._trial, draft.sketch)
 
-    def tried(self, sketch: Sketch) -> TrialReport | None:
+    def tried(self, sketch: Sketch) -> SandboxReport | None:
         """Return how the trial of a sketch ended that is seen beside this one; None while it is not known.
 
         What is coming goes first.
         """
         if self._trial is None:
-            return TrialReport(True)
+            return SandboxReport(True)
         if self.stage is Stage.TRIAL:
             return None
         if self._aside is not sketch:

@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Protocol
 
-from playground.engine.sandbox import TrialReport, TrySketch
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import PlaygroundError, SketchError
 from playground.paths import shown
 
@@ -16,12 +16,12 @@ log = logging.getLogger("playground.live")
 
 
 class Tester(Protocol):
-    """What tries a sketch where it can do no harm: ``engine.sandbox.Trial``, or a test's stand-in."""
+    """What tries a sketch where it can do no harm: ``engine.sandbox.Sandbox``, or a test's stand-in."""
 
     def submit(self, request: TrySketch) -> None:
         """Hand over a sketch."""
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         """Return the answer to the newest request, once."""
 
 

@@ -22,7 +22,7 @@ from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.shots.mutants.redraw import commented
+from playground.shots.mutants.redraw_handler import commented
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.repeatability import Redrawn, again
 from playground.shots.mutants.suite import (
