@@ -108,7 +108,7 @@ class Bench:
 
     def processor(self) -> float:
         """Return the seconds that processors have spent on this process and on the trial's."""
-        child = self.trial._child
+        child = self.trial._workers.worker
         return sum(spent(pid) for pid in (os.getpid(), child.pid if child else 0) if pid)
 
 
