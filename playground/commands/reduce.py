@@ -196,23 +196,23 @@ def reduce(
     if kind == "shot" and (settings or size or time or steps):
         raise ParameterError("--shot is compared as it stands; leave out --set, --size, --time and --steps")
     question = Question(
-        load(sketch) if kind == "shot" else moment.sketch,
-        kind,
-        shot if kind == "shot" else "",
-        read_pixels(size) or moment.size or _FRAME,
-        moment.time,
-        moment.steps,
-        path,
-        read_driver(driver) if driver else "",
-        _pattern(error),
-        command,
-        _environment(against),
-        read_device(against_device),
-        tolerance,
-        anywhere,
-        renderer.software,
-        renderer.device,
-        timeout,
+        sketch=load(sketch) if kind == "shot" else moment.sketch,
+        kind=kind,
+        shot=shot if kind == "shot" else "",
+        frame=read_pixels(size) or moment.size or _FRAME,
+        time=moment.time,
+        steps=moment.steps,
+        path=path,
+        driver=read_driver(driver) if driver else "",
+        pattern=_pattern(error),
+        command=command,
+        environment=_environment(against),
+        other_device=read_device(against_device),
+        tolerance=tolerance,
+        anywhere=anywhere,
+        software=renderer.software,
+        device=renderer.device,
+        limit=timeout,
     )
     if anywhere and kind != "nan":
         raise ParameterError("--anywhere is for --nan")
@@ -265,17 +265,17 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
         finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
     account = Account(
-        f"playground {' '.join(map(quoted, sys.argv[1:]))}",
-        question.sketch.name,
-        beginning.case,
-        search.best,
-        finding,
-        beginning.renderers,
-        ({}, question.environment),
-        search.tries,
-        search.state.seconds,
-        search.finished,
-        to_reproduce(question, folder, search.best, probe.failure),
+        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        sketch=question.sketch.name,
+        before=beginning.case,
+        after=search.best,
+        finding=finding,
+        renderers=beginning.renderers,
+        environments=({}, question.environment),
+        tries=search.tries,
+        seconds=search.state.seconds,
+        finished=search.finished,
+        reproduce=to_reproduce(question, folder, search.best, probe.failure),
     )
     for path in write_folder(folder, account, shader):
         print(path)

@@ -26,7 +26,7 @@ _CACHE_BYTES = 256 * 2**20
 _FILES = re.compile(r"\S+\.(?:glsl|frag|comp|toml)\b(?::\d+)*:?")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DrawTask:
     """Draw one texture of a sketch."""
 

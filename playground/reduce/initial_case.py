@@ -40,7 +40,7 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 """What failing may mean; "" is to look for it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Question:
     """What fails, as it was asked."""
 
@@ -176,7 +176,16 @@ class CandidateBench:
         process = self.processes[0]
         shown = asked.sketch.for_shot(shot)
         steps = tuple(asked.steps.items())
-        result = process.draw(DrawTask(shown, "", asked.driver or "auto", shot.size, shot.time, steps))
+        result = process.draw(
+            DrawTask(
+                sketch=shown,
+                ref="",
+                driver=asked.driver or "auto",
+                frame=shot.size,
+                time=shot.time,
+                steps=steps,
+            )
+        )
         if result.values is None:
             raise DataError(f"shot '{shot.name}' gives no picture: {result.details.splitlines()[0]}")
         case = ShotCase(asked.sketch, shot)

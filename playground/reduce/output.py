@@ -29,7 +29,7 @@ RECORD = "reduced.json"
 """The file by which a folder is known to be one of ours."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Account:
     """What the text in the folder says."""
 
@@ -173,6 +173,8 @@ def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidatePr
     for name, text in texts.items():
         (probe.folder / name).write_text(text, encoding="utf-8")
     opened = "plain.frag" if "plain.frag" in texts else "plain.comp"
-    result = process.draw(DrawTask(str(probe.folder / opened), "", driver, case.frame, case.time))
+    result = process.draw(
+        DrawTask(sketch=str(probe.folder / opened), ref="", driver=driver, frame=case.frame, time=case.time)
+    )
     after = failure.found([result])
     return texts if after is not None and after.kind == finding.kind else {}

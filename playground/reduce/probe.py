@@ -98,4 +98,4 @@ def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> D
     names = {one.name for one in case.live}
     steps = tuple((path, turns) for path, turns in case.steps if path in names)
     ref = "" if as_picture else "view" if case.file != "sketch.toml" else case.target
-    return DrawTask(sketch, ref, driver, case.frame, case.time, steps)
+    return DrawTask(sketch=sketch, ref=ref, driver=driver, frame=case.frame, time=case.time, steps=steps)

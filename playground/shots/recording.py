@@ -161,10 +161,10 @@ class Recorder:
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
         return Record(
-            case.sketch.name,
-            case.shot.name,
-            word,
-            sentence,
+            sketch=case.sketch.name,
+            shot=case.shot.name,
+            word=word,
+            sentence=sentence,
             root=str(self.root),
             home=_home(case, self.root),
             node=typed(node),
@@ -226,10 +226,10 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
         # Of the same run as what its tests have left, which may have run in other processes.
         runs = {record.when: record.run for record in records_in(recorder.folder)}
         record = Record(
-            path.name,
-            "references",
-            "error",
-            first,
+            sketch=path.name,
+            shot="references",
+            word="error",
+            sentence=first,
             root=str(root),
             home=home,
             error=rest,

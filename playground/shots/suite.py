@@ -55,7 +55,7 @@ class Taken(Frame):
     gl_error: str = ""  # what drawing it left behind
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome:
     """What came of one shot."""
 
@@ -169,7 +169,13 @@ def check(
         try:
             references.append(read_reference(file))
         except DataError as error:
-            return Outcome(case, frame, unreadable(frame.array, fingerprint, str(error)), file, renderer)
+            return Outcome(
+                case=case,
+                frame=frame,
+                judgement=unreadable(frame.array, fingerprint, str(error)),
+                path=file,
+                renderer=renderer,
+            )
     judgement, reference = judge(
         frame.array,
         fingerprint,
@@ -178,7 +184,14 @@ def check(
         not_finite=not_finite,
         gl_error=gl_error,
     )
-    return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
+    return Outcome(
+        case=case,
+        frame=frame,
+        judgement=judgement,
+        path=reference.path if reference else path,
+        renderer=renderer,
+        reference=reference,
+    )
 
 
 def images_of(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:

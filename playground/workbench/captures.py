@@ -142,17 +142,17 @@ def job_of(wish: Wish, actions: Actions) -> Job:
         if steps:
             raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
     return Job(
-        wish.kind,
-        sketch,
-        actions.folder,
-        size,
-        time_of,
-        steps,
-        seconds_of(wish, sketch) if moves else None,
-        fps,
-        wish.ending,
-        wish.quality,
-        sweeps,
+        kind=wish.kind,
+        sketch=sketch,
+        folder=actions.folder,
+        size=size,
+        time=time_of,
+        steps=steps,
+        seconds=seconds_of(wish, sketch) if moves else None,
+        fps=fps,
+        ending=wish.ending,
+        quality=wish.quality,
+        sweeps=sweeps,
     )
 
 

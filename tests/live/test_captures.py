@@ -230,7 +230,13 @@ def test_a_job_takes_a_new_name_every_time(actions: Actions) -> None:
 
 
 def test_a_job_in_its_process_gives_the_bytes_of_this_one(actions: Actions) -> None:
-    job = Job(PICTURE, job_of(Wish(), actions).sketch, actions.folder, (64, 64), fps=Fraction(30))
+    job = Job(
+        kind=PICTURE,
+        sketch=job_of(Wish(), actions).sketch,
+        folder=actions.folder,
+        size=(64, 64),
+        fps=Fraction(30),
+    )
     working = JobProcess(job, software=actions.session.engine.info.software)
     end = time.monotonic() + LIMIT
     while (finished := working.poll()) is None and time.monotonic() < end:

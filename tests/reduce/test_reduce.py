@@ -296,7 +296,7 @@ MAP = f'{PASS}[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\n{SHOT}'
 def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, tmp_path, capsys):
     path = sketch(BANDS, MAP)
     shot = load(path).shots[0]
-    good = worker.draw(DrawTask(load(path), "", "auto", shot.size))
+    good = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
     assert good.values is not None
     reference = reference_path(load(path), "noon", worker.info.slug)
     reference.parent.mkdir(parents=True)
@@ -304,7 +304,7 @@ def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, wor
     assert main(["--software", "reduce", str(path), "--shot", "noon"]) == 2
     assert "is as its reference" in capsys.readouterr().err
     sketch(BANDS.replace("0.125", "0.375"), MAP)
-    bad = worker.draw(DrawTask(load(path), "", "auto", shot.size))
+    bad = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
     search = shrink(
         path,
         OffReference(bad.values, [good.values], 1),
@@ -502,8 +502,8 @@ def test_a_shipped_sketch_laid_flat_draws_the_same_picture(name, worker, tmp_pat
     frame = (64, 36)
     case = lay_flat(sketch, frame=frame)
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
-    whole = worker.draw(DrawTask(sketch, "", "fragment", frame))
-    flat = worker.draw(DrawTask(str(tmp_path / "sketch.toml"), "", "fragment", frame))
+    whole = worker.draw(DrawTask(sketch=sketch, ref="", driver="fragment", frame=frame))
+    flat = worker.draw(DrawTask(sketch=str(tmp_path / "sketch.toml"), ref="", driver="fragment", frame=frame))
     assert whole.kind == flat.kind == "drawn", flat.details
     np.testing.assert_array_equal(flat.values, whole.values)
 

@@ -16,16 +16,16 @@ from playground.shots.suite import ShotCase, Taken
 
 # What drew a reference, as one build of Mesa says it.
 OURS = Fingerprint(
-    "llvmpipe (LLVM 15.0.6, 256 bits)",
-    "4.5 Mesa 22.3.6",
-    "Mesa/X.org",
-    "22.3.6",
-    "15.0.6",
-    "GenuineIntel",
-    "avx fma f16c",
-    "ab12",
-    "64x32",
-    "tool 1",
+    renderer="llvmpipe (LLVM 15.0.6, 256 bits)",
+    version="4.5 Mesa 22.3.6",
+    vendor="Mesa/X.org",
+    mesa="22.3.6",
+    llvm="15.0.6",
+    cpu="GenuineIntel",
+    simd="avx fma f16c",
+    drawn="ab12",
+    size="64x32",
+    tool="tool 1",
 )
 
 KERNEL = """// land.glsl -- a slope.
