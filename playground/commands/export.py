@@ -139,7 +139,14 @@ def export(
     from playground.capture.export_options import Form
     from playground.sketch.load import load
 
-    form = Form(texture, kind, _whole("--bits", bits), _span(span), _whole("--grid", grid), light)
+    form = Form(
+        texture=texture,
+        kind=kind,
+        bits=_whole("--bits", bits),
+        span=_span(span),
+        grid=_whole("--grid", grid),
+        light=light,
+    )
     values, turns, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)
     moment = moment_of(

@@ -138,7 +138,14 @@ def make_many(
 
         pattern = _pattern(output, sketch.name)
         check_pattern(pattern)
-        film = Film(sketch, asked.frames[-1] + 1, fps, pixels, moment.time, moment.steps)
+        film = Film(
+            sketch=sketch,
+            count=asked.frames[-1] + 1,
+            fps=fps,
+            size=pixels,
+            start=moment.time,
+            steps=moment.steps,
+        )
         with _drawing(f"drawing {sketch.name}", len(asked.frames), renderer, driver) as (engine, done):
             found = write_sequence(
                 engine, film, pattern, numbers=asked.frames, resume=asked.resume, done=done

@@ -196,23 +196,23 @@ def reduce(
     if kind == "shot" and (settings or size or time or steps):
         raise ParameterError("--shot is compared as it stands; leave out --set, --size, --time and --steps")
     question = Question(
-        load(sketch) if kind == "shot" else moment.sketch,
-        kind,
-        shot if kind == "shot" else "",
-        read_pixels(size) or moment.size or _FRAME,
-        moment.time,
-        moment.steps,
-        path,
-        read_driver(driver) if driver else "",
-        _pattern(error),
-        command,
-        _environment(against),
-        read_device(against_device),
-        tolerance,
-        anywhere,
-        renderer.software,
-        renderer.device,
-        timeout,
+        sketch=load(sketch) if kind == "shot" else moment.sketch,
+        kind=kind,
+        shot=shot if kind == "shot" else "",
+        frame=read_pixels(size) or moment.size or _FRAME,
+        time=moment.time,
+        steps=moment.steps,
+        path=path,
+        driver=read_driver(driver) if driver else "",
+        pattern=_pattern(error),
+        command=command,
+        environment=_environment(against),
+        other_device=read_device(against_device),
+        tolerance=tolerance,
+        anywhere=anywhere,
+        software=renderer.software,
+        device=renderer.device,
+        limit=timeout,
     )
     if anywhere and kind != "nan":
         raise ParameterError("--anywhere is for --nan")
@@ -241,17 +241,17 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
-    from playground.reduce.initial_case import Bench
+    from playground.reduce.initial_case import CandidateBench
     from playground.reduce.output import Account, claim, plain_texts, to_reproduce, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
-    with Bench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as tell:
         beginning = bench.begin()
         probe = beginning.probe
         found = beginning.finding
         # A refusal's word is its message; of the rest, what is told says where and how much.
-        note(found.word if found.messages else f"{found.word}: {found.told}")
+        note(found.kind if found.messages else f"{found.kind}: {found.details}")
         search = Search(beginning.case, beginning.finding, probe, seconds=limit, tries=tries, tell=tell)
         stopped = False
         try:
@@ -262,20 +262,20 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         if finding is None:
             note("what is left does not fail every time: say so where you report it")
             finding = search.finding
-        shader = plain_texts(search.best, probe, finding, bench.workers[0]) if plain else {}
-        finding = replace(finding, told=finding.told.replace(f"{probe.folder}{os.sep}", ""))
+        shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
+        finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
     account = Account(
-        f"playground {' '.join(map(quoted, sys.argv[1:]))}",
-        question.sketch.name,
-        beginning.case,
-        search.best,
-        finding,
-        beginning.renderers,
-        ({}, question.environment),
-        search.tries,
-        search.state.seconds,
-        search.finished,
-        to_reproduce(question, folder, search.best, probe.fault),
+        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        sketch=question.sketch.name,
+        before=beginning.case,
+        after=search.best,
+        finding=finding,
+        renderers=beginning.renderers,
+        environments=({}, question.environment),
+        tries=search.tries,
+        seconds=search.state.seconds,
+        finished=search.finished,
+        reproduce=to_reproduce(question, folder, search.best, probe.failure),
     )
     for path in write_folder(folder, account, shader):
         print(path)

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import pickle
+import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
 
 import moderngl
 import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.errors import ContextError, ParameterError, ShaderError, TrialCrash, TrialTimeout
-from playground.shots import studio as studio_module
-from playground.shots.studio import Studio
-from playground.shots.studio_child import _HEAD, _MARK, Rubbish, receive, send
+from playground.errors import ContextError, ParameterError, SandboxCrash, SandboxTimeout, ShaderError
+from playground.shots import renderer_process as renderer_module
+from playground.shots.renderer_process import RendererProcess
 from playground.shots.suite import ShotCase, shots_of, take
 from playground.sketch.model import Graph, Shot, Sketch
 
@@ -84,8 +81,8 @@ def cases(tmp_path: Path) -> dict[str, ShotCase]:
 
 
 @pytest.fixture(scope="module")
-def studio() -> Iterator[Studio]:
-    with Studio() as made:
+def renderer() -> Iterator[RendererProcess]:
+    with RendererProcess() as made:
         yield made
 
 
@@ -95,16 +92,16 @@ def test_a_case_is_named_by_sketch_and_shot(cases: dict[str, ShotCase]) -> None:
 
 
 def test_the_child_draws_what_an_engine_here_draws(
-    cases: dict[str, ShotCase], studio: Studio, any_engine: Engine
+    cases: dict[str, ShotCase], renderer: RendererProcess, any_engine: Engine
 ) -> None:
-    if any_engine.info.slug != studio.renderer.slug:
+    if any_engine.info.slug != renderer.renderer.slug:
         pytest.skip(f"OpenGL here is {any_engine.info.renderer}")
     for case in cases.values():
-        np.testing.assert_array_equal(studio.take(case).array, take(any_engine, case).array)
+        np.testing.assert_array_equal(renderer.render(case).array, take(any_engine, case).array)
 
 
-def test_a_shot_obeys_each_of_its_settings(cases: dict[str, ShotCase], studio: Studio) -> None:
-    frames = {name: studio.take(case) for name, case in cases.items()}
+def test_a_shot_obeys_each_of_its_settings(cases: dict[str, ShotCase], renderer: RendererProcess) -> None:
+    frames = {name: renderer.render(case) for name, case in cases.items()}
     assert frames["plain"].size == (48, 32)
     assert (frames["later"].size, frames["later"].time) == ((40, 32), 2.5)
     # The land is 32 texels wide; at x = 31 its value is turns * gain * 31/32 (* fract(31/32 + 0.25)).
@@ -125,8 +122,8 @@ def test_this_process_keeps_its_environment_and_its_context(
 ) -> None:
     before = dict(os.environ)
     texture = ctx.texture((1, 1), 1, b"\x07")
-    with Studio() as own:
-        own.take(cases["plain"])
+    with RendererProcess() as own:
+        own.render(cases["plain"])
         assert texture.read() == b"\x07"
     assert dict(os.environ) == before
     texture.release()
@@ -138,34 +135,34 @@ def test_cases_and_frames_cross_over_whole(cases: dict[str, ShotCase]) -> None:
 
 
 def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
-    cases: dict[str, ShotCase], studio: Studio, tmp_path: Path
+    cases: dict[str, ShotCase], renderer: RendererProcess, tmp_path: Path
 ) -> None:
     (tmp_path / "land.glsl").write_text(KERNEL.replace("gain *", "gian *"))
     broken = shots_of([tmp_path / "bands.toml"])[0]
     with pytest.raises(ShaderError, match=r"land\.glsl:8.*gian"):
-        studio.take(broken)
+        renderer.render(broken)
     wrong = ShotCase(cases["plain"].sketch, Shot("wrong", values=(("height.gian", 1.0),)))
     with pytest.raises(ParameterError, match="gian"):
-        studio.take(wrong)
-    assert studio.take(cases["plain"]).size == (48, 32)
+        renderer.render(wrong)
+    assert renderer.render(cases["plain"]).size == (48, 32)
 
 
 def test_no_software_renderer_is_said_each_time(
     monkeypatch: pytest.MonkeyPatch, cases: dict[str, ShotCase]
 ) -> None:
     monkeypatch.setenv("GALLIUM_DRIVER", "no-such-driver")
-    with Studio() as studio:
+    with RendererProcess() as renderer:
         for _ in range(2):
             with pytest.raises(ContextError):
-                studio.take(cases["plain"])
+                renderer.render(cases["plain"])
 
 
 def test_a_studio_that_took_nothing_starts_nothing() -> None:
-    with Studio() as studio:
-        assert studio.process is None
+    with RendererProcess() as renderer:
+        assert renderer.process is None
 
 
-# How a child can end. Its OpenGL is made up: what it draws is nothing, and it ends as the shot is named.
+# How a worker can end. Its OpenGL is made up: what it draws is nothing, and it ends as the shot is named.
 
 FAKE = """
 import ctypes, os, sys
@@ -179,53 +176,39 @@ if Path("cannot start").exists():
 
 import numpy as np
 from playground.gpu.context import ContextInfo
-from playground.shots import studio_child as real
+from playground.process.child import Service
 from playground.shots.suite import Taken
 
-class Engine:
-    def __init__(self, *_, **__): pass
-    def __enter__(self): return self
-    def __exit__(self, *_): pass
+def open_service(parent, renderer):
+    def take(case):
+        name = case.shot.name
+        if name == "crash":
+            os.write(1, b"first: to standard output\\n")
+            os.write(2, b"nir: validation failed after split_vars\\n")
+            os.abort()
+        if name == "hang":  # as a draw does: with Python's lock held, so that no thread and no handler runs
+            Path("hangs").touch()
+            ctypes.PyDLL(None).sleep(100_000)
+        if name == "no frame":
+            parent._answers.write(b"libEGL warning: failed to open /dev/dri/card0\\n")
+            parent._answers.flush()
+        if name == "memory":
+            raise MemoryError
+        print("drew", name, flush=True)
+        return Taken(np.zeros((2, 3, 4), np.uint8), drawn=name)
 
-class Raw:
-    def __init__(self, data): self.data = data
+    return Service(take, ContextInfo(450, "llvmpipe (made up)", "", "", 4))
 
-def take(engine, case):
-    name = case.shot.name
-    if name == "crash":
-        os.write(1, b"first: to standard output\\n")
-        os.write(2, b"nir: validation failed after split_vars\\n")
-        os.abort()
-    if name == "hang":  # as a draw does: with Python's lock held, so that no thread and no handler runs
-        Path("hangs").touch()
-        ctypes.PyDLL(None).sleep(100_000)
-    if name == "rubbish":
-        return Raw(b"libEGL warning: failed to open /dev/dri/card0\\n")
-    if name == "memory":
-        raise MemoryError
-    print("drew", name, flush=True)
-    return Taken(np.zeros((2, 3, 4), np.uint8), drawn=name)
-
-def send(stream, message, send=real.send):
-    if isinstance(message, Raw):
-        stream.write(message.data)
-        stream.flush()
-    else:
-        send(stream, message)
-
-real.take, real.send, real.Engine = take, send, Engine
-real._open = lambda renderer: None
-real.context_info = lambda context: ContextInfo(450, "llvmpipe (made up)", "", "", 4)
 pipe = os.open("lives", os.O_WRONLY) if Path("lives").exists() else None  # closed when this process ends
-real.main()
 """
 
 PARENT = """
-from playground.shots import studio
+from playground.shots import renderer_process
 from playground.shots.suite import ShotCase
 from playground.sketch.model import Graph, Shot, Sketch
-studio.CHILD = "fake_child"
-studio.Studio().take(ShotCase(Sketch("hills", "", "", Graph("", "", ())), Shot("hang")))
+renderer_process.HANDLER = "fake_handler"
+process = renderer_process.RendererProcess()
+process.render(ShotCase(Sketch("hills", "", "", Graph("", "", ())), Shot("hang")))
 """
 
 
@@ -234,13 +217,13 @@ def made_up(name: str) -> ShotCase:
 
 
 @pytest.fixture
-def fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Studio]:
-    """Give a studio whose child draws nothing."""
-    (tmp_path / "fake_child.py").write_text(FAKE)
+def fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RendererProcess]:
+    """Give a renderer whose child draws nothing."""
+    (tmp_path / "fake_handler.py").write_text(FAKE)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(studio_module, "CHILD", "fake_child")
-    with Studio() as made:
+    monkeypatch.setattr(renderer_module, "HANDLER", "fake_handler")
+    with RendererProcess() as made:
         yield made
 
 
@@ -254,133 +237,62 @@ def alive(process: int) -> bool:
 
 ENDS = {
     "crash": (
-        TrialCrash,
+        SandboxCrash,
         r"drawing hills/crash crashed: the process was ended by SIGABRT\n"
         r"    \| first: to standard output\n    \| nir: validation failed after split_vars",
     ),
-    "rubbish": (TrialCrash, "drawing hills/rubbish gave an answer that is none: b'libEGL warning"),
+    "no frame": (SandboxCrash, "drawing hills/no frame sent what is no answer: b'libEGL wa"),
     "memory": (ContextError, "drawing hills/memory ran out of memory"),
 }
 
 
-def test_each_end_has_its_words_and_the_next_shot_is_drawn(fake: Studio) -> None:
+def test_each_end_has_its_words_and_the_next_shot_is_drawn(fake: RendererProcess) -> None:
     for name, (kind, words) in ENDS.items():
         with pytest.raises(kind, match=words):
-            fake.take(made_up(name))
-    assert fake.take(made_up("next")).drawn == "next"
-    assert "drew next" in fake.said()
+            fake.render(made_up(name))
+    assert fake.render(made_up("next")).drawn == "next"
+    assert "drew next" in fake.printed()
 
 
-@pytest.mark.parametrize(
-    ("data", "kind"),
-    [
-        (b"", EOFError),
-        (_HEAD.pack(_MARK, 3)[:9], EOFError),
-        (_HEAD.pack(_MARK, 30) + b"cut short", EOFError),
-        (b"Mesa", Rubbish),
-        (b"Mesa: error: ZINK: failed to choose pdev", Rubbish),
-        (_HEAD.pack(_MARK, 20) + 20 * b"x", Rubbish),
-        (_HEAD.pack(_MARK, 2**60), Rubbish),  # it is not even tried to read so much
-    ],
-)
-def test_what_is_no_message_is_told_from_one(data: bytes, kind: type[Exception]) -> None:
-    whole = io.BytesIO()
-    send(whole, ["a", 1])
-    assert receive(io.BytesIO(whole.getvalue())) == ["a", 1]
-    with pytest.raises(kind):
-        receive(io.BytesIO(data))
-
-
-def test_how_a_process_ended_is_said_in_words() -> None:
-    assert studio_module._ended(7) == "ended with status 7"
-    assert studio_module._ended(-11) == "was ended by SIGSEGV"
-    assert studio_module._ended(-1000) == "was ended by signal 1000"
-
-
-def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: Studio) -> None:
-    assert fake.take(made_up("first")).drawn == "first"
+def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: RendererProcess) -> None:
+    assert fake.render(made_up("first")).drawn == "first"
     process = fake.process
     fake.limit = 0.2
-    with pytest.raises(TrialTimeout, match=r"drawing hills/hang took more than 0\.2 s and was stopped"):
-        fake.take(made_up("hang"))
+    with pytest.raises(SandboxTimeout, match=r"drawing hills/hang took more than 0\.2 s and was stopped"):
+        fake.render(made_up("hang"))
     assert process is not None and not alive(process)
     fake.limit = 120.0
-    assert fake.take(made_up("next")).drawn == "next"
+    assert fake.render(made_up("next")).drawn == "next"
 
 
-def test_a_child_that_cannot_start_is_tried_twice_and_no_more(fake: Studio) -> None:
+def test_a_child_that_cannot_start_is_tried_twice_and_no_more(fake: RendererProcess) -> None:
     Path("cannot start").touch()
     words = r"starting the process that draws crashed: the process was ended by SIGABRT\n    \| LLVM ERROR"
     for _ in range(4):
-        with pytest.raises(TrialCrash, match=words):
-            fake.take(made_up("first"))
+        with pytest.raises(SandboxCrash, match=words):
+            fake.render(made_up("first"))
     assert Path("starts").read_text() == "xx"
     Path("cannot start").unlink()
-    with Studio() as other:
-        assert other.take(made_up("first")).drawn == "first"
+    with RendererProcess() as other:
+        assert other.render(made_up("first")).drawn == "first"
 
 
-def test_an_answer_at_the_last_moment_counts_and_the_next_is_drawn(
-    fake: Studio, monkeypatch: pytest.MonkeyPatch
+def test_a_child_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(
+    fake: RendererProcess,
 ) -> None:
-    """The limit ends here between the answer and its being read, whatever the machine has to do."""
-    assert fake.renderer.slug == "llvmpipe"
-    timers: list[Callable[[], None]] = []
-
-    class Timer:
-        def __init__(self, limit: float, end: Callable[[], None]) -> None:
-            timers.append(end)
-
-        def start(self) -> None: ...
-        def cancel(self) -> None: ...
-        def join(self) -> None: ...
-
-    def receive_late(stream: BinaryIO) -> object:
-        answer = receive(stream)
-        timers[-1]()
-        assert fake._child is not None
-        fake._child.process.wait(60)
-        return answer
-
-    with monkeypatch.context() as patch:
-        patch.setattr(studio_module, "receive", receive_late)
-        patch.setattr(threading, "Timer", Timer)
-        assert fake.take(made_up("late")).drawn == "late"
-    assert fake.process is None, "it was ended, and is not asked again"
-    assert fake.take(made_up("next")).drawn == "next"
-
-
-def test_ctrl_c_leaves_no_child_and_no_answer_for_the_next(
-    fake: Studio, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fake.take(made_up("first"))
-    process = fake.process
-
-    def interrupted(stream: BinaryIO) -> object:
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr(studio_module, "receive", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            fake.take(made_up("second"))
-    assert process is not None and not alive(process)
-    assert fake.take(made_up("third")).drawn == "third"
-
-
-def test_a_child_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(fake: Studio) -> None:
-    fake.take(made_up("first"))
-    assert fake._child is not None
-    fake._child.process.kill()
-    fake._child.process.wait()
-    assert fake.take(made_up("second")).drawn == "second"
+    fake.render(made_up("first"))
+    assert fake.process is not None
+    os.kill(fake.process, signal.SIGKILL)
+    os.waitid(os.P_PID, fake.process, os.WEXITED | os.WNOWAIT)
+    assert fake.render(made_up("second")).drawn == "second"
     process = fake.process
     assert process is not None and alive(process)
     fake.close()
     assert not alive(process) and fake.process is None
-    assert "drew second" in fake.said()
+    assert "drew second" in fake.printed()
 
 
-def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: Studio, tmp_path: Path) -> None:
+def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProcess, tmp_path: Path) -> None:
     os.mkfifo("lives")
     (tmp_path / "parent.py").write_text(PARENT)
     where = os.pathsep.join(path for path in sys.path if path)
@@ -416,8 +328,8 @@ def test_a_real_childs_ends_are_told_by_the_plugin(
     for variable in ("CI", "PYTEST_ADDOPTS"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.syspath_prepend(pytester.path)
-    monkeypatch.setattr(studio_module, "CHILD", "fake_child")
-    files = {"fake_child.py": FAKE, "land.glsl": KERNEL, "bands.toml": ENDING}
+    monkeypatch.setattr(renderer_module, "HANDLER", "fake_handler")
+    files = {"fake_handler.py": FAKE, "land.glsl": KERNEL, "bands.toml": ENDING}
     for name, text in files.items():
         Path(name).write_text(text)
     Path("test_x.py").write_text("def test_one(shot): shot.render('bands.toml', shot='crash')\n")
@@ -433,7 +345,7 @@ def test_a_real_childs_ends_are_told_by_the_plugin(
             "bands/crash: crash: drawing bands/crash crashed: the process was ended by SIGABRT",
             "    | nir: validation failed after split_vars",
             "bands/next: blank: *",
-            "E *TrialCrash: crash: drawing bands/crash crashed: the process was ended by SIGABRT",
+            "E *SandboxCrash: crash: drawing bands/crash crashed: the process was ended by SIGABRT",
         ]
     )
     result.stdout.no_fnmatch_line("*Traceback*")

@@ -1,4 +1,4 @@
-"""What would kill the driver kills the trial's child, and the next request works."""
+"""What would kill the driver kills the sandbox's worker, and the next request works."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from playground.engine.planner import smallest_land
-from playground.engine.sandbox import Trial, TrialReport, TryLibrary, TrySketch
-from playground.errors import ShaderError, TrialCrash, TrialTimeout
+from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
+from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy
@@ -54,77 +54,77 @@ def is_gone(pid: int) -> bool:
     return not is_alive(pid)
 
 
-def wait(trial: Trial) -> TrialReport:
+def wait(sandbox: Sandbox) -> SandboxReport:
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
-        if (report := trial.poll()) is not None:
+        if (report := sandbox.poll()) is not None:
             return report
         time.sleep(0.005)
     raise AssertionError("no answer")
 
 
 @pytest.fixture(scope="module")
-def trial():
-    with Trial(limit_seconds=PATIENCE) as made:
+def sandbox():
+    with Sandbox(limit_seconds=PATIENCE) as made:
         yield made
 
 
-def test_a_good_sketch_is_good_by_both_drivers(trial, folder):
-    report = trial.run(TrySketch(folder.one(GOOD), drivers=("fragment", "compute")))
+def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(GOOD), drivers=("fragment", "compute")))
     assert report.ok, report.error
     assert report.error is None
 
 
-def test_the_child_is_warm(trial, folder):
+def test_the_child_is_warm(sandbox, folder):
     """The same process answers, mistakes between or not: only its first answer waits for a context."""
-    trial.run(TrySketch(folder.one(GOOD)))
-    pid = trial._child.pid
-    assert not trial.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
-    assert trial.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
-    assert trial._child.pid == pid
+    sandbox.run(TrySketch(folder.one(GOOD)))
+    pid = sandbox._workers.worker.pid
+    assert not sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
+    assert sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
+    assert sandbox._workers.worker.pid == pid
 
 
-def test_a_mistake_comes_back_with_its_place(trial, folder):
-    report = trial.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong"))))
+def test_a_mistake_comes_back_with_its_place(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong"))))
     assert not report.ok
     assert isinstance(report.error, ShaderError)
     assert report.error.diagnostics[0].line == 2
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_it_tries_the_smallest_land_that_is_accepted(trial, folder):
+def test_it_tries_the_smallest_land_that_is_accepted(sandbox, folder):
     """A kernel that takes powers of two only is tried small: whole, its two textures take 8 GiB."""
     kernel = GOOD.replace('r32f"', 'rgba32f", accepts = "2**n", repeat = "log2(size.x)"')
     kernel = kernel.replace("float kernel", "vec4 kernel").replace("float(texel.x)", "vec4(1)")
     sketch = folder.one(kernel, size="size = 16384")
     assert smallest_land(sketch) == (64, 64)
-    report = trial.run(TrySketch(sketch))
+    report = sandbox.run(TrySketch(sketch))
     assert report.ok, report.error
 
 
-def test_a_library_file_is_compiled_alone(trial, folder):
+def test_a_library_file_is_compiled_alone(sandbox, folder):
     good = folder.write("lib.glsl", "float twice(float x) { return 2.0 * x; }\n")
     bad = folder.write("bad.glsl", "float twice(float x) {\n return 2.0 * y; }\n")
-    assert trial.run(TryLibrary(str(good), str(folder.path))).ok
-    report = trial.run(TryLibrary(str(bad), str(folder.path)))
+    assert sandbox.run(TryLibrary(str(good), str(folder.path))).ok
+    report = sandbox.run(TryLibrary(str(bad), str(folder.path)))
     assert report.error is not None
     assert report.error.diagnostics[0].line == 2
 
 
-def test_what_crashes_the_compiler_kills_the_child_only(trial, folder):
-    report = trial.run(TrySketch(folder.one(CRASH)))
+def test_what_crashes_the_compiler_kills_the_child_only(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert not report.ok
-    assert isinstance(report.error, TrialCrash)
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
+    assert isinstance(report.error, SandboxCrash)
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def at_work(trial: Trial) -> int:
+def at_work(sandbox: Sandbox) -> int:
     """Wait until the child is in the middle of a pass; return its process."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
-        assert trial.poll() is None
-        if trial._child.busy and trial._child.doing is not None:
-            return trial._child.pid
+        assert sandbox.poll() is None
+        if sandbox._workers.worker.busy and sandbox._workers.worker.progress is not None:
+            return sandbox._workers.worker.pid
         time.sleep(0.005)
     raise AssertionError("it did not begin")
 
@@ -132,35 +132,35 @@ def at_work(trial: Trial) -> int:
 @pytest.mark.parametrize(
     ("number", "said"),
     [
-        ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the trial (SIGSEGV)"),
-        ("SIGKILL", "pass 'a' was killed by the system in the trial (SIGKILL); did memory run out?"),
+        ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the sandbox (SIGSEGV)"),
+        ("SIGKILL", "pass 'a' was killed by the system in the sandbox (SIGKILL); did memory run out?"),
     ],
 )
-def test_a_crash_says_how_and_where(trial, folder, number, said):
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
-    trial.submit(TrySketch(folder.one(SLOW)))
-    os.kill(at_work(trial), signal.Signals[number])
-    report = wait(trial)
-    assert isinstance(report.error, TrialCrash)
+def test_a_crash_says_how_and_where(sandbox, folder, number, said):
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    sandbox.submit(TrySketch(folder.one(SLOW)))
+    os.kill(at_work(sandbox), signal.Signals[number])
+    report = wait(sandbox)
+    assert isinstance(report.error, SandboxCrash)
     assert report.error.diagnostics[0].message == said
     assert report.error.diagnostics[0].file == str(folder.path / "one.glsl")
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_a_child_that_died_is_replaced_before_it_is_needed(trial, folder):
-    report = trial.run(TrySketch(folder.one(CRASH)))
-    assert isinstance(report.error, TrialCrash)
-    assert trial._child.runs and not trial._child.busy
-    pid = trial._child.pid
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
-    assert trial._child.pid == pid
+def test_a_child_that_died_is_replaced_before_it_is_needed(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(CRASH)))
+    assert isinstance(report.error, SandboxCrash)
+    assert sandbox._workers.worker.runs and not sandbox._workers.worker.busy
+    pid = sandbox._workers.worker.pid
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    assert sandbox._workers.worker.pid == pid
 
 
-def test_a_child_that_dies_idle_costs_nobody_an_answer(trial, folder):
+def test_a_child_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     """It is dead when it is handed something, or dies just then: another is asked."""
-    assert trial.run(TrySketch(folder.one(GOOD))).ok
-    os.kill(trial._child.pid, signal.SIGKILL)
-    report = trial.run(TrySketch(folder.one(GOOD)))
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    os.kill(sandbox._workers.worker.pid, signal.SIGKILL)
+    report = sandbox.run(TrySketch(folder.one(GOOD)))
     assert report.ok, report.error
 
 
@@ -183,34 +183,34 @@ def test_a_monstrous_text_is_stopped_or_crashes_and_the_next_is_tried(folder, na
     kernel = GOOD.replace("float kernel", f"{MONSTERS[name]}\nfloat kernel").replace(
         "float(texel.x)", "run(float(texel.x))"
     )
-    with Trial(limit_seconds=PATIENCE, memory_bytes=2**30) as trial:
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
-        trial.limit_seconds = 1.5
-        report = trial.run(TrySketch(folder.one(kernel)))
-        assert isinstance(report.error, TrialTimeout | TrialCrash), report
+    with Sandbox(limit_seconds=PATIENCE, memory_bytes=2**30) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = 1.5
+        report = sandbox.run(TrySketch(folder.one(kernel)))
+        assert isinstance(report.error, SandboxTimeout | SandboxCrash), report
         assert report.error.diagnostics[0].message.startswith("pass 'a' ")
-        trial.limit_seconds = PATIENCE
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = PATIENCE
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_a_long_text_is_no_mistake(trial, folder):
+def test_a_long_text_is_no_mistake(sandbox, folder):
     lines = "\n".join(f"float f{i}(float x) {{ return fract(x * 1.{i}); }}" for i in range(2000))
-    report = trial.run(TrySketch(folder.one(GOOD.replace("float kernel", f"{lines}\nfloat kernel"))))
+    report = sandbox.run(TrySketch(folder.one(GOOD.replace("float kernel", f"{lines}\nfloat kernel"))))
     assert report.ok, report.error
 
 
 def test_what_takes_too_long_is_stopped(folder):
-    with Trial(limit_seconds=PATIENCE) as trial:
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
-        pid = trial._child.pid
-        trial.limit_seconds = 0.7
-        report = trial.run(TrySketch(folder.one(SLOW)))
-        assert isinstance(report.error, TrialTimeout)
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        pid = sandbox._workers.worker.pid
+        sandbox.limit_seconds = 0.7
+        report = sandbox.run(TrySketch(folder.one(SLOW)))
+        assert isinstance(report.error, SandboxTimeout)
         assert "pass 'a' took longer than 0.7 s" in str(report.error)
         assert report.error.diagnostics[0].file.endswith("one.glsl")
         assert is_gone(pid)
-        trial.limit_seconds = PATIENCE
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = PATIENCE
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
 def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
@@ -225,11 +225,11 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
         '[[pass]]\nname = "slow"\nuse = "./slow"\nsize = 257\n'
         '[[pass]]\nname = "after"\nuse = "./after"\ninputs = { from = "slow" }\n'
     )
-    with Trial(limit_seconds=PATIENCE) as trial:
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
-        trial.limit_seconds = 0.7
-        report = trial.run(TrySketch(sketch, drivers=("fragment", "auto")))
-    assert isinstance(report.error, TrialTimeout)
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = 0.7
+        report = sandbox.run(TrySketch(sketch, drivers=("fragment", "auto")))
+    assert isinstance(report.error, SandboxTimeout)
     assert "pass 'slow' took longer than 0.7 s by the fragment driver" in str(report.error)
     assert report.error.diagnostics[0].file.endswith("slow.glsl")
 
@@ -240,41 +240,45 @@ def test_submit_never_waits_and_the_newest_wins(folder):
     wrong = [
         TrySketch(folder.one(GOOD.replace("texel.x", f"wrong{number}") + padding)) for number in range(20)
     ]
-    with Trial(limit_seconds=PATIENCE) as trial:
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
-        pid = trial._child.pid
-        trial.submit(TrySketch(folder.one(SLOW)))
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        pid = sandbox._workers.worker.pid
+        sandbox.submit(TrySketch(folder.one(SLOW)))
         for request in wrong:
-            trial.submit(request)
-        assert trial.busy and trial._child.pid == pid and is_alive(pid), "nothing waited for the child"
-        report = wait(trial)
+            sandbox.submit(request)
+        assert sandbox.busy and sandbox._workers.worker.pid == pid and is_alive(pid), (
+            "nothing waited for the child"
+        )
+        report = wait(sandbox)
         assert "wrong19" in str(report.error), "within the limit: the child that hung was killed for it"
-        assert trial._child.pid != pid and is_gone(pid)
-        assert not trial.busy
-        assert trial.poll() is None
+        assert sandbox._workers.worker.pid != pid and is_gone(pid)
+        assert not sandbox.busy
+        assert sandbox.poll() is None
 
 
 def test_a_child_that_takes_long_has_a_spare_that_takes_its_place(folder):
-    with Trial(limit_seconds=3600.0) as trial:
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
-        trial.submit(TrySketch(folder.one(SLOW)))
-        first = at_work(trial)
+    with Sandbox(limit_seconds=3600.0) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.submit(TrySketch(folder.one(SLOW)))
+        first = at_work(sandbox)
         end = time.monotonic() + PATIENCE
-        while (trial._spare is None or not trial._spare.is_ready) and time.monotonic() < end:
-            assert trial.poll() is None
+        while (
+            sandbox._workers.spare is None or not sandbox._workers.spare.is_ready
+        ) and time.monotonic() < end:
+            assert sandbox.poll() is None
             time.sleep(0.005)
-        spare = trial._spare.pid
-        trial.submit(TrySketch(folder.one(GOOD)))
-        assert wait(trial).ok
-        assert trial._child.pid == spare and is_gone(first)
+        spare = sandbox._workers.spare.pid
+        sandbox.submit(TrySketch(folder.one(GOOD)))
+        assert wait(sandbox).ok
+        assert sandbox._workers.worker.pid == spare and is_gone(first)
     assert is_gone(spare)
 
 
-def test_an_older_answer_is_not_given(folder, trial):
-    trial.run(TrySketch(folder.one(GOOD)))
-    trial.submit(TrySketch(folder.one(GOOD.replace("texel.x", "older"))))
-    trial.submit(TrySketch(folder.one(GOOD)))
-    assert wait(trial).ok
+def test_an_older_answer_is_not_given(folder, sandbox):
+    sandbox.run(TrySketch(folder.one(GOOD)))
+    sandbox.submit(TrySketch(folder.one(GOOD.replace("texel.x", "older"))))
+    sandbox.submit(TrySketch(folder.one(GOOD)))
+    assert wait(sandbox).ok
 
 
 def test_memory_has_a_limit(folder):
@@ -284,22 +288,22 @@ def test_memory_has_a_limit(folder):
         .replace("float(texel.x)", "vec4(1)")
     )
     body = '[[pass]]\nname = "a"\nuse = "./one"\nsize = 8192\n'
-    with Trial(limit_seconds=PATIENCE, memory_bytes=600 * 2**20) as trial:
+    with Sandbox(limit_seconds=PATIENCE, memory_bytes=600 * 2**20) as sandbox:
         folder.write("one.glsl", hungry)
-        report = trial.run(TrySketch(folder.sketch(body)))
+        report = sandbox.run(TrySketch(folder.sketch(body)))
         assert not report.ok, "a texture of 1 GiB"
-        assert trial.run(TrySketch(folder.one(GOOD))).ok
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
 def test_close_leaves_no_process(folder):
-    trial = Trial()
-    trial.start()
-    pid = trial._child.pid
-    trial.close()
+    sandbox = Sandbox()
+    sandbox.start()
+    pid = sandbox._workers.worker.pid
+    sandbox.close()
     assert is_gone(pid)
-    with Trial(limit_seconds=PATIENCE) as busy:
+    with Sandbox(limit_seconds=PATIENCE) as busy:
         busy.run(TrySketch(folder.one(GOOD)))
-        pid = busy._child.pid
+        pid = busy._workers.worker.pid
         busy.submit(TrySketch(folder.one(SLOW)))
     assert is_gone(pid), "what it was at would have taken it an hour"
     assert not busy.busy
@@ -321,12 +325,16 @@ def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
 
 
 SCRIPT = """
-from playground.engine.sandbox import Trial, TrySketch
+from dataclasses import replace
+from playground.engine.sandbox import Sandbox, TrySketch
+from playground.process import worker
 from playground.sketch.load import load
-with Trial(limit_seconds=90.0) as trial:
-    trial._arguments[-1] = "OWN"  # [s] after which a child ends by itself
-    print(trial.run(TrySketch(load("good_sketch.toml"))).ok, trial._child.pid, flush=True)
-    trial.run(TrySketch(load("slow_sketch.toml")))
+with Sandbox(limit_seconds=90.0) as sandbox:
+    workers = sandbox._workers
+    worker._GRACE = 8.0  # [s] after its limit, when a process ends by itself
+    workers.launch = replace(workers.launch, limit_seconds=0.01, ends_with_parent=PIPE)
+    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox._workers.worker.pid, flush=True)
+    sandbox.run(TrySketch(load("slow_sketch.toml")))
 """
 
 
@@ -342,11 +350,16 @@ def two(folder):
 
 
 @pytest.mark.parametrize(
-    ("number", "own"), [(signal.SIGINT, 3600), pytest.param(signal.SIGKILL, 8, marks=pytest.mark.slow)]
+    ("number", "pipe"),
+    [
+        (signal.SIGINT, False),
+        (signal.SIGKILL, True),
+        pytest.param(signal.SIGKILL, False, marks=pytest.mark.slow),
+    ],
 )
-def test_a_parent_that_is_stopped_leaves_no_child(two, number, own):
-    """Ctrl-C ends the child at once; a killed parent's child, hung as it is, ends by its own clock."""
-    with run_script(two, SCRIPT.replace("OWN", str(own))) as parent:
+def test_a_parent_that_is_stopped_leaves_no_worker(two, number, pipe):
+    """Ctrl-C ends it at once, and so does a killed parent's pipe; without one it ends by its own clock."""
+    with run_script(two, SCRIPT.replace("PIPE", str(pipe))) as parent:
         assert parent.stdout is not None
         ok, pid = parent.stdout.readline().split()
         time.sleep(0.3)
@@ -366,8 +379,16 @@ def test_no_module_of_the_user_s_folder_is_run(two):
         (two / f"{name}.py").write_text('open("was_run", "w").close()\nraise SystemExit(3)\n')
     # As the command does: the folder where it is started is not where modules are looked for.
     text = f"import sys\nsys.path[:] = [{str(ROOT)!r}, *(p for p in sys.path if p)]\n" + SCRIPT
-    text = text.replace("OWN", "60").replace('    trial.run(TrySketch(load("slow_sketch.toml")))\n', "")
+    text = text.replace("PIPE", "True").replace('    sandbox.run(TrySketch(load("slow_sketch.toml")))\n', "")
     with run_script(two, text) as parent:
         out, _ = parent.communicate(timeout=180)
     assert out.startswith("True")
     assert not (two / "was_run").exists()
+
+
+def test_the_errors_old_names_are_read_with_a_note():
+    import playground
+
+    for kind in ("Error", "Timeout", "Crash"):
+        with pytest.warns(DeprecationWarning, match=f"Sandbox{kind} is called Sandbox{kind} now"):
+            assert getattr(playground, f"Sandbox{kind}") is getattr(playground, f"Sandbox{kind}")

@@ -1,4 +1,4 @@
-"""A sketch comes over to the trial's process whole, and a kernel that is there already comes no more."""
+"""A sketch is sent whole, and a kernel that the other end has already is not sent again."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from playground.engine.sandbox import TryLibrary, TrySketch
-from playground.engine.sandbox_wire import Reader, Writer
+from playground.process.kernel_pickle import Decoder, Encoder
 from playground.sketch.load import load
 from playground.sketch.model import Kernel, Sketch, kernels_of
 
@@ -33,21 +33,21 @@ use = "view/terrain"
 
 @dataclass
 class Ends:
-    """Both ends, and what went over last."""
+    """Both ends, and the size of what was sent last."""
 
-    writer: Writer
-    reader: Reader
+    encoder: Encoder
+    decoder: Decoder
     bytes: int = 0
 
-    def over(self, message: object) -> object:
-        data = self.writer.write(message)
+    def send(self, message: object) -> object:
+        data = self.encoder.encode(message)
         self.bytes = len(data)
-        return self.reader.read(data)
+        return self.decoder.decode(data)
 
 
 @pytest.fixture
 def ends() -> Ends:
-    return Ends(Writer(), Reader())
+    return Ends(Encoder(), Decoder())
 
 
 @pytest.fixture
@@ -61,30 +61,30 @@ def kernels(sketch: Sketch) -> dict[str, Kernel]:
     return dict(kernels_of(sketch.graph))
 
 
-def test_what_comes_over_is_what_was_sent(ends, folder):
+def test_what_is_received_is_what_was_sent(ends, folder):
     for edit in ("0.5", "0.25", "0.5"):
         (folder / "land.glsl").write_text(LAND.replace("0.5", edit))
         request = TrySketch(load(folder), time=1.0, drivers=("fragment",))
-        assert ends.over(request) == request
+        assert ends.send(request) == request
     library = TryLibrary("a", "b")
-    assert ends.over(library) == library
-    assert ends.over(request) == request, "nothing of it was kept at either end"
+    assert ends.send(library) == library
+    assert ends.send(request) == request, "neither end held any of it"
 
 
-def test_only_what_changed_goes_over(ends, folder):
-    before = kernels(ends.over(TrySketch(load(folder))).sketch)
+def test_only_what_changed_is_sent(ends, folder):
+    before = kernels(ends.send(TrySketch(load(folder))).sketch)
     whole = ends.bytes
     (folder / "land.glsl").write_text(LAND.replace("0.5", "0.25"))
-    after = kernels(ends.over(TrySketch(load(folder))).sketch)
+    after = kernels(ends.send(TrySketch(load(folder))).sketch)
     assert ends.bytes < whole / 4
     assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
     assert after["height"] is after["again"], "one object stays one"
 
 
-def test_neither_end_keeps_what_is_no_longer_used(ends, folder):
+def test_neither_end_holds_what_is_no_longer_used(ends, folder):
     for number in range(20):
         (folder / "land.glsl").write_text(LAND.replace("0.5", f"0.{number + 1}"))
         sketch = load(folder)
-        ends.over(TrySketch(sketch))
+        ends.send(TrySketch(sketch))
         distinct = len({id(kernel) for kernel in kernels(sketch).values()})
-        assert len(ends.writer._known) == len(ends.reader._known) == distinct
+        assert len(ends.encoder._known) == len(ends.decoder._known) == distinct

@@ -1,8 +1,8 @@
-"""Write requests for the trial's process so that a kernel goes over once, not with each sketch.
+"""Pickle requests for a worker process so that each kernel is sent once, not with every sketch.
 
 A sketch is mostly its kernels' texts, and a save changes one of them. Both ends keep the
-kernels of the last message and no others, so that a name stands for the rest; the
-process, which finds the same objects again, need not work out anew what their texts say.
+kernels of the last message and no others, so that a name replaces the rest; the process,
+which receives the same objects again, need not parse their texts again.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import Any
 from playground.sketch.model import Kernel
 
 
-class Writer:
-    """The parent's end; every message has to be read by the one ``Reader``, in order."""
+class Encoder:
+    """The parent's end; one ``Decoder`` reads all its messages, in order."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[str, Kernel]] = {}  # by identity: held, so that it stays its own
         self._count = 0
 
-    def write(self, message: object) -> bytes:
+    def encode(self, message: object) -> bytes:
         """Return a message as bytes."""
         news: dict[str, Kernel] = {}
         used: dict[int, tuple[str, Kernel]] = {}
@@ -42,14 +42,14 @@ class Writer:
         return pickle.dumps(news) + body
 
 
-class Reader:
+class Decoder:
     """The child's end. Only ever for bytes from our own parent."""
 
     def __init__(self) -> None:
         self._known: dict[str, Kernel] = {}
 
-    def read(self, data: bytes) -> Any:
-        """Return the message that a ``Writer`` wrote."""
+    def decode(self, data: bytes) -> Any:
+        """Return the message that an ``Encoder`` wrote."""
         stream = io.BytesIO(data)
         known = self._known | pickle.load(stream)
         unpickler = _Unpickler(stream, known)

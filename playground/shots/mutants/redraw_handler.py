@@ -1,23 +1,17 @@
-"""Draw one shot again and again, each time as a drawing says; the child process of `again`.
-
-It reads a task from its standard input and answers on its standard output, in pickles.
-"""
+"""Draw one shot again and again in a worker process, each time under other conditions."""
 
 from __future__ import annotations
 
 import locale
-import os
-import pickle
-import sys
-import traceback
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.engine.engine import CACHE_BYTES, Engine
 from playground.engine.plain_forms import silent
-from playground.errors import PlaygroundError
 from playground.gpu.context import open_context
+from playground.process.child import Parent, Service
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing
 from playground.shots.mutants.model import DoesNotApply
@@ -32,29 +26,36 @@ _SMALL = (96, 54)
 
 
 @dataclass(frozen=True)
-class Task:
-    """What a child is to draw."""
+class Subject:
+    """What is drawn, and on what."""
 
     sketch: str  # path, or the name of a shipped one
     shot: Shot
-    drawings: tuple[Drawing, ...]
     software: bool
     device: int | None
 
 
-class _Painter:
-    """Draws, with an engine that lasts until a drawing asks for a new one."""
+def open_service(parent: Parent, subject: Subject) -> Service:
+    """Load the sketch; a context is opened for the first drawing."""
+    with suppress(locale.Error):  # this machine does not know it
+        locale.setlocale(locale.LC_ALL, "")
+    return Service(_Redraw(subject).draw)
 
-    def __init__(self, task: Task) -> None:
-        self.task = task
-        self.sketch = load(task.sketch)
+
+class _Redraw:
+    """Draws, with an engine that lasts until a drawing requires a new one."""
+
+    def __init__(self, subject: Subject) -> None:
+        self.subject = subject
+        self.sketch = load(subject.sketch)
         self.engine: Engine | None = None
         self.driver = ""
 
     def draw(self, drawing: Drawing) -> Taken:
         if self.engine is None or drawing.fresh or drawing.driver != self.driver:
-            self.release()
-            context = open_context(software=self.task.software, device=self.task.device)
+            if self.engine is not None:
+                self.engine.release()
+            context = open_context(software=self.subject.software, device=self.subject.device)
             no_compute = drawing.driver == "compute" and context.version_code < 430
             self.engine = Engine(
                 context,
@@ -67,14 +68,10 @@ class _Painter:
         for sketch, shot in self._before(drawing.before):
             self.engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
         sketch = commented(self.sketch) if drawing.commented else self.sketch
-        return take(self.engine, ShotCase(sketch, self.task.shot))
-
-    def release(self) -> None:
-        if self.engine is not None:
-            self.engine.release()
+        return take(self.engine, ShotCase(sketch, self.subject.shot))
 
     def _before(self, what: str) -> Iterator[tuple[Sketch, Shot]]:
-        shot = self.task.shot
+        shot = self.subject.shot
         shown = self.sketch.for_shot(shot)
         others = [other for other in self.sketch.shots if other.name != shot.name]
         if what == "the same":
@@ -110,33 +107,3 @@ def commented(sketch: Sketch) -> Sketch:
 def _commented(text: str) -> str:
     first, newline, rest = text.partition("\n")
     return f"{first}{newline}\n// This line says nothing: 3.0 * (1 + 2)\n{rest}\n/* Nor\n   do these. */\n"
-
-
-def main() -> None:
-    """Do the task, and answer with a picture, or an error's words, for each drawing."""
-    # What a driver prints must not get between the answers.
-    with os.fdopen(os.dup(1), "wb") as answers:
-        os.dup2(2, 1)
-        try:
-            locale.setlocale(locale.LC_ALL, "")
-        except locale.Error:  # this machine does not know it
-            pass
-        task: Task = pickle.load(sys.stdin.buffer)
-        found: list[Taken | str] = []
-        painter: _Painter | None = None
-        try:
-            painter = _Painter(task)
-            for drawing in task.drawings:
-                found.append(painter.draw(drawing))
-        except PlaygroundError as error:
-            found.append(str(error))
-        except Exception:  # a mistake in the playground: its traceback must cross over too
-            found.append(traceback.format_exc())
-        finally:
-            if painter is not None:
-                painter.release()
-        pickle.dump(found, answers)
-
-
-if __name__ == "__main__":
-    main()
