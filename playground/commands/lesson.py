@@ -108,11 +108,11 @@ def open_(
     ctx: typer.Context, name: NameArgument, lang: LanguageOption = "", software: SoftwareOption = False
 ) -> None:
     """Open a lesson beside the live window."""
+    from playground.lessons.document import read_document
     from playground.lessons.library import lesson_file
-    from playground.lessons.read import part
 
     language = read_language(lang)
-    sketch = str(part(lesson_file(name)).front.table.get("sketch", ""))
+    sketch = str(read_document(lesson_file(name)).front.table.get("sketch", ""))
     renderer: Renderer = ctx.obj.or_else(software)
     check_display(renderer)
     open_window(sketch, None, renderer, lesson=name, language=language)
@@ -130,9 +130,9 @@ def status(as_json: JsonOption = False) -> None:
     if as_json:
         print_json([one.as_json() for one in found])
     else:
-        rows = [(one.name, one.language, one.word, "; ".join(one.sentences)) for one in found]
+        rows = [(one.name, one.language, one.state, "; ".join(one.sentences)) for one in found]
         print_table("Translations", ("lesson", "language", "state", "what"), rows)
-    if any(one.word != "current" for one in found):
+    if any(one.state != "current" for one in found):
         raise typer.Exit(FAILED)
 
 
@@ -231,15 +231,16 @@ def translated(
     ] = "",
 ) -> None:
     """Mark a translation as up to date with today's English."""
+    from playground.lessons.document import read_document
     from playground.lessons.library import SOURCE, lesson_file
-    from playground.lessons.read import part, read_lesson
+    from playground.lessons.read import read_lesson
     from playground.lessons.translate import mark
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
         raise SketchError("say which translation: --lang fr")
     path = lesson_file(name, lang)
-    mark(read_lesson(name), part(lesson_file(name)), part(path), lang)
+    mark(read_lesson(name), read_document(lesson_file(name)), read_document(path), lang)
     print(shown(path))
 
 
