@@ -18,7 +18,8 @@ from typing import IO, TYPE_CHECKING
 from playground.engine.all_errors import all_mistakes
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Step, smallest_land
+from playground.engine.plan import Step
+from playground.engine.planner import smallest_land
 from playground.engine.sandbox import Request, TrialReport, TryLibrary, TrySketch
 from playground.engine.sandbox_process import Doing, Ready, receive_bytes, send
 from playground.engine.sandbox_wire import Reader

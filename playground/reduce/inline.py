@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from playground.engine.plan import Plan, PlanNode, Step, Turns, make_plan
+from playground.engine.plan import Plan, PlanNode, Step, Turns
+from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
