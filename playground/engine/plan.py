@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from numbers import Integral, Real
+from pathlib import Path
 
 from playground.engine.between import Between, between_of
 from playground.engine.error_place import placed
@@ -28,6 +29,7 @@ from playground.sketch.flatten import (
 )
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
+from playground.sketch.variant_check import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
@@ -184,10 +186,20 @@ def make_plan(
     sketch = sketch.at(seconds)
     stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
     opened = (wanted,) if wanted else ()
-    flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
     fills = not wanted if interpolated is None else interpolated
     compute = "compute" in variants
-    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute=compute, varies=varies).plan()
+
+    def planner(refused: Collection[str] = ()) -> _Planner:
+        asked = {"opened": opened, "stopped": tuple(stopped), "refused": tuple(refused)}
+        flat = flatten(sketch, variants=variants, **asked)
+        return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute=compute, varies=varies)
+
+    found = planner()
+    refusals = found.refusals()
+    if not refusals:
+        return found.plan()
+    plain = planner(refusals).plan()
+    return replace(plain, lacking=(*plain.lacking, *refusals.values()))
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -248,6 +260,15 @@ def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
+def _of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
+    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
+    if leaf.kernel.kind == "compute":
+        return leaf.path, leaf.kernel.own_accepts
+    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
+    is_variant = inside and flat.specs[path].technique.variants
+    return (path, leaf.kernel.accepts) if is_variant else (path, "")
+
+
 class _Planner:
     def __init__(
         self,
@@ -276,6 +297,10 @@ class _Planner:
         self.land = self._land()
 
     def plan(self) -> Plan:
+        # What has the terrain's own size first: the others' sizes follow from it.
+        for leaf in leaves_of(self.flat.nodes):
+            if leaf.spec.size is None:
+                self._refuse(leaf, self._size_of_leaf(leaf))
         nodes = tuple(self._node(node) for node in self.flat.nodes)
         extent, relief = self.land.extent, self.land.relief
         assert extent is not None and relief is not None
@@ -288,6 +313,20 @@ class _Planner:
         )
         return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen, lacking)
 
+    def refusals(self) -> dict[str, str]:
+        """Return a sentence for each technique whose fast variant does not take its size, by its path."""
+        found: dict[str, str] = {}
+        for leaf in leaves_of(self.flat.nodes):
+            path, accepts = _of_variant(leaf, self.flat)
+            if accepts and path not in found:
+                size = self._size_of_leaf(leaf)
+                if not expressions.is_accepted(accepts, size):
+                    found[path] = (
+                        f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
+                        f"not {size[0]} x {size[1]}; the plain form runs"
+                    )
+        return found
+
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
@@ -299,8 +338,7 @@ class _Planner:
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
-        if kernel.accepts and not expressions.is_accepted(kernel.accepts, size):
-            raise self._refused(node, size)
+        self._refuse(node, size)
         names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         whole = self._count(kernel.repeat, node.path, kernel, names)
@@ -332,10 +370,13 @@ class _Planner:
             )
         return count
 
-    def _refused(self, leaf: Leaf, size: tuple[int, int]) -> SketchError:
+    def _refuse(self, leaf: Leaf, size: tuple[int, int]) -> None:
+        """Raise ``SketchError`` for a size that a kernel does not take, with the nearest that it takes."""
+        if not leaf.kernel.accepts or expressions.is_accepted(leaf.kernel.accepts, size):
+            return
         near = expressions.nearest_accepted(leaf.kernel.accepts, size)
         listed = " or ".join(f"{x} x {y}" for x, y in near)
-        return leaf.spec.error(
+        raise leaf.spec.error(
             f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )
