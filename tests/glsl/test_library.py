@@ -14,6 +14,9 @@ TEXTS = sorted(
 )
 NAMES = [p.relative_to(GLSL).as_posix() for p in TEXTS]
 LIBRARY = [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
+BLOCKS = [n for n in LIBRARY if "/parameters/" in n]  # of parameters that several kernels share
+FUNCTIONS = [n for n in LIBRARY if n not in BLOCKS]
+ASKED = re.compile(r"^(\w+) (\w+)\(([^()]*)\);$", re.MULTILINE)  # a function that the includer gives
 FACTS = ("gives", "needs", "units", "source", "tested")
 PURE = ("maths", "noise", "colour")
 
@@ -47,7 +50,7 @@ def test_its_tests_are_there(name):
     assert (root / tested.group(1)).is_file()
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_it_holds_no_state(name):
     """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
     source = read_source(GLSL / name, (GLSL,))
@@ -63,6 +66,14 @@ def test_it_holds_no_state(name):
         assert not any(word.startswith("sampler") for word in source.names)
 
 
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_of_parameters_holds_nothing_else(name):
+    source = read_source(GLSL / name, (GLSL,))
+    code = [line.code for line in source.lines if line.code and not line.code.startswith("#")]
+    assert code and all(line.startswith("uniform ") for line in code)
+    assert all(line.comment.startswith("!") for line in source.lines if line.code.startswith("uniform "))
+
+
 @pytest.mark.parametrize("name", LIBRARY)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
@@ -75,6 +86,9 @@ def test_it_is_guarded(name):
 @pytest.mark.parametrize("name", LIBRARY)
 def test_it_compiles_alone(ctx, name):
     code = read_source(GLSL / name, (GLSL,)).code
+    for kind, function, takes in ASKED.findall(code):
+        assert "//   asks " in (GLSL / name).read_text(encoding="utf-8")
+        code += f"{kind} {function}({takes}) {{ return {kind}(0); }}\n"
     quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
     for version in ("330", "430"):
         if ctx.version_code < int(version):
