@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,22 +22,29 @@ ELSEWHERE = {
 TECHNIQUES = "reference/techniques/"
 """The folder of the catalogue; in the navigation it stands for all of its pages."""
 
+_PAGES: dict[str, Callable[[], str]] = {
+    "reference/commands.md": commands.page,
+    "reference/keys.md": keys.page,
+    "reference/python.md": python.page,
+    "reference/gallery.md": gallery.page,
+    "reference/glossary.md": partial(glossary.page, "en"),
+    "reference/glossaire.md": partial(glossary.page, "fr"),
+}
 _LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
+
+
+def generated_paths() -> list[str]:
+    """List the pages that ``generated`` returns, without making them."""
+    techniques_of = [techniques.path_of(e) for names in techniques.entries().values() for e in names]
+    return [*_PAGES, f"{TECHNIQUES}index.md", *techniques_of, *ELSEWHERE]
 
 
 def generated() -> dict[str, str | bytes]:
     """Return every page and picture that no file of this folder holds, by its path in the site."""
-    found: dict[str, str | bytes] = {
-        "reference/commands.md": commands.page(),
-        "reference/keys.md": keys.page(),
-        "reference/python.md": python.page(),
-        "reference/gallery.md": gallery.page(),
-        "reference/glossary.md": glossary.page("en"),
-        "reference/glossaire.md": glossary.page("fr"),
-        f"{TECHNIQUES}index.md": techniques.index(),
-    }
-    for entry in _entries():
-        found[techniques.path_of(entry)] = techniques.page(entry)
+    found: dict[str, str | bytes] = {path: write() for path, write in _PAGES.items()}
+    found[f"{TECHNIQUES}index.md"] = techniques.index()
+    for names in techniques.entries().values():
+        found |= {techniques.path_of(entry): techniques.page(entry) for entry in names}
     for page, source in ELSEWHERE.items():
         found[page] = moved((ROOT / source).read_text("utf-8"), source, page)
     for sketch in shots.sketches():
@@ -75,7 +84,3 @@ def expanded(entry: Any) -> Any:
         title = techniques.FOLDERS.get(folder, folder).partition(":")[0]
         found.append({title: [{e.name.partition("/")[2]: techniques.path_of(e)} for e in names]})
     return found
-
-
-def _entries() -> list[techniques.Entry]:
-    return [entry for names in techniques.entries().values() for entry in names]
