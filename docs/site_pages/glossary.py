@@ -22,8 +22,9 @@ _HEADS = {
     " ces pages les emploient. [In English](glossary.md).\n\n",
 }
 _ALSO = {"en": "also", "fr": "aussi"}
-_NOT = {"en": "not", "fr": "au lieu de"}
 _THESIS = {"en": "thesis", "fr": "mémoire"}
+_COLON = {"en": ": ", "fr": "\u00a0: "}
+_NEXT = {"en": "; ", "fr": "\u00a0; "}
 _OTHER = {"en": ("fr", "in French"), "fr": ("en", "en anglais")}
 
 
@@ -73,17 +74,18 @@ def page(language: str) -> str:
 def _entry(term: Term, language: str) -> str:
     name, *synonyms = term.names[language]
     other, label = _OTHER[language]
-    notes = [f"{label}: *{escaped(', '.join(term.names[other]))}*"]
+    notes = [(label, f"*{escaped(', '.join(term.names[other]))}*")]
     if synonyms:
-        notes.insert(0, f"{_ALSO[language]}: {escaped(', '.join(synonyms))}")
-    if term.avoid:
-        notes.append(f"{_NOT[language]}: {escaped(', '.join(term.avoid))}")
+        notes.insert(0, (_ALSO[language], escaped(", ".join(synonyms))))
+    if term.avoid and language == "en":
+        notes.append(("not", escaped(", ".join(term.avoid))))
     if term.thesis:
         named = f" (« {escaped(term.thesis_name)} »)" if term.thesis_name else ""
-        notes.append(f"{_THESIS[language]}: {escaped(term.thesis)}{named}")
+        notes.append((_THESIS[language], escaped(term.thesis) + named))
+    told = _NEXT[language].join(f"{about}{_COLON[language]}{text}" for about, text in notes)
     return (
         f"**{escaped(name)}** {{ #{term.key} }}\n:   {escaped(term.meaning[language])}"
-        f"\n\n    <small>{'; '.join(notes)}</small>\n\n"
+        f"\n\n    <small>{told}</small>\n\n"
     )
 
 
