@@ -33,7 +33,7 @@ FORM = re.compile(  # how a command is used, not a command
 )
 
 NOT_RUN = {
-    r"export \w+=.*": "sets a variable; tests/live/test_editors.py and tests/commands/test_cache.py read it",
+    r"export \w+=.*": "sets a variable; test_editors.py and test_cache.py read it",
     r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
     r"sudo apt-get .*": "needs a network and an administrator",
     r"\./play test( -m slow)?": "is these tests",

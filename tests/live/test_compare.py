@@ -1,0 +1,323 @@
+"""A beside B: A stays what it was, follows the camera, is swapped; both are painted as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.gpu.textures import make_framebuffer, make_texture, read_picture, write_texture
+from playground.images.files import write_png
+from playground.live.inspect.ab import drag_line, shows_first
+from playground.sketch.load import load
+from playground.workbench.inspect.blend import Beside
+from playground.workbench.inspect.compare import PERIOD, Compare, Mode
+from playground.workbench.inspect.inspector import Inspector
+from playground.workbench.inspect.toggles import See
+from playground.workbench.preview import as_preview
+from playground.workbench.session import Session
+
+from .desk import Bare
+
+LAND = """// land.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+uniform sampler2D mask; //! file("mask.png")
+float kernel(ivec2 texel) {
+    float found = 0.0;
+    for (int n = 0; n < 3; ++n) found += sin(float(texel.x * (n + 1)) * 0.4) * cos(float(texel.y) * 0.3);
+    return level * (0.5 + 0.15 * found) * texelFetch(mask, ivec2(0), 0).r;
+}
+"""
+SKETCH = """format = 1
+size = [33, 33]
+extent = [1000.0, 1000.0]
+relief = 300.0
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/terrain"
+"""
+SIZE = 60, 40
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    write_png(tmp_path / "mask.png", np.full((2, 2, 4), 255, np.uint8))
+    return tmp_path
+
+
+@pytest.fixture
+def session(folder: Path, any_engine: Engine) -> Iterator[Session]:
+    made = Session(any_engine, folder, now=lambda: 0.0)
+    yield made
+    made.release()
+
+
+@pytest.fixture
+def compare(session: Session) -> Iterator[Compare]:
+    made = Compare(session)
+    yield made
+    made.release()
+
+
+def turn(session: Session, compare: Compare) -> NDArray[np.uint8]:
+    picture = session.frame(SIZE)
+    assert picture is not None and session.error is None
+    compare.follow(picture)
+    return read_picture(picture)
+
+
+def first(compare: Compare) -> NDArray[np.uint8]:
+    assert compare.picture is not None
+    return read_picture(compare.picture)
+
+
+def drawn(engine: Engine, session: Session, level: float) -> NDArray[np.uint8]:
+    """Return the picture of the files with a level, seen as the session sees it, drawn for itself."""
+    assert session.plan is not None
+    sketch = load(session.path).with_values({"height.level": level}).with_camera(session.plan.sketch.camera)
+    return engine.render(as_preview(sketch) if session.is_preview else sketch, size=SIZE).array
+
+
+def test_a_stays_while_b_changes(session: Session, compare: Compare) -> None:
+    before = turn(session, compare)
+    assert compare.picture is None
+    compare.keep()
+    turn(session, compare)
+    np.testing.assert_array_equal(first(compare), before)
+    session.drafts.set("height.level", 0.9)
+    after = turn(session, compare)
+    assert (after != before).any() and compare.draws == 0
+    np.testing.assert_array_equal(first(compare), before)
+    compare.end()
+    turn(session, compare)
+    assert compare.picture is None and not compare.on
+
+
+def test_a_follows_the_camera_and_the_size(session: Session, compare: Compare, any_engine: Engine) -> None:
+    turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    session.drafts.set("height.level", 0.9)
+    assert session.sketch is not None
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=77.0))
+    second = turn(session, compare)
+    assert compare.draws == 1 and (first(compare) != second).any()
+    np.testing.assert_array_equal(first(compare), drawn(any_engine, session, 0.5))
+    turn(session, compare)
+    assert compare.draws == 1  # a turn in which nothing moved draws nothing
+    picture = session.frame((31, 47))
+    assert picture is not None
+    compare.follow(picture)
+    assert first(compare).shape[:2] == (47, 31)
+
+
+def test_a_keeps_its_texts_when_the_files_change(
+    session: Session, compare: Compare, folder: Path, any_engine: Engine
+) -> None:
+    turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    assert session.sketch is not None
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
+    turn(session, compare)
+    old = drawn(any_engine, session, 0.5)
+    session.drafts.set_camera(None)
+    (folder / "land.glsl").write_text(LAND.replace("0.15", "-0.3"), encoding="utf-8")
+    session.drafts.reload()
+    turn(session, compare)
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
+    second = turn(session, compare)
+    np.testing.assert_array_equal(first(compare), old)
+    assert (second != old).any()
+
+
+def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
+    session: Session, compare: Compare, folder: Path
+) -> None:
+    before = turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    write_png(folder / "mask.png", np.full((3, 3, 4), 100, np.uint8))
+    session.redraw()
+    turn(session, compare)
+    assert session.sketch is not None
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
+    turn(session, compare)
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=20.0))
+    turn(session, compare)
+    np.testing.assert_array_equal(first(compare), before)
+    assert [note for note in session.notes if "mask.png" in note] == [
+        "A stays as it was drawn last: mask.png is another file now"
+    ]
+
+
+def test_swap_and_back(session: Session, compare: Compare) -> None:
+    one = turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    session.drafts.set("height.level", 0.9)
+    two = turn(session, compare)
+    compare.swap()
+    np.testing.assert_array_equal(turn(session, compare), one)
+    np.testing.assert_array_equal(first(compare), two)
+    compare.swap()
+    np.testing.assert_array_equal(turn(session, compare), two)
+    np.testing.assert_array_equal(first(compare), one)
+    compare.back()
+    np.testing.assert_array_equal(turn(session, compare), one)
+    np.testing.assert_array_equal(first(compare), one)
+    assert compare.on and not session.notes
+
+
+def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: Compare) -> None:
+    turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    session.drafts.set("height.level", 0.9)
+    assert session.sketch is not None
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=50.0, elevation=60.0))
+    picture = session.frame(SIZE)
+    assert picture is not None
+    engine = session.engine
+    told = list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times)
+    inspector = Inspector(session)
+    under = inspector.at((30, 20), picture)
+    compare.follow(picture)
+    assert compare.draws == 1
+    assert told == (list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times))
+    again = Inspector(session)
+    assert again.at((30, 20), picture) == under and under is not None and under.spot is not None
+    inspector.release()
+    again.release()
+
+
+def test_it_shows_the_same_texture_of_both(session: Session, compare: Compare) -> None:
+    turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    session.drafts.set("height.level", 1.0)
+    turn(session, compare)
+    session.show("height:height")
+    for name, value in (("lowest", 0.0), ("highest", 1.0)):
+        session.view.set_map(name, value)
+    second = turn(session, compare).astype(int)
+    np.testing.assert_allclose(first(compare).astype(int)[..., :3] * 2, second[..., :3], atol=2)
+
+
+def test_another_sketch_ends_it(
+    session: Session, compare: Compare, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    turn(session, compare)
+    compare.keep()
+    turn(session, compare)
+    other = tmp_path_factory.mktemp("other")
+    (other / "land.glsl").write_text(LAND.replace('file("mask.png")', 'file("")'), encoding="utf-8")
+    (other / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    session.open(other)
+    picture = session.frame(SIZE)
+    assert picture is not None
+    compare.follow(picture)
+    assert not compare.on
+
+
+def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
+    ctx.detect_framebuffer(0).use()  # nothing is bound that another test has taken away
+    random = np.random.default_rng(2)
+    a, b = (make_texture(ctx, (20, 10), "rgba8") for _ in range(2))
+    one, two = (random.integers(0, 256, (10, 20, 4), dtype=np.uint8) for _ in range(2))
+    for texture, values in ((a, one), (b, two)):
+        write_texture(texture, values)
+    target = make_texture(ctx, (24, 10), "rgba8")
+    framebuffer = make_framebuffer(ctx, [target])
+    painter = Beside(ctx)
+    painter.paint((a, b), framebuffer, (4, 0, 20, 10), split=0.35)
+    found = read_picture(target)[::-1, 4:, :3]
+    np.testing.assert_array_equal(found[:, :7], one[:, :7, :3])
+    np.testing.assert_array_equal(found[:, 7:], two[:, 7:, :3])
+    painter.paint((a, b), framebuffer, (4, 0, 20, 10), gain=3.0)
+    wanted = np.minimum(3 * np.abs(one.astype(int) - two), 255)[..., :3]
+    np.testing.assert_array_equal(read_picture(target)[::-1, 4:, :3], wanted)
+    ctx.detect_framebuffer(0).use()  # what stays bound is bound again by later calls
+    for made in (painter, framebuffer, target, a, b):
+        made.release()
+
+
+def test_they_take_turns_when_they_flicker(session: Session) -> None:
+    see = See(session)
+    session.frame(SIZE)
+    assert see.patience(0.1) > 1e6
+    see.compare.keep()
+    assert see.patience(0.1) > 1e6
+    see.compare.mode = Mode.FLICKER
+    assert see.patience(0.1) == pytest.approx(PERIOD - 0.1)
+    assert [shows_first(n * PERIOD + 0.01) for n in range(4)] == [True, False, True, False]
+    see.release()
+
+
+def test_the_line_follows_the_mouse(folder: Path, any_engine: Engine) -> None:
+    bare = Bare(any_engine, folder)
+    compare, io = bare.actions.see.compare, imgui.get_io()
+    area = 280.0, 0.0, 1000.0, 720.0
+    try:
+        bare.key(imgui.Key.a)
+        assert compare.on
+        held = []
+
+        def mouse(x: float, down: bool) -> None:
+            io.add_mouse_pos_event(x, 400)
+            io.add_mouse_button_event(0, down)
+            imgui.new_frame()
+            held.append(drag_line(compare, area))
+            imgui.render()
+
+        for x, down in ((600, False), (600, True), (700, True), (700, False)):
+            mouse(x, down)
+        assert held == [False] * 4 and compare.split == 0.5  # it was not on the line
+        for x, down in (
+            (780, False),
+            (780, True),
+            (580, True),
+            (2000, True),
+            (480, True),
+            (480, False),
+            (900, False),
+        ):
+            mouse(x, down)
+        assert held[4:] == [False, True, True, True, True, False, False] and compare.split == 0.2
+        bare.turn(3)
+        bare.click("##how")
+        bare.click("difference")
+        assert compare.mode is Mode.DIFFERENCE
+        bare.turn(2)
+        assert "##gain" in bare.places
+        bare.click("A/B")
+        assert not compare.on
+    finally:
+        bare.close()
+
+
+def test_a_swap_can_be_undone(folder: Path, any_engine: Engine) -> None:
+    bare = Bare(any_engine, folder)
+    try:
+        bare.key(imgui.Key.a)
+        bare.session.drafts.set("height.level", 0.9)
+        bare.turn(3)
+        bare.click("Back to A")
+        assert bare.session.shown is not None and not bare.session.shown.edits.values
+        bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+        bare.turn(3)
+        assert bare.session.shown.edits.values == (("height.level", 0.9),)
+    finally:
+        bare.close()

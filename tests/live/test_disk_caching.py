@@ -1,0 +1,306 @@
+"""Expensive land that a session keeps on disk for the next: at rest, and only if it is sound."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from playground.engine.disk_cache import listed
+from playground.engine.disk_caching import REST as LAND_RESTS
+from playground.engine.disk_caching import DiskCaching
+from playground.engine.engine import Engine
+from playground.errors import ContextError
+from playground.workbench import disk_caching as storing_module
+from playground.workbench.actions import Actions
+from playground.workbench.disk_caching import Storing
+from playground.workbench.inspect.thumbnails import Thumbnails
+from playground.workbench.non_finite import REST, FiniteWatch
+from playground.workbench.session import Session
+
+from .screen import ON_LINUX, Program, Screen
+
+SLOW = """// slow.glsl -- takes far longer than to read it from a disk
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(-1, 1) How high
+float kernel(ivec2 texel) {
+    float sum = 0.0;
+    for (int i = 0; i < 4000; i++) sum += sin(float(texel.x * i) * 0.01 + sum);
+    return level * fract(sum);
+}
+"""
+HEIGHT = """// height.glsl -- cheap
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(-1, 1) How high
+float kernel(ivec2 texel) { return sqrt(level) * float(texel.x + texel.y) / 66.0; }
+"""
+RAISED = """// raised.glsl -- what swallows a NaN
+#pragma kernel(output = "height:r32f")
+uniform sampler2D low; //! input
+float kernel(ivec2 texel) { float h = texelFetch(low, texel, 0).r; return h >= 0.0 ? h : 0.25; }
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "low"
+use = "./height"
+[[pass]]
+name = "height"
+use = "./raised"
+inputs = { low = "low:height" }
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+set = { channel = "red" }
+"""
+RUN = """
+import sys
+from playground.live.app import run
+sys.exit(run(sys.argv[1], size=(500, 400), keeps=2**28, time_limit=300))
+"""
+
+
+class Desk:
+    """Sessions on one sketch, one after another, and a clock that the test moves."""
+
+    def __init__(self, ctx: moderngl.Context, folder: Path) -> None:
+        self.ctx = ctx
+        self.folder = folder
+        self.time = 100.0
+        self.session: Session | None = None
+
+    def open(self) -> None:
+        """Begin a new session, as after a start."""
+        self.close()
+        engine = Engine(self.ctx)
+        self.session = Session(engine, self.folder, now=lambda: self.time)
+        self.actions = Actions(self.session, lambda: None, self.folder, now=lambda: self.time)
+        self.watch = FiniteWatch(lambda: self.time)
+        self.storing = Storing(self.session, 2**26)
+
+    def turn(self, seconds: float = 0.0) -> None:
+        assert self.session is not None
+        self.time += seconds
+        self.session.frame((40, 30))
+        self.watch.turn(self.actions, False)
+        self.storing.turn(self.actions, self.watch)
+
+    def rest(self) -> None:
+        """Let things rest until nothing is left to do."""
+        self.turn()
+        self.turn(2 * REST)
+        for _ in range(20):
+            self.turn(LAND_RESTS)
+
+    def close(self) -> None:
+        """End the session."""
+        if self.session is not None:
+            self.storing.close()
+            self.session.release()
+            self.session.engine.release()
+
+    @property
+    def runs(self) -> dict[str, int]:
+        assert self.session is not None
+        return dict(self.session.engine.runs)
+
+
+@pytest.fixture
+def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+    folder = tmp_path / "sketch"
+    folder.mkdir()
+    for name, text in (("height.glsl", HEIGHT), ("raised.glsl", RAISED), ("sketch.toml", SKETCH)):
+        (folder / name).write_text(text, encoding="utf-8")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
+    made = Desk(ctx, folder)
+
+    def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
+        return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(storing_module, "DiskCaching", keeping)
+    made.open()
+    yield made
+    made.close()
+
+
+def kept(tmp_path: Path) -> set[str]:
+    return {each.kept.made_for for each in listed(tmp_path / "land") if each.kept}
+
+
+def test_a_session_reopens_without_running_the_land(desk: Desk, tmp_path: Path) -> None:
+    desk.turn()
+    assert desk.session is not None
+    seen = desk.session.read()
+    assert seen is not None and not kept(tmp_path)
+    desk.rest()
+    assert desk.storing.patience is None, "nothing more is waited for"
+    desk.open()
+    assert kept(tmp_path) == {"sketch: height"}
+    desk.turn()
+    again = desk.session.read()
+    assert again is not None and again.array.tobytes() == seen.array.tobytes()
+    assert desk.runs == {"view": 1}
+
+
+def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(desk: Desk, tmp_path: Path) -> None:
+    desk.turn()
+    assert desk.storing.patience is None, "numbers that are not finite are looked for first"
+    desk.turn(2 * REST)
+    for _ in range(5):
+        desk.turn()
+    assert desk.watch.patience is None
+    assert desk.storing.patience == pytest.approx(LAND_RESTS - 2 * REST)
+    desk.turn(LAND_RESTS)
+    assert desk.storing.patience == 0.0
+    desk.rest()
+    desk.close()
+    assert kept(tmp_path) == {"sketch: height"}
+
+
+def test_nothing_is_kept_of_land_in_which_a_number_is_not_finite(desk: Desk, tmp_path: Path) -> None:
+    """The next session must name the pass that made it, and so must run it."""
+    assert desk.session is not None
+    desk.turn()
+    desk.session.drafts.set("low.level", -0.5)
+    desk.rest()
+    assert [found.path for found in desk.watch.found] == ["low"]
+    assert desk.storing.patience is None
+    desk.storing.close()
+    assert kept(tmp_path) == set()
+    desk.session.drafts.set("low.level", 0.75)
+    desk.rest()
+    desk.open()
+    assert kept(tmp_path) == {"sketch: height"}
+
+
+@pytest.mark.parametrize("tool", ["graph", "inspector"])
+def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
+    desk.rest()
+    desk.open()
+    desk.turn()
+    assert desk.session is not None
+    engine = desk.session.engine
+    assert "low" not in engine.results
+    getattr(desk.actions.see, tool).on = True
+    desk.turn()
+    desk.turn()
+    assert set(engine.results) == {"low", "height", "view"}
+    assert desk.runs["low"] == 1 and desk.runs.get("height", 0) == 0
+    draws = desk.session.draws
+    for _ in range(5):
+        desk.turn()
+    assert desk.session.draws == draws, "it was asked for once"
+
+
+def test_passes_that_fail_are_asked_for_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk.rest()
+    desk.open()
+    desk.turn()
+    assert desk.session is not None
+    tries = []
+
+    def fails(*_: object, **__: object) -> None:
+        tries.append(1)
+        raise ContextError("no")
+
+    monkeypatch.setattr(desk.session.engine, "draw", fails)
+    desk.actions.see.graph.on = True
+    for _ in range(5):
+        desk.turn()
+    assert len(tries) == 1
+
+
+def test_an_edited_kernel_is_another_land(desk: Desk) -> None:
+    desk.rest()
+    (desk.folder / "height.glsl").write_text(HEIGHT.replace("66.0", "67.0"), encoding="utf-8")
+    desk.open()
+    desk.turn()
+    assert desk.runs == {"low": 1, "height": 1, "view": 1}
+
+
+def test_a_folder_that_cannot_be_written_is_told_once(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "land").write_text("a file")
+    desk.rest()
+    assert desk.session is not None
+    desk.storing.close()
+    desk.turn()
+    desk.turn()
+    notes = [note for note in desk.session.notes if note.startswith("land cannot be kept on disk")]
+    assert len(notes) == 1
+
+
+def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
+    assert desk.session is not None
+    desk.session.engine.disk_caching = None
+    desk.storing = Storing(desk.session, 0)
+    desk.rest()
+    desk.close()
+    desk.session = None
+    assert not (tmp_path / "land").exists()
+
+
+@pytest.mark.slow
+class TestWindow:
+    """The real window, twice."""
+
+    pytestmark = ON_LINUX
+
+    def test_a_window_reopens_from_the_disk(self, tmp_path: Path) -> None:
+        folder = tmp_path / "sketch"
+        folder.mkdir()
+        text = SKETCH.replace("size = 33", "size = 513").replace("./height", "./slow")
+        for name, said in (("slow.glsl", SLOW), ("raised.glsl", RAISED), ("sketch.toml", text)):
+            (folder / name).write_text(said, encoding="utf-8")
+        screens = tmp_path / "screen"
+        screens.mkdir()
+        screen = Screen(screens, 600, 500)
+        try:
+            command = [sys.executable, "-c", RUN, str(folder)]
+            first = Program(screen, tmp_path, command, tmp_path)
+            try:
+                now = first.wait(lambda now: now["picture"])
+                assert now["runs"]["low"] >= 1
+                seen = now["picture"]
+                land = tmp_path / "cache" / "terrain-shader-playground" / "land"
+                first.wait(lambda _: list(land.glob("*.land")))
+                pixels = screen.pixels()
+            finally:
+                first.close()
+            (tmp_path / "status.jsonl").unlink()
+            second = Program(screen, tmp_path, command, tmp_path)
+            try:
+                now = second.wait(lambda now: now["picture"])
+                assert now["picture"] == seen and "low" not in now["runs"]
+                assert np.mean(screen.pixels() == pixels) > 0.95, "the panel's figures aside"
+            finally:
+                second.close()
+        finally:
+            screen.close()
+
+
+def test_land_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk: Desk) -> None:
+    """What is read does not run, and its texture may be one that held other land before."""
+    desk.turn()
+    session = desk.session
+    assert session is not None
+    engine, name = session.engine, "height:height"
+    thumbnails = Thumbnails(session)
+    thumbnails.refresh([name], now=0.0)
+    assert thumbnails.is_current(name)
+    pool, outputs = engine.pool, engine.results["height"].outputs
+    first = pool.take((5, 3), outputs)
+    engine.record.results = {**engine.results, "height": first}
+    thumbnails.refresh([name], now=1.0)
+    assert thumbnails.is_current(name)
+    pool.give(first)
+    again = pool.take((5, 3), outputs)
+    assert again.textures["height"] is first.textures["height"]
+    engine.record.results = {**engine.results, "height": again}
+    assert not thumbnails.is_current(name)
+    thumbnails.release()
+    again.release()

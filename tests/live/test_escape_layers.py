@@ -1,0 +1,168 @@
+"""Esc closes one layer at a time, topmost first, and never quits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.live.code_window import draw_code
+from playground.live.escape_layers import open_layers
+from playground.workbench.open_source import open_source
+
+from .desk import Bare
+
+LAND = """// land.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high the hills are
+uniform sampler2D mask; //! file() paint
+float kernel(ivec2 texel) { return level; }
+"""
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "./land"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+[[preset]]
+name = "high"
+set = { "height.level" = 1.0 }
+"""
+
+
+@pytest.fixture
+def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bare]:
+    (tmp_path / "land.glsl").write_text(LAND.replace("uniform sampler2D mask; //! file() paint\n", ""))
+    (tmp_path / "sketch.toml").write_text(SKETCH)
+    made = Bare(any_engine, tmp_path)
+    draw = made.draw
+
+    def both() -> None:
+        draw()
+        draw_code(made.actions, made.theme, (330.0, 0.0, 900.0, 720.0))
+
+    monkeypatch.setattr(made, "draw", both)
+    yield made
+    made.close()
+
+
+def escape(bare: Bare) -> None:
+    bare.key(imgui.Key.escape)
+    bare.turn(2)
+    assert not bare.quits
+
+
+def test_one_layer_at_a_time_and_then_none(bare: Bare, tmp_path: Path) -> None:
+    actions = bare.actions
+    full, lesson = [True], [True]
+    actions.fills_screen = lambda: full[0]
+    actions.full_screen = lambda: full.__setitem__(0, not full[0])
+    actions.lesson_shown = lambda: lesson[0]
+    actions.toggle_lessons = lambda: lesson.__setitem__(0, not lesson[0])
+    actions.see.compare.keep()
+    actions.see.inspector.toggle()
+    actions.see.graph.toggle()
+    open_source(actions, tmp_path / "land.glsl", here=True)
+    actions.capture.shown = actions.keymap_shown = True
+    bare.turn(3)
+    names = ["keys", "capture", "editor land.glsl", "graph", "inspector", "A/B", "full screen", "lesson"]
+    for n in range(len(names)):
+        assert open_layers(actions) == names[n:]
+        escape(bare)
+    assert open_layers(actions) == []
+    actions.notices.clear()
+    escape(bare)
+    assert [n.text for n in actions.notices] == ["nothing is open that Esc could close; Ctrl+Q quits"]
+
+
+def test_popups_and_the_lists_in_them_close_before_all_else(bare: Bare) -> None:
+    bare.actions.see.graph.toggle()
+    for label in ("History", "Random", "Reset", "##preset", "##shown"):
+        bare.click(label)
+        assert "popup" in open_layers(bare.actions), label
+        escape(bare)
+        assert open_layers(bare.actions) == ["graph"], label
+    bare.click("##height.level", button=1)
+    assert open_layers(bare.actions) == ["popup", "graph"]
+    escape(bare)
+    escape(bare)
+    assert open_layers(bare.actions) == []
+
+
+def test_a_field_in_a_popup_is_left_before_the_popup(bare: Bare) -> None:
+    bare.click("Save")
+    bare.click("##name")
+    bare.type("mine")
+    escape(bare)
+    assert open_layers(bare.actions) == ["popup"]
+    escape(bare)
+    assert open_layers(bare.actions) == []
+
+
+def test_an_editor_with_changes_asks_and_esc_answers_that_by_staying(bare: Bare, tmp_path: Path) -> None:
+    open_source(bare.actions, tmp_path / "land.glsl", here=True)
+    bare.turn(3)
+    bare.type("// more")
+    bare.turn(3)
+    escape(bare)
+    assert open_layers(bare.actions) == ["popup", "editor land.glsl"], "it asks whether to save"
+    escape(bare)
+    assert open_layers(bare.actions) == ["editor land.glsl"], "and stays"
+    assert "// more" not in (tmp_path / "land.glsl").read_text()
+
+
+def test_the_question_on_quitting_is_answered_by_esc_too(bare: Bare, tmp_path: Path) -> None:
+    open_source(bare.actions, tmp_path / "land.glsl", here=True)
+    bare.turn(3)
+    bare.type("// more")
+    bare.turn(3)
+    bare.actions.leaving = True
+    bare.turn(3)
+    assert open_layers(bare.actions)[0] == "popup"
+    escape(bare)
+    assert not bare.actions.leaving and open_layers(bare.actions) == ["editor land.glsl"]
+
+
+def test_ctrl_q_quits_also_out_of_a_field(bare: Bare) -> None:
+    bare.type("/")
+    bare.turn(4)
+    bare.type("lev")
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
+    assert bare.quits
+
+
+def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) -> None:
+    """On a slow renderer some turns pass between a double click and the field that it opens."""
+    session, io = bare.session, imgui.get_io()
+    bare.point("##height.level", 0.2)
+    for down in (True, False, True):
+        bare.press(down)
+    keys = imgui.Key._0, imgui.Key.period, imgui.Key._2, imgui.Key._5
+    for letter, key in zip("0.25", keys, strict=True):
+        for down in (True, False):
+            io.add_key_event(key, down)
+            if down:
+                io.add_input_character(ord(letter))
+            bare.turn()
+    bare.press(False)
+    bare.turn(3)
+    bare.key(imgui.Key.enter)
+    assert dict(session.shown.edits.values)["height.level"] == 0.25  # type: ignore[union-attr]
+
+
+def test_letters_typed_right_behind_the_search_are_no_shortcuts(bare: Bare) -> None:
+    io = imgui.get_io()
+    shown, saved = bare.session.view.map, bare.actions.saved
+    for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
+        io.add_key_event(key, True)
+        io.add_input_character(ord(letter))
+        bare.turn()
+        io.add_key_event(key, False)
+    bare.turn(4)
+    assert bare.session.view.map is shown and bare.actions.saved is saved and not bare.actions.see.compare.on
+    assert bare.panel.memory.filter.search == "msa"

@@ -1,0 +1,551 @@
+"""A lesson on the stage: what it shows, what it leaves alone, what comes back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.lessons import library
+from playground.lessons.figure_renders import broken, draw
+from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
+from playground.lessons.read import read_lesson
+from playground.paths import GLSL
+from playground.sketch.find import find
+from playground.sketch.load import load
+from playground.workbench.edits import Draft, Edits
+from playground.workbench.framing import framed
+from playground.workbench.lesson.bugs import BROKEN, MENDED, TOLD
+from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
+from playground.workbench.lesson.links import play_on
+from playground.workbench.lesson.reader import BOTH
+from playground.workbench.open_source import open_source
+from playground.workbench.resume import StoredEdits
+
+from .lesson_desk import RAW, Desk, shelved
+
+OWN = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+"""
+FILE = (GLSL / RAW).resolve()
+
+
+@pytest.fixture
+def desk(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+    shelved(monkeypatch, tmp_path)
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "sketch.toml").write_text(OWN, encoding="utf-8")
+    made = Desk(any_engine, own)
+    yield made
+    made.close()
+
+
+def block(desk: Desk, name: str):
+    assert desk.reading.lesson is not None
+    return desk.reading.lesson.named[name]
+
+
+def value(desk: Desk, path: str):
+    return dict(desk.session.shown.applied)[path]
+
+
+def text_window(desk: Desk):
+    """Return the editor of the one file that is open."""
+    (editing,) = desk.actions.editing
+    return editing.view.editor
+
+
+def as_seen(desk: Desk) -> np.ndarray:
+    """Return the picture of the view as the engine draws it by itself, at the size of the view."""
+    frame = desk.session.read()
+    assert frame is not None
+    return frame.array
+
+
+def of_lesson(desk: Desk, scene: Scene) -> np.ndarray:
+    """Return a picture as a book has it, at the size of the view, its sides kept."""
+    seen = framed(scene.sketch, scene.time, scene.pixels, (48, 32))
+    return draw(desk.session.engine, replace(scene, sketch=seen, pixels=(48, 32))).array
+
+
+def scenes_of(lesson) -> list[Scene]:
+    found = []
+    for each in lesson.blocks:
+        if isinstance(each, Figure | Exercise | Break) and each.scene:
+            found.append(each.scene)
+        elif isinstance(each, Steps | Slider | Compare):
+            found += each.scenes
+    return found
+
+
+def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path, monkeypatch):
+    shelved(monkeypatch, tmp_path)
+    scenes = scenes_of(read_lesson("halving"))
+    assert len(scenes) == 13
+    for scene in scenes:
+        file = load(Path(scene.sketch.file))
+        if scene.view:
+            assert map_of(scene).ref == "height:height"  # its picture is looked at below
+            continue
+        made = Draft(file, file, edits_of(scene, file)).sketch
+        assert made.with_values({}) == scene.sketch.with_values({}), scene
+
+
+def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_picture(desk):
+    desk.open(show=False)
+    session = desk.actions.session
+    scene = read_lesson("halving").named["land"].scene
+    desk.reading.stage.show(replace(scene, pixels=(300, 300)), ("land", 0))
+    assert session.view.framed_for == (300, 300)
+    desk.reading.stage.go_back()
+    assert session.view.framed_for == (1280, 720)
+
+
+def test_every_picture_in_the_view_is_that_of_the_lesson(desk):
+    desk.open(show=False)
+    for page in range(5):
+        desk.reading.go(page)
+        for each in desk.reading.section.blocks:
+            if not isinstance(each, Figure | Steps | Slider | Exercise) or not hasattr(each, "scene"):
+                continue
+            if each.scene is None:
+                continue
+            desk.reading.show(each)
+            desk.turn(3)
+            assert desk.session.error is None
+            np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, each.scene), err_msg=each.name)
+
+
+def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_after(desk):
+    own = desk.session.path
+    desk.open(show=False)
+    assert desk.session.path == own and desk.reading.stage.own is None
+    desk.reading.turn_page(1)
+    desk.turn(4)
+    assert desk.session.path == find("diamond_square_steps")
+    assert desk.session.view.steps == {"height.raw": 0, "phase": 0}
+
+
+def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(desk):
+    desk.open(3)
+    assert desk.reading.stage.key == ("seeds", 1) and value(desk, "height.seed") == 2
+    desk.reading.show(block(desk, "land"))
+    desk.turn(2)
+    desk.reading.go(4)
+    desk.turn(2)
+    assert desk.reading.stage.key == ("land", 0), "what is shown stays"
+
+
+def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
+    own = desk.session.path
+    desk.session.drafts.set("height.seed", 5)
+    desk.turn(2)
+    seen = as_seen(desk)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 3
+    desk.reading.go(1)
+    desk.turn(3)
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and value(desk, "height.seed") == 5
+    np.testing.assert_array_equal(as_seen(desk), seen)
+    desk.actions.undo()
+    assert not desk.session.shown.edits.values
+
+
+def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_does(desk):
+    own = desk.session.path
+    desk.session.drafts.set("height.seed", 5)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.turn_page(1)
+    desk.turn(2)
+    assert desk.session.path == own
+    assert any("stays in view" in notice.text for notice in desk.actions.notices)
+    desk.reading.show(block(desk, "turns"))
+    desk.turn(2)
+    assert desk.session.path != own
+
+
+def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(desk):
+    desk.open()
+    desk.session.drafts.set("height.seed", 77)
+    desk.turn(60)
+    desk.reading.go(1)  # another sketch
+    desk.turn(4)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(4)
+    assert value(desk, "height.seed") == 3
+    desk.actions.undo()
+    desk.turn(2)
+    assert value(desk, "height.seed") == 77
+    desk.reading.reset(block(desk, "land"))  # the same sketch
+    desk.turn(60)
+    assert value(desk, "height.seed") == 3
+    desk.actions.undo()
+    desk.turn(2)
+    assert value(desk, "height.seed") == 77
+
+
+def test_what_is_compared_with_comes_back_with_what_was_open(desk):
+    compare = desk.actions.see.compare
+    desk.session.drafts.set("height.seed", 5)
+    desk.turn(2)
+    compare.keep()
+    desk.session.drafts.set("height.seed", 6)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "seeds"))
+    desk.turn(4)
+    desk.reading.go_back()
+    desk.turn(4)
+    assert value(desk, "height.seed") == 6
+    assert compare.on, "A is there again"
+    assert dict(compare.remembered().edits.values) == {"height.seed": 5}
+
+
+def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(desk):
+    own = desk.session.path
+    own.write_text(OWN.replace("white_noise", "white_noyse"), encoding="utf-8")
+    desk.session.open(own, start=StoredEdits(Edits((("height.seed", 5),))))
+    desk.turn(2)
+    assert desk.session.error is not None and desk.session.drafts.opening
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    assert value(desk, "height.seed") == 3
+    desk.reading.go_back()
+    desk.turn(3)
+    own.write_text(OWN, encoding="utf-8")
+    desk.session.drafts.reload()
+    desk.turn(3)
+    assert desk.session.error is None and value(desk, "height.seed") == 5
+
+
+def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_hand(desk):
+    own = desk.session.path
+    own.write_text(OWN.replace("[view]", "set = { seed = 2 }\n[view]"), encoding="utf-8")
+    desk.session.drafts.reload()
+    desk.turn(2)
+    desk.session.drafts.set("height.seed", 5)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    own.write_text(OWN.replace("[view]", "set = { seed = 9 }\n[view]"), encoding="utf-8")
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and "height.seed" not in dict(desk.session.shown.edits.values)
+
+
+def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_asked_again(desk):
+    own = desk.session.path
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    own.rename(own.with_name("away.toml"))
+    desk.reading.go_back()
+    desk.turn(3)
+    assert any("sketch.toml" in notice.text for notice in desk.actions.notices)
+    assert desk.session.path == find("white_noise") and desk.session.error is None
+    own.with_name("away.toml").rename(own)
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and desk.reading.stage.own is None
+
+
+def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
+    own = desk.session.path
+    desk.open(3, show=False)
+    desk.reading.faults.edit(block(desk, "mean"))
+    desk.turn(3)
+    assert desk.session.drafts.texts and desk.reading.stage.own is None
+    desk.session.drafts.set("height.seed", 7)
+    desk.turn(3)
+    assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
+    desk.reading.show(block(desk, "seeds"))
+    desk.turn(4)
+    desk.reading.go_back()
+    desk.turn(3)
+    assert desk.session.path == own and value(desk, "height.seed") == 7
+
+
+def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
+    desk.session.drafts.set("height.seed", 5)
+    desk.turn(2)
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(60)
+    desk.session.drafts.set("height.seed", 8)
+    desk.turn(60)
+    desk.rememberer.close()
+    kept = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
+    assert [(Path(one["sketch"]).parent.name, one["values"]["height.seed"]["value"]) for one in kept] == [
+        ("own", 5)
+    ]
+
+
+def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(desk):
+    desk.session.open(find("white_noise"))
+    desk.turn(2)
+    desk.session.drafts.set("height.seed", 41)
+    desk.turn(2)
+    desk.rememberer.look((800, 600))
+    desk.rememberer.write()
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(2)
+    assert value(desk, "height.seed") == 3
+    play_on(desk.reading)
+    desk.turn(3)
+    assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 41
+    assert desk.reading.stage.own is None and desk.actions.panel_shown
+
+
+def test_turns_are_stopped_at_and_played_to_the_last(desk):
+    desk.open(1)
+    turns = block(desk, "turns")
+    desk.reading.move(turns, 2)
+    desk.turn(2)
+    assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, turns.scenes[2]))
+    desk.reading.play_or_rest(turns)
+    assert desk.reading.playing == "turns" and 0 < desk.reading.patience(desk.actions.now()) <= 0.8
+    desk.turn(60)
+    assert not desk.reading.playing and desk.reading.at["turns"] == 3
+    assert steps_of(turns.scenes[3]) == {"height.raw": 4, "phase": 4}
+    assert desk.session.view.steps == {"height.raw": 4, "phase": 4}
+
+
+def test_a_sweep_plays_from_the_first_value_to_the_last(desk):
+    desk.open(2)
+    rough = block(desk, "rough")
+    assert value(desk, "height.smoothing") == 0.0
+    desk.reading.play_or_rest(rough)
+    seen = []
+    for _ in range(90):
+        desk.turn()
+        seen.append(value(desk, "height.smoothing"))
+    assert list(dict.fromkeys(seen)) == [0.0, 0.5, 1.0] and not desk.reading.playing
+    desk.reading.play_or_rest(rough)
+    desk.turn(2)
+    assert value(desk, "height.smoothing") == 0.0, "from the beginning again"
+
+
+def test_two_variants_are_parted_by_the_line_of_the_view(desk):
+    desk.open(2)
+    seeds = block(desk, "seeds")
+    desk.reading.choose(seeds, BOTH)
+    desk.turn(4)
+    compare = desk.actions.see.compare
+    assert compare.on and value(desk, "height.seed") == 2
+    second = as_seen(desk)  # in full, and the first with it
+    desk.turn()
+    rows = np.frombuffer(compare.picture.read(alignment=1), np.uint8).reshape(32, 48, 4)[::-1]
+    np.testing.assert_array_equal(rows, of_lesson(desk, seeds.scenes[0]))
+    np.testing.assert_array_equal(second, of_lesson(desk, seeds.scenes[1]))
+    desk.reading.choose(seeds, 0)
+    desk.turn(3)
+    assert not compare.on and value(desk, "height.seed") == 1
+
+
+def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
+    before = FILE.read_bytes()
+    desk.open(3)
+    fault = block(desk, "quarter")
+    desk.reading.show(fault)
+    desk.reading.faults.break_it(fault)
+    desk.turn(4)
+    assert desk.reading.faults.state["quarter"] == BROKEN
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, broken(fault)))
+    assert [editing.text.path for editing in desk.actions.editing] == [FILE]
+    text = desk.actions.editing[0].text
+    assert ": 9.0)" in text.base
+    text.save(text.base.replace(": 9.0)", ": 2.0)"))
+    desk.turn(6)
+    assert desk.reading.faults.state["quarter"] == BROKEN, "another picture, but not the whole one"
+    text.save(text.base.replace(": 2.0)", ": float(3))"))
+    desk.turn(6)
+    assert desk.reading.faults.state["quarter"] == MENDED
+    assert any("Mended" in notice.text for notice in desk.actions.notices)
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
+    desk.reading.faults.break_it(fault)
+    desk.turn(4)
+    desk.reading.faults.mend_it(fault)
+    desk.turn(4)
+    assert desk.reading.faults.state["quarter"] == TOLD and not desk.actions.editing
+    assert not desk.session.drafts.texts
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
+    assert FILE.read_bytes() == before
+
+
+def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_page(desk):
+    desk.open(3)
+    fault = block(desk, "quarter")
+    desk.reading.faults.break_it(fault)
+    desk.turn(4)
+    text = desk.actions.editing[0].text
+    text.save(text.base.replace("total /", "totals /"))
+    desk.turn(4)
+    assert desk.session.error is not None and "raw.glsl" in str(desk.session.error)
+    assert desk.reading.faults.state["quarter"] == BROKEN
+    desk.reading.turn_page(1)
+    desk.turn(4)
+    assert desk.session.error is None and not desk.session.drafts.texts and not desk.actions.editing
+    desk.reading.turn_page(-1)
+    desk.reading.faults.break_it(fault)
+    assert "totals /" in desk.actions.editing[0].text.base, "what was typed is there again"
+
+
+def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
+    before = FILE.read_text(encoding="utf-8")
+    desk.open(3)
+    code, faults = block(desk, "mean"), desk.reading.faults
+    assert "float(2 * r)" in faults.excerpt(code).text and not faults.is_edited(code)
+    faults.edit(code)
+    desk.turn(3)
+    editing = desk.actions.editing[0]
+    assert editing.text.base == before
+    assert before.split("\n")[editing.line - 2].strip() == "// anchor: height"
+    editing.text.save(before.replace("float(2 * r)", "float(3 * r)"))
+    desk.turn(3)
+    assert "float(3 * r)" in faults.excerpt(code).text and faults.is_edited(code)
+    assert desk.session.drafts.texts == {str(FILE): editing.text.base}
+    faults.put_back(code)
+    desk.turn(3)
+    assert not faults.is_edited(code) and not desk.session.drafts.texts and not desk.actions.editing
+    assert FILE.read_text(encoding="utf-8") == before
+
+
+def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(desk):
+    desk.open(3)
+    fault = block(desk, "quarter")
+    open_source(desk.actions, FILE, here=True)  # the reader has the file itself open
+    (own,) = desk.actions.editing
+    desk.reading.faults.break_it(fault)
+    desk.turn(3)
+    copy = desk.actions.editing[-1]
+    open_source(desk.actions, FILE, 5, here=True)
+    assert (copy.line, copy.asked) == (5, True) and not own.asked
+    desk.actions.editing.remove(copy)
+    open_source(desk.actions, FILE, 6)
+    assert desk.actions.editing == [own, copy] and copy.line == 6
+    desk.reading.faults.mend_it(fault)
+    open_source(desk.actions, FILE, 7, here=True)
+    assert desk.actions.editing == [own] and own.line == 7
+
+
+def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):
+    desk.open(3)
+    fault, code, faults = block(desk, "quarter"), block(desk, "mean"), desk.reading.faults
+    faults.break_it(fault)
+    desk.turn(4)
+    text_window(desk).replace_text_in_current_cursor("// mine\n")
+    desk.turn(2)
+    desk.reading.turn_page(1)
+    desk.turn(3)
+    assert not desk.actions.editing
+    desk.reading.turn_page(-1)
+    faults.break_it(fault)
+    desk.turn(3)
+    assert "// mine" in text_window(desk).get_text()
+    text_window(desk).replace_text_in_current_cursor("// more\n")
+    desk.actions.editing.clear()  # its window is closed
+    desk.turn(2)
+    faults.focus(fault)
+    assert "// more" in text_window(desk).get_text()
+    faults.mend_it(fault)
+    desk.turn(3)
+    faults.break_it(fault)
+    desk.turn(3)
+    assert "// mine" not in text_window(desk).get_text(), "the lesson's mend forgets what was typed"
+    faults.mend_it(fault)
+    faults.edit(code)
+    desk.turn(3)
+    text_window(desk).replace_text_in_current_cursor("// other\n")
+    faults.put_back(code)
+    faults.edit(code)
+    desk.turn(3)
+    assert "// other" not in text_window(desk).get_text(), "so does putting the file back"
+
+
+def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
+    desk.open(1)
+    desk.turn(3)
+    seen, runs = as_seen(desk), dict(desk.session.engine.runs)
+    number = desk.reading.numbers.known["halving"]["peaks"]
+    values = desk.session.engine.read(block(desk, "peaks").scene.sketch, "height")
+    tops = sum(
+        values[y, x] == values[y - 1 : y + 2, x - 1 : x + 2].max() for y in range(1, 32) for x in range(1, 32)
+    )
+    assert number.value == tops and 50 < tops < 200
+    assert desk.reading.numbers.fill("{{peaks}} tops", desk.reading.lesson) == f"{tops} tops"
+    assert runs, "what the panel counts is that of the picture"
+    desk.session.redraw()
+    desk.turn(2)
+    np.testing.assert_array_equal(as_seen(desk), seen)
+
+
+def test_opening_a_sketch_meanwhile_takes_the_stage_from_the_lesson(desk):
+    desk.open()
+    assert desk.reading.stage.own is not None
+    desk.actions.open(find("diamond_square_steps"))
+    desk.turn(3)
+    assert desk.reading.stage.own is None and desk.reading.stage.key is None
+
+
+def test_a_lesson_is_read_on_in_french_where_it_was(desk):
+    desk.open(1)
+    desk.reading.speak("fr")
+    desk.turn(2)
+    assert desk.reading.lesson.title == "Moitiés" and desk.reading.index == 1
+    assert desk.reading.section.title == "Étape par étape"
+    desk.reading.open("after")
+    assert desk.reading.lesson.title == "After it"
+    assert any("anglais" in notice.text for notice in desk.actions.notices)
+
+
+def test_an_unknown_lesson_is_named_with_the_nearest(desk):
+    assert not desk.reading.open("halvin")
+    assert any("no lesson 'halvin'" in n.text and "halving" in n.text for n in desk.actions.notices)
+    assert desk.reading.lesson is None and library.lesson_files() == ["after", "halving"]
+
+
+class Silent:
+    """A trial that never answers."""
+
+    def submit(self, request: object) -> None:
+        """Take a sketch, and forget it."""
+
+    def poll(self) -> None:
+        """Say nothing."""
+
+
+def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(desk):
+    desk.open(show=False)
+    desk.reading.show(block(desk, "land"))
+    desk.turn(3)
+    seen = as_seen(desk)
+    desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=Silent())
+    desk.reading.go(1)
+    desk.turn(3)
+    assert desk.reading.stage.busy and desk.session.view.steps == {}
+    np.testing.assert_array_equal(as_seen(desk), seen)
+    desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=None)
+    desk.reading.show(block(desk, "turns"))
+    desk.turn(3)
+    assert not desk.reading.stage.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}

@@ -1,0 +1,280 @@
+"""Numbers that are not finite: found at rest, a pass a turn, named, and gone when they are mended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.non_finite import NotFinite
+from playground.live.non_finite import place_in, ref_of
+from playground.workbench.actions import Actions
+from playground.workbench.non_finite import REST, FiniteWatch, said
+from playground.workbench.session import Session
+
+from .desk import Bare
+
+FIRST = """// first.glsl -- with a hole
+#pragma kernel(output = "first:r32f")
+uniform float root = 0.0; //! slider(-1, 1)
+float kernel(ivec2 texel) { return texel / 2 == ivec2(6, 15) ? sqrt(root) : 0.5; }
+"""
+SECOND = """// second.glsl -- one more
+#pragma kernel(output = "second:r32f")
+uniform sampler2D first; //! input
+float kernel(ivec2 texel) { return 1.0 + texelFetch(first, texel, 0).r; }
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "first"
+use = "./first"
+set = { root = -0.5 }
+[[pass]]
+name = "second"
+use = "./second"
+inputs = { first = "first" }
+[view]
+use = "view/map"
+inputs = { shown = "second" }
+set = { channel = "red" }
+"""
+
+
+class Desk:
+    """A session, the watch on it, and a clock that the test moves."""
+
+    def __init__(self, engine: Engine, folder: Path) -> None:
+        for name, text in (("first.glsl", FIRST), ("second.glsl", SECOND), ("sketch.toml", SKETCH)):
+            (folder / name).write_text(text, encoding="utf-8")
+        self.time = 100.0
+        self.session = Session(engine, folder, now=lambda: self.time)
+        self.actions = Actions(self.session, lambda: None, folder, now=lambda: self.time)
+        self.watch = FiniteWatch(lambda: self.time)
+
+    def turn(self, seconds: float = 0.0, held: bool = False) -> None:
+        self.time += seconds
+        self.session.frame((40, 40))
+        self.watch.turn(self.actions, held)
+
+    def rest(self) -> list[str]:
+        self.turn()
+        self.turn(2 * REST)
+        for _ in range(20):
+            self.turn()
+        return [found.path for found in self.watch.found]
+
+
+@pytest.fixture
+def desk(any_engine: Engine, tmp_path: Path) -> Iterator[Desk]:
+    made = Desk(any_engine, tmp_path)
+    yield made
+    made.session.release()
+
+
+def test_the_first_pass_is_named_and_what_follows_is_counted(desk: Desk) -> None:
+    assert desk.rest() == ["first", "second"]
+    first = desk.watch.found[0]
+    assert (first.output, first.texel, first.value, first.count) == ("first", (12, 30), "NaN", 4)
+    assert said(desk.watch.found) == "pass 'first' makes NaN at texel (12, 30), 4 texels; first of 2 passes"
+    assert desk.watch.patience is None, "nothing more is waited for"
+
+
+def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(desk: Desk) -> None:
+    desk.turn()
+    desk.turn(REST / 2)
+    assert desk.watch.looks == 0 and desk.watch.patience is not None
+    desk.turn(REST, held=True)
+    assert desk.watch.looks == 0
+    for number in range(1, 3):
+        desk.turn(REST if number == 1 else 0.0)
+        assert desk.watch.looks == number
+    desk.session.drafts.set("first.root", 0.25)
+    desk.turn()
+    assert desk.watch.looks == 2, "another picture: what was under way is of no use"
+
+
+def test_it_goes_when_it_is_mended(desk: Desk) -> None:
+    assert desk.rest()
+    desk.session.drafts.set("first.root", 0.25)
+    assert desk.rest() == []
+    desk.session.drafts.set("first.root", -0.25)
+    assert desk.rest() == ["first", "second"]
+
+
+def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) -> None:
+    assert desk.rest()
+    first = desk.watch.found[0]
+    desk.actions.show(ref_of(first))
+    assert desk.rest() == ["first", "second"], "what the map does not need is as it was"
+    frame = desk.session.read()
+    assert frame is not None
+    magenta = (frame.array[..., :3] == (255, 0, 255)).all(axis=2)
+    assert 0 < magenta.sum() <= 16
+    x, y = place_in(first, (0.0, 0.0, 40.0, 40.0))
+    assert magenta[int(y), int(x)]
+    desk.session.drafts.set("first.root", 0.25)
+    assert desk.rest() == []
+
+
+def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
+    desk.turn()
+    desk.session.read_values("first:first")
+    ran = list(desk.session.engine.ran)
+    runs = dict(desk.session.engine.runs)
+    assert desk.rest() == ["first", "second"]
+    assert dict(desk.session.engine.runs) == runs and desk.session.engine.ran == ran, "nothing ran again"
+
+
+def test_time_that_runs_is_looked_at_now_and_then(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Session, "animated", True)
+    desk.session.clock.playing = True
+    desk.turn(held=True)
+    assert desk.watch.looks == 0
+    desk.turn()
+    seen = desk.watch.looks
+    assert desk.watch.found and seen > 0
+    for _ in range(10):
+        desk.session.redraw()
+        desk.turn(0.05)
+    assert desk.watch.looks == seen
+    desk.turn(3.0)
+    assert desk.watch.looks > seen
+
+
+def test_a_map_is_placed_as_its_kernel_places_it() -> None:
+    wide = NotFinite("p", "o", (0, 0), "NaN", 1, (200, 100))
+    assert place_in(wide, (10.0, 20.0, 100.0, 100.0)) == (10.25, 20 + 100 - 25.25)
+    named = replace(wide, path="a.b", output="c", value="infinity")
+    assert said((named,)) == "pass 'a.b', output 'c', makes infinity at texel (0, 0), 1 texel"
+
+
+def test_the_words_lead_to_the_texture_and_back(
+    any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from playground.live import non_finite as finite
+
+    Desk(any_engine, tmp_path).session.release()
+    bare = Bare(any_engine, tmp_path / "sketch.toml")
+    try:
+        bare._watch(finite.imgui, "small_button")
+        watch = FiniteWatch(lambda: bare.time)
+        draw = bare.draw
+
+        def both() -> None:
+            draw()
+            watch.turn(bare.actions, False)
+            finite.draw_not_finite(watch, bare.actions, bare.theme, (400.0, 0.0, 880.0, 720.0))
+
+        monkeypatch.setattr(bare, "draw", both)
+        bare.turn(120)
+        bare.click("Show it")
+        assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
+        bare.click("Back to the picture")
+        assert bare.session.view.map is None
+    finally:
+        bare.close()
+
+
+def test_nothing_is_done_before_there_is_a_picture() -> None:
+    nothing = SimpleNamespace(session=SimpleNamespace(shown=None, plan=None))
+    watch = FiniteWatch(lambda: 0.0)
+    watch.turn(nothing, False)  # type: ignore[arg-type]
+    assert watch.patience is None and watch.looks == 0
+
+
+LIT = """// lit.glsl -- light with a hole
+#pragma kernel(output = "frame:rgba16f")
+uniform float root = 0.0; //! slider(-1, 1)
+uniform sampler2D height; //! input
+vec4 kernel(ivec2 texel) {
+    float found = texelFetch(height, ivec2(0), 0).r;
+    return texel == ivec2(7, 5) ? vec4(sqrt(root)) : vec4(found, 0.25, 0.0, 1.0);
+}
+"""
+SHOWN = """// shown.glsl -- what a screen takes
+#pragma kernel(output = "frame:rgba8")
+uniform sampler2D picture; //! input
+vec4 kernel(ivec2 texel) { return clamp(texelFetch(picture, texel, 0), 0.0, 1.0); }
+"""
+VIEW = """[[pass]]
+name = "lit"
+use = "./lit"
+[[pass]]
+name = "shown"
+use = "./shown"
+inputs = { picture = "lit" }
+[inputs]
+height = "lit.height"
+[parameters]
+root = "lit.root"
+"""
+IN_VIEW = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+[view]
+use = "./look"
+inputs = { height = "height" }
+set = { root = -1.0 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("wired", "by_hand"),
+    [
+        ("", False),
+        ('inputs = { height = "height" }\n', True),
+        ('inputs = { "lit.height" = "height" }\n', False),
+    ],
+)
+def test_a_hole_that_the_view_makes_is_shown_too(
+    any_engine: Engine, tmp_path: Path, wired: str, by_hand: bool
+) -> None:
+    """Whichever way the view's inputs are wired, and whether its values come from the file or the hand."""
+    sketch = IN_VIEW.replace('inputs = { height = "height" }\n', wired)
+    if by_hand:
+        sketch = sketch.replace("set = { root = -1.0 }\n", "")
+    for name, text in (("lit.glsl", LIT), ("shown.glsl", SHOWN), ("look.toml", VIEW)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    desk = Desk(any_engine, tmp_path)
+    (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
+    desk.session.drafts.reload()
+    desk.turn()
+    if by_hand:
+        desk.session.drafts.set("view.root", -1.0)
+    desk.rest()
+    (found,) = desk.watch.found
+    assert (found.path, found.texel, found.size, found.value) == ("view.lit", (7, 5), (40, 40), "NaN")
+    ref = ref_of(found)
+    assert ref == "view.lit:frame" and desk.session.can_show(ref)
+    desk.actions.show(ref)
+    desk.turn()
+    assert desk.session.view.map is not None and desk.session.error is None and not desk.session.notes
+    frame = desk.session.read()
+    assert frame is not None
+    magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
+    assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
+    desk.rest()
+    assert desk.watch.found == (found,), "it has its own name, whatever the map calls it"
+    desk.actions.show(None)
+    desk.turn()
+    desk.rest()
+    assert desk.watch.found == (found,)
+    desk.session.release()
+
+
+def test_what_the_view_lacks_cannot_be_shown(any_engine: Engine, tmp_path: Path) -> None:
+    desk = Desk(any_engine, tmp_path)
+    desk.turn()
+    session = desk.session
+    assert session.can_show("view:frame") and session.can_show("first:first")
+    for wrong in ("view:light", "view.lit:frame", "other:frame", "first.view:first", "view"):
+        assert not session.can_show(wrong)
+    session.release()

@@ -1,0 +1,502 @@
+"""Painting on a mask: where a stroke goes, what it leaves, how it is kept and taken back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import DataError, ShaderError
+from playground.images.files import read_image, read_png, write_png
+from playground.sketch.load import load
+from playground.terrain.masks import read_mask
+from playground.workbench.brush import ERASER, Brush, covered, stroke
+from playground.workbench.painted_mask import MOST_TEXELS, Canvas
+from playground.workbench.painting import Painting
+from playground.workbench.session import Session
+
+EXTENT = (1000.0, 500.0)
+HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
+
+
+def empty(ny=51, nx=101):
+    return np.zeros((ny, nx, 4), np.float32)
+
+
+def distance_to_segment(ny, nx, start, end):
+    """Return the distance [m] of each node from a segment, by very many of its points."""
+    y, x = np.mgrid[0:ny, 0:nx]
+    place = np.stack([x * EXTENT[0] / (nx - 1), y * EXTENT[1] / (ny - 1)], axis=-1)
+    points = np.linspace(np.multiply(start, EXTENT), np.multiply(end, EXTENT), 400)
+    return np.linalg.norm(place[:, :, None] - points, axis=-1).min(axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("start", "end"), [((0.5, 0.5), (0.5, 0.5)), ((0.2, 0.3), (0.7, 0.9)), ((0.0, 1.0), (0.05, 1.0))]
+)
+def test_a_hard_brush_covers_what_is_within_its_radius(start, end):
+    mask = empty()
+    stroke(mask, start, end, EXTENT, HARD)
+    away = distance_to_segment(51, 101, start, end)
+    sure = np.abs(away - HARD.radius) > 2.0
+    np.testing.assert_array_equal(mask[..., 1][sure], (away < HARD.radius)[sure])
+    assert (mask[..., [0, 2, 3]] == 0).all() and mask[..., 1].any()
+
+
+def test_a_soft_brush_fades_from_its_middle_to_its_radius():
+    rows, columns, share = covered(
+        (51, 101), (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(radius=200.0, softness=1.0)
+    )
+    middle = share[25 - rows.start]
+    assert middle.max() == 1 and middle[0] < 0.05
+    half = middle[50 - columns.start :]
+    assert (np.diff(half) <= 0).all()
+    assert abs(np.interp(100.0, np.arange(len(half)) * 10.0, half) - 0.5) < 0.01
+
+
+def test_a_layer_takes_from_the_others_and_an_eraser_from_all():
+    mask = empty()
+    mask[..., 0] = 0.75
+    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=3, radius=50.0, strength=0.5, softness=0.0))
+    np.testing.assert_allclose(mask[25, 50], [0.375, 0, 0, 0.5], atol=1e-6)
+    assert mask.sum(axis=-1).max() <= 1
+    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=ERASER, radius=50.0, strength=1.0, softness=0.0))
+    assert (mask[25, 50] == 0).all() and mask[0, 0, 0] == 0.75
+
+
+def test_beside_the_land_nothing_is_painted():
+    mask = empty()
+    stroke(mask, (3.0, 3.0), (4.0, 3.0), EXTENT, HARD)
+    assert (mask == 0).all()
+
+
+SIZE = (128, 64)  # texels of the pass that reads it
+
+
+def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
+    first = Canvas.begun(tmp_path, "hills-image", None, SIZE)
+    second = Canvas.begun(tmp_path, "hills-image", None, SIZE)
+    assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
+    assert read_image(first.path).size == SIZE
+
+
+def test_a_canvas_has_the_land_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "usual", None, (1025, 513))
+    assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
+    canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049), most=1024)
+    assert read_image(canvas.path).size == (1024, 512)
+    assert MOST_TEXELS == 2**12 + 1
+
+
+def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    pictures = [read_image(canvas.path).pixels]
+    for x in (0.2, 0.8):
+        canvas.begin()
+        canvas.paint((x, 0.9), (x, 0.95), EXTENT, HARD)
+        canvas.save()
+        pictures.append(read_image(canvas.path).pixels)
+    north, south = pictures[-1][:16], pictures[-1][-16:]
+    assert north[..., 1].max() == 255 and south[..., 1].max() == 0
+    assert (pictures[1] != pictures[2]).any()
+    for wanted in (pictures[1], pictures[0]):
+        assert canvas.can_undo
+        canvas.undo()
+        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+    assert not canvas.can_undo
+    canvas.undo()
+    for wanted in pictures[1:]:
+        assert canvas.can_redo
+        canvas.redo()
+        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+    assert not canvas.can_redo
+    canvas.redo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[2])
+    canvas.undo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[1])
+
+
+def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas.begin()
+    canvas.paint((0.2, 0.5), (0.2, 0.5), EXTENT, HARD)
+    canvas.undo()
+    assert canvas.can_redo
+    canvas.clear()
+    assert not canvas.can_redo
+    canvas.redo()
+    assert (read_image(canvas.path).pixels == 0).all()
+
+
+def test_clearing_can_be_undone(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas.begin()
+    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
+    canvas.save()
+    painted = read_image(canvas.path).pixels
+    canvas.clear()
+    assert (read_image(canvas.path).pixels == 0).all()
+    canvas.undo()
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, painted)
+
+
+def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
+    pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
+    write_png(tmp_path / "old.png", pixels)
+    canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
+    np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
+    canvas.clear()
+    np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
+
+
+def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
+    pixels = np.zeros((2, 2, 4), np.uint8)
+    pixels[0] = [0, 200, 0, 0]  # the north
+    write_png(tmp_path / "coarse.png", pixels)
+    canvas = Canvas.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
+    found = read_image(canvas.path).pixels
+    assert found.shape == (SIZE[1], SIZE[0], 4)
+    assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[SIZE[1] // 2, 7, 1] < 110
+
+
+def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
+    canvas = Canvas.begun(tmp_path, "full", None, SIZE)
+    everything = Brush(layer=3, radius=5000.0, strength=1.0, softness=0.0)
+    canvas.begin()
+    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
+    canvas.save()
+    np.testing.assert_array_equal(read_mask(canvas.path, SIZE), np.broadcast_to([0, 0, 0, 1], (64, 128, 4)))
+
+
+def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
+    with pytest.raises(DataError, match="missing"):
+        Canvas.begun(tmp_path / "missing", "mask", None, SIZE)
+
+
+SKETCH = """format = 1
+size = 65
+extent = [2000.0, 2000.0]
+relief = 200.0
+[[pass]]
+name = "height"
+use = "generation/layered_noise"
+[[pass]]
+name = "painted"
+use = "texturing/alpha_map/mask"
+size = 128
+set = { image = "none.png" }
+[[pass]]
+name = "weights"
+use = "texturing/alpha_map"
+set = { path = 0.0 }
+[[pass]]
+name = "colour"
+use = "view/weights"
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+[view]
+use = "view/terrain"
+samples = 1
+camera = { azimuth = 180, elevation = 60, distance = 3500 }
+"""
+
+
+@pytest.fixture
+def session(tmp_path: Path, any_engine: Engine) -> Iterator[Session]:
+    (tmp_path / "sketch").mkdir()
+    write_png(tmp_path / "sketch" / "none.png", np.zeros((4, 4, 4), np.uint8))
+    (tmp_path / "sketch" / "sketch.toml").write_text(SKETCH)
+    made = Session(any_engine, tmp_path / "sketch")
+    made.frame((160, 120))
+    assert made.error is None
+    yield made
+    made.release()
+
+
+def test_a_stroke_over_the_picture_lands_under_the_mouse(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    assert painting.target == "painted.image"
+    painting.toggle()
+    painting.brush = Brush(layer=3, radius=150.0, strength=1.0, softness=0.0)
+    place = (0.42, 0.45)
+    x, y = painting.ground(place)
+    before = session.engine.read(session.sketch, "weights")
+    painting.press(place)
+    painting.release()
+    session.frame((160, 120))
+    after = session.engine.read(session.sketch, "weights")
+    ny, nx = after.shape[:2]
+    there = (round(y * (ny - 1)), round(x * (nx - 1)))
+    assert after[there][3] == 1 and before[there][3] == 0
+    far = np.hypot(*(np.mgrid[0:ny, 0:nx] - np.array(there)[:, None, None])) * 2000 / (nx - 1) > 200
+    np.testing.assert_array_equal(after[far], before[far])
+    painting.undo()
+    session.frame((160, 120))
+    np.testing.assert_array_equal(session.engine.read(session.sketch, "weights"), before)
+    painting.redo()
+    session.frame((160, 120))
+    np.testing.assert_array_equal(session.engine.read(session.sketch, "weights"), after)
+
+
+def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tmp_path: Path) -> None:
+    named = (tmp_path / "sketch" / "none.png").read_bytes()
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.5))
+    painting.move((0.6, 0.5))
+    painting.release()
+    assert (tmp_path / "sketch" / "none.png").read_bytes() == named
+    canvas = painting.canvas
+    assert canvas is not None and canvas.path.parent == tmp_path and painting.files == {canvas.path}
+    assert dict(session.shown.edits.values)["painted.image"] == str(canvas.path)
+    assert any("painting on" in note for note in session.notes)
+    session.drafts.unset("painted.image")
+    assert painting.canvas is None, "the sketch names its own file again"
+    painting.press((0.5, 0.5))
+    assert painting.canvas is not None and painting.canvas.path != canvas.path
+
+
+def shown(tmp_path: Path, engine: Engine, text: str, *files: tuple[str, str]) -> Session:
+    folder = tmp_path / "another"
+    folder.mkdir()
+    write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
+    for name, content in files:
+        (folder / name).write_text(content)
+    (folder / "sketch.toml").write_text(text)
+    made = Session(engine, folder)
+    made.frame((160, 120))
+    assert made.error is None
+    return made
+
+
+def test_land_that_is_not_square_can_be_painted_on(tmp_path: Path, any_engine: Engine) -> None:
+    text = SKETCH.replace("extent = [2000.0, 2000.0]", "extent = [2000.0, 1100.0]")
+    session = shown(tmp_path, any_engine, text)
+    try:
+        painting = Painting(session, tmp_path)
+        painting.toggle()
+        painting.press((0.5, 0.5))
+        painting.release()
+        session.frame((160, 120))
+        assert session.error is None and painting.canvas is not None and painting.canvas.mask.max() > 0.5
+    finally:
+        session.release()
+
+
+FLAT = '#pragma kernel(output = "{}:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+
+
+def test_the_ground_is_that_of_the_height_that_the_view_shows(
+    tmp_path: Path, any_engine: Engine, session: Session
+) -> None:
+    """Neither a later pass that gives a height nor what a height is called leads the brush astray."""
+    wanted = Painting(session, tmp_path).ground((0.42, 0.55))
+    text = SKETCH.replace(
+        "[view]\n", '[[pass]]\nname = "sea_bed"\nuse = "./bed"\n[view]\ninputs = { height = "height" }\n'
+    )
+    other = shown(tmp_path, any_engine, text, ("bed.glsl", FLAT.format("height", "0.0")))
+    try:
+        assert Painting(other, tmp_path).ground((0.42, 0.55)) == wanted
+    finally:
+        other.release()
+
+
+def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.5))
+    painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    canvas.path.unlink()
+    painting.press((0.4, 0.5))
+    painting.release()
+    session.frame((160, 120))
+    assert canvas.path.exists() and session.error is None
+
+
+def test_without_its_mask_the_brush_is_not_in_the_hand(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    assert painting.on
+    text = SKETCH.replace("texturing/alpha_map/mask", "texturing/rock").replace(
+        'set = { image = "none.png" }', ""
+    )
+    (tmp_path / "sketch" / "sketch.toml").write_text(text)
+    session.drafts.reload()
+    session.frame((160, 120))
+    assert session.error is None and not painting.on
+
+
+def weights(session: Session) -> np.ndarray:
+    session.frame((160, 120))
+    assert session.error is None
+    return session.engine.read(session.sketch, "painted")
+
+
+def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
+    session: Session, tmp_path: Path
+) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.4, 0.5))
+    canvas = painting.canvas
+    assert canvas is not None and canvas.mask.shape[:2] == (128, 128), "the size of the pass that reads it"
+    begun = weights(session)
+    file = canvas.path.read_bytes()
+    for place in ((0.45, 0.5), (0.5, 0.5), (0.55, 0.52)):
+        painting.move(place)
+        np.testing.assert_array_equal(weights(session), canvas.pixels / np.float32(255))
+    assert not canvas.saved and canvas.path.read_bytes() == file
+    assert (weights(session) != begun).any()
+    painting.release()
+    assert canvas.saved
+    seen = weights(session)
+    np.testing.assert_array_equal(seen, read_mask(canvas.path, (128, 128)), "as the file says")
+    with Engine(session.engine.ctx, driver=session.engine.driver) as another:
+        np.testing.assert_array_equal(another.read(session.sketch, "painted"), seen, "and any other reader")
+
+
+def test_only_the_part_that_changed_goes_to_the_graphics_card(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.brush = Brush(layer=1, radius=40.0, strength=1.0, softness=0.0)
+    painting.press((0.45, 0.5))
+    weights(session)
+    paint, whole = session.engine.runner.paint, 128 * 128
+    before = paint.uploaded
+    painting.move((0.47, 0.5))
+    weights(session)
+    once = paint.uploaded - before
+    assert 0 < once < 0.05 * whole
+    weights(session)
+    assert paint.uploaded - before == once, "nothing changed"
+    painting.move((0.5, 0.5))
+    painting.move((0.53, 0.5))  # two between two pictures
+    painting.release()
+    np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+    for act in (painting.undo, painting.redo, painting.clear, painting.undo):
+        act()
+        np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+
+
+def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.45, 0.5))
+    painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    weights(session)
+    theirs = np.zeros((128, 128, 4), np.uint8)
+    theirs[:, :, 2] = 255
+    write_png(canvas.path, theirs)
+    session.redraw()
+    np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
+    painting.press((0.45, 0.5))
+    painting.release()
+    found = weights(session)
+    assert (found[..., 2] == 1).mean() > 0.9 and found[..., 3].max() > 0.5
+    np.testing.assert_array_equal(found, canvas.pixels / np.float32(255))
+
+
+@pytest.mark.parametrize("act", ["undo", "clear"])
+def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path: Path, act: str) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    for _ in range(2):
+        painting.press((0.45, 0.5))
+        painting.release()
+    canvas = painting.canvas
+    assert canvas is not None
+    theirs = np.zeros((128, 128, 4), np.uint8)
+    theirs[:, :, 2] = 255
+    write_png(canvas.path, theirs)
+    getattr(painting, act)()
+    np.testing.assert_array_equal(read_png(canvas.path)[0], theirs)
+    np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
+    assert any("was changed by another program" in note for note in session.notes)
+
+
+def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
+    tmp_path: Path, any_engine: Engine
+) -> None:
+    text = SKETCH.replace('set = { image = "none.png" }', 'set = { image = "none.png", texels = [4, 4] }')
+    session = shown(tmp_path, any_engine, text)
+    clock = [0.0]
+    try:
+        painting = Painting(session, tmp_path, lambda: clock[0])
+        painting.toggle()
+        painting.press((0.4, 0.5))
+        canvas = painting.canvas
+        assert canvas is not None and canvas.saved and not session.engine.painted
+        painting.move((0.45, 0.5))
+        assert not canvas.saved
+        clock[0] = 1.0
+        painting.move((0.5, 0.5))
+        assert canvas.saved
+        painting.move((0.55, 0.5))
+        painting.release()
+        assert canvas.saved
+    finally:
+        session.release()
+
+
+def test_changes_since_a_version_are_a_rectangle_around_them(tmp_path: Path) -> None:
+    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    small = Brush(layer=0, radius=20.0, strength=1.0, softness=0.0)
+    assert canvas.changed_since(canvas.version) == (slice(0, 0), slice(0, 0))
+    rng = np.random.default_rng(3)
+    versions = []
+    for _ in range(300):
+        versions.append((canvas.version, canvas.pixels.copy()))
+        place = tuple(rng.uniform(-0.2, 1.2, 2))
+        canvas.paint(place, place, EXTENT, small)
+    for version, before in versions[::17]:
+        rows, columns = canvas.changed_since(version)
+        copy = before.copy()
+        copy[rows, columns] = canvas.pixels[rows, columns]
+        np.testing.assert_array_equal(copy, canvas.pixels)
+
+
+def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    painting.press((0.5, 0.999))
+    painting.move((0.5, 0.998))
+    assert painting.canvas is None and not list(tmp_path.glob("*.png"))
+
+
+def test_the_outline_lies_around_the_place(session: Session, tmp_path: Path) -> None:
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    outline = np.array(painting.outline((0.5, 0.5), 32))
+    assert outline.shape == (32, 2)
+    np.testing.assert_allclose(outline.mean(axis=0), (0.5, 0.5), atol=0.01)
+    assert painting.outline((0.5, 0.999), 32) == []
+
+
+def test_a_sketch_without_a_mask_says_so(tmp_path: Path, any_engine: Engine) -> None:
+    text = SKETCH.replace("texturing/alpha_map/mask", "texturing/rock")
+    (tmp_path / "plain.toml").write_text(text.replace('set = { image = "none.png" }', ""))
+    session = Session(any_engine, tmp_path / "plain.toml")
+    try:
+        session.frame((80, 60))
+        painting = Painting(session, tmp_path)
+        painting.toggle()
+        assert not painting.on and any("no mask to paint on" in note for note in session.notes)
+    finally:
+        session.release()
+
+
+def test_paint_is_a_word_of_files_alone(tmp_path: Path) -> None:
+    head = '#pragma kernel(output = "a:r32f")\n'
+    kernel = tmp_path / "k.glsl"
+    body = "float kernel(ivec2 texel) { return 0.0; }\n"
+    kernel.write_text(f'{head}uniform sampler2D a_mask; //! input("paint")\n{body}')
+    with pytest.raises(ShaderError, match="'paint' is not a way to read a texture"):
+        load(kernel)
