@@ -1,10 +1,10 @@
-"""Every command that the READMEs and the lessons quote runs.
+"""Every command that the documentation and the lessons quote runs.
 
 What is quoted is found in the texts: the lines of shell blocks, and what stands between backticks
 and begins with a program's name. Each is run in a folder of its own that holds the files it speaks
 of, at a small size. A command that opens a window is run twice: without a display, where its
 arguments are read and the missing display is told, and, in the slow tests, in a window under Xvfb.
-What is not run is in NOT_RUN, with its reason.
+What is not run is in NOT_RUN, with its reason; a whole block says it in a comment (see pages.py).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -21,27 +22,32 @@ import pytest
 
 from playground import cli
 
-from .live.screen import ON_LINUX, Program, Screen
+from ..live.screen import ON_LINUX, Program, Screen
+from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
-ROOT = Path(__file__).resolve().parent.parent
 TEXTS = ROOT / "playground" / "lessons" / "texts"
-QUOTING = (ROOT / "README.md", ROOT / "glsl" / "README.md", *sorted(TEXTS.rglob("*.md")))
-FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
-INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`]*)?)`")
-FORM = re.compile(r"[…\[\]]|\b(?:FILE|NAME|PATH|FOLDER|DIR)\b")  # how a command is used, not a command
+LESSONS = tuple(sorted(TEXTS.rglob("*.md")))
+INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`\n]*)?)`")
+FORM = re.compile(  # how a command is used, not a command
+    r"[…\[\]]|\b(?:FILE|NAME|PATH|FOLDER|DIR|COMMAND)\b"
+)
 
 NOT_RUN = {
     r"export \w+=.*": "sets a variable; test_editors.py and test_cache.py read it",
     r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
     r"sudo apt-get .*": "needs a network and an administrator",
-    r"\./play test": "is these tests",
+    r"\./play test( -m slow)?": "is these tests",
     r"pytest -n 2 --dist loadfile": "is these tests, in two processes",
-    r"playground shots review.*": "serves until it is told to stop: tests/report/test_review.py",
+    r"\.venv/bin/.*": "is a step of .ci/run",
+    r"mkdocs .*": "serves until it is stopped, or is built by test_site.py",
+    r"playground shots review.*": "serves until it is stopped: tests/report/test_review.py",
+    r"playground shots accept .*": "needs a shot that failed: tests/report/test_accept.py",
     r"playground reduce my-land --shot morning": "needs a reference that fails: tests/reduce/test_reduce.py",
     r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
     r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
-    r"playground render --video": "names the option; the films of the README are run",
+    r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
+    r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"pytest|pip": "names the program",
 }
@@ -65,27 +71,20 @@ FLIGHT = {
     "values": {},
     "start": None,
 }
-PLASMA = """#version 330
-uniform vec2 iResolution;
-uniform float iTime;
-out vec4 colour;
-void main() { colour = vec4(gl_FragCoord.xy / iResolution, fract(iTime), 1.0); }
-"""
 
 
 def quoted() -> list[str]:
     """Return the commands of all texts, each once, in the order of the texts."""
     found: dict[str, None] = {}
-    for path in QUOTING:
-        text = path.read_text("utf-8")
-        for kind, block in FENCE.findall(text):
-            found |= dict.fromkeys(lines_of(kind, block))
-        for command in INLINE.findall(FENCE.sub("", text)):
-            found[command] = None
-        if TEXTS in path.parents:  # exercises lie in TOML blocks
-            for _, block in FENCE.findall(text):
-                found |= dict.fromkeys(INLINE.findall(block))
-    return [command for command in found if not FORM.search(command)]
+    for path in (*PAGES, *LESSONS):
+        for block in blocks_of(path):
+            if not block.reason:
+                found |= dict.fromkeys(lines_of(block.language, block.text))
+            if path in LESSONS:  # exercises lie in TOML blocks
+                found |= dict.fromkeys(INLINE.findall(block.text))
+        found |= dict.fromkeys(INLINE.findall(outside_of_blocks(path)))
+    once = {re.sub(r"^\./play (?!test)", "playground ", command): command for command in reversed(found)}
+    return [command for command in reversed(once.values()) if not FORM.search(command)]
 
 
 def lines_of(kind: str, block: str) -> Iterator[str]:
@@ -102,7 +101,8 @@ def lines_of(kind: str, block: str) -> Iterator[str]:
 
 def arguments(command: str) -> list[str]:
     """Return what a command gives to the playground; ``./play`` is ``playground``."""
-    return shlex.split(command)[1:]
+    words = shlex.split(command)[1:]
+    return [str(ROOT / word) if word.startswith("glsl/") else word for word in words]
 
 
 def runs_by_playground(command: str) -> bool:
@@ -125,7 +125,8 @@ OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
 WINDOWS = [c for c in OURS if opens_a_window(c)]
 OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
 SLOW = re.compile(
-    r"playground (check|list)$|lesson (build|check)|reduce|fly|variants verify"
+    r"(playground|\./play) (check|list)$|check (hills|--json)|lesson (build|check)|reduce|fly"
+    r"|variants verify|mutants"
     r"|--video|--frames|\.glb|--sweep|20000|--texture"
 )
 
@@ -158,8 +159,13 @@ def furnish(folder: Path, command: str) -> None:
     from playground.templates import make_sketch
 
     words = arguments(command)
+    for title in files():
+        made = title.partition("/")[0]
+        if made in words and words[:1] != ["new"]:
+            write_files(folder, made)
     for name in ("hills", "my-land"):
         if words[:1] != ["new"] and (name in words or (name == "my-land" and words == ["check"])):
+            shutil.rmtree(folder / name, ignore_errors=True)
             made = make_sketch(folder / name)
             if words[0] == "variants":
                 (made / "slope.glsl").write_text(SLOPE, "utf-8")
@@ -181,8 +187,6 @@ def furnish(folder: Path, command: str) -> None:
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
-    if "plasma.frag" in words:
-        (folder / "plasma.frag").write_text(PLASMA, "utf-8")
     for land in ("land.png", "land.r16"):
         if f"height.elevation={land}" in words:
             assert cli.main(["export", "jacksboro", "--to", land]) == 0
@@ -207,6 +211,10 @@ def smaller(words: list[str]) -> list[str]:
         found += ["--seconds", "0.1"]
     if found[0] == "render" and "--size" not in found:
         found += ["--size", "64x36"]
+    if found[:2] == ["shots", "mutants"]:
+        found += ["--size", "64x36", "--mutant", "no-shadow"]
+    if "--again" in found:
+        found[found.index("--again") + 1] = "1"
     if found[:2] in (["variants", "verify"], ["variants", "renew"]) and "my-land" not in found:
         found = ["variants", "verify", "generation/smooth"]  # and nothing is written into the library
     if found == ["check"]:
@@ -273,27 +281,21 @@ def wait_for_a_picture(program: Program) -> None:
     pytest.fail("no picture")
 
 
-# How a command is used, where that is quoted
+# What is named in a text
 
 
-ROWS = re.findall(
-    r"^\| `playground ([a-z]+(?: [a-z]+)?)[^|]*\|[^|]*\|$", QUOTING[0].read_text("utf-8"), re.MULTILINE
-)
+def test_every_option_that_is_named_exists():
+    from typer.main import get_command
 
+    def options(command: object) -> set[str]:
+        own = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}  # type: ignore[attr-defined]
+        return own.union(*map(options, getattr(command, "commands", {}).values()))
 
-@pytest.mark.parametrize("name", sorted(set(ROWS)))
-def test_the_options_in_the_table_of_commands_are_the_commands(name: str, capsys: pytest.CaptureFixture[str]):
-    rows = [
-        line
-        for line in QUOTING[0].read_text("utf-8").splitlines()
-        if line.startswith(f"| `playground {name}")
-    ]
-    known = ""
-    for command in (name.split(), name.split()[:1]):
-        cli.main([*command, "--help"])
-        known += capsys.readouterr().out
-    unknown = {option for row in rows for option in re.findall(r"--[a-z-]+", row) if option not in known}
-    assert not unknown and rows
+    plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
+    known = options(get_command(cli.app)) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    known |= {"--help", "--reuse-window", "--at", "--strict", "--dist", "--check"}  # of other programs
+    named = {o for page in PAGES for o in re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text("utf-8"))}
+    assert named and not named - known - {"--no-install-recommends"}
 
 
 # Programs beside the playground
@@ -316,10 +318,12 @@ SMALL = {
 }
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
 OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
+UPDATE = "pytest hills --shots-update"
 
 
 def test_every_other_program_is_known():
     assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY}
+    assert {"pytest hills", UPDATE} <= set(IN_HILLS)
 
 
 def test_the_truth_is_printed():
@@ -337,12 +341,23 @@ def test_a_program_of_the_checkout_runs(command: str):
 
 @pytest.mark.slow
 def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
-    """As the README has it: no reference fails, an update writes it, and then it passes."""
+    """As the tutorial has it: no reference fails, an update writes it, then it passes; a turned sun fails."""
     assert cli.main(["new", "hills"]) == 0
-    for command, wanted in zip(IN_HILLS, (1, None, 0), strict=True):
+    for command, wanted in (("pytest hills", 1), (UPDATE, None), ("pytest hills", 0)):
         done = run(folder, shlex.split(command))
         assert wanted is None or done.returncode == wanted, done.stdout
     assert list((folder / "hills" / "screenshots").rglob("*.png"))
+    for command in IN_HILLS:
+        if command not in ("pytest hills", UPDATE):
+            done = run(folder, [*shlex.split(command), "--collect-only"])
+            assert done.returncode == 0, done.stdout
+    sketch = folder / "hills" / "sketch.toml"
+    text = sketch.read_text("utf-8")
+    tutorial = (ROOT / "docs" / "tutorials" / "first-screenshot-test.md").read_text("utf-8")
+    before, after = re.findall(r"`(azimuth = [\d.]+)`", tutorial)
+    assert before in text
+    sketch.write_text(text.replace(before, after), encoding="utf-8")
+    assert run(folder, ["pytest", "hills"]).returncode == 1
 
 
 @pytest.mark.slow
@@ -350,4 +365,4 @@ def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
 def test_play_test_finds_what_is_named(command: str):
     """The tests themselves are run elsewhere; an update would write this checkout's references."""
     done = run(ROOT, ["pytest", "--collect-only", "-q", "-m", "", *shlex.split(command)[2:]])
-    assert done.returncode == 0 and "jacksboro" in done.stdout, done.stdout
+    assert done.returncode == 0 and "::" in done.stdout, done.stdout
