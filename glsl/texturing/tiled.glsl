@@ -43,8 +43,8 @@ vec4 kernel(ivec2 texel) {
     float level = log2(float(textureSize(colour, 0).x) / texels);
     // A whole level: a blend of two would cost twice the reads and only blur.
     vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
-    vec3 again = textureLod(colour, TURNED * tile * LARGER,
-                            max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
+    float finer = max(floor(level + log2(LARGER) + 0.5), 0.0);
+    vec3 again = textureLod(colour, TURNED * tile * LARGER, finer).rgb;
     vec3 shown = mix(once, again, 0.5 * variety);
     // The level after the last is the last: one texel, the mean.
     if (detail < 1.0) shown = mix(textureLod(colour, vec2(0.5), 99.0).rgb, shown, detail);
