@@ -9,6 +9,8 @@ from playground.paths import GLSL, SKETCHES
 from playground.sketch.header import parse_kernel
 from playground.sketch.source import read_source
 
+from ..cases import each
+
 TEXTS = sorted(
     p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp") and not p.is_relative_to(SKETCHES)
 )
@@ -22,7 +24,7 @@ def test_there_is_a_library():
     assert "noise/hash.glsl" in LIBRARY and len(LIBRARY) >= 5
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_it_introduces_itself(name):
     lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith(f"// {name} -- ") and lines[0].endswith((".", "?")), (
@@ -37,7 +39,7 @@ def test_it_introduces_itself(name):
     assert [f for f in facts if f in FACTS] == list(FACTS)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_its_tests_are_there(name):
     tested = re.search(r"//   tested +(tests/\S+?\.py)", (GLSL / name).read_text(encoding="utf-8"))
     assert tested, "names the file that tests it"
@@ -47,7 +49,7 @@ def test_its_tests_are_there(name):
     assert (root / tested.group(1)).is_file()
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@each("name", LIBRARY)
 def test_it_holds_no_state(name):
     """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
     source = read_source(GLSL / name, (GLSL,))
@@ -63,7 +65,7 @@ def test_it_holds_no_state(name):
         assert not any(word.startswith("sampler") for word in source.names)
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@each("name", LIBRARY)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
     text = (GLSL / name).read_text(encoding="utf-8")
@@ -72,7 +74,7 @@ def test_it_is_guarded(name):
     assert guard.group(1) == re.sub(r"\W", "_", name.removesuffix(".glsl")).upper()
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@each("name", LIBRARY)
 def test_it_compiles_alone(ctx, name):
     code = read_source(GLSL / name, (GLSL,)).code
     quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
