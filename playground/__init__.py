@@ -47,9 +47,9 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.sketch.find import shipped_sketches as shipped_sketches
     from playground.sketch.load import load as load
     from playground.sketch.model import Camera as Camera
-    from playground.sketch.model import Parameter as Parameter
     from playground.sketch.model import Shot as Shot
     from playground.sketch.model import Sketch as Sketch
+    from playground.sketch.parameter import Parameter as Parameter
     from playground.sketch.techniques import shipped_techniques as shipped_techniques
 
 _HOMES = {
@@ -67,7 +67,7 @@ _HOMES = {
     "shipped_sketches": "playground.sketch.find",
     "shipped_techniques": "playground.sketch.techniques",
     "Camera": "playground.sketch.model",
-    "Parameter": "playground.sketch.model",
+    "Parameter": "playground.sketch.parameter",
     "Shot": "playground.sketch.model",
     "Sketch": "playground.sketch.model",
     "PlainFormWarning": "playground.errors",

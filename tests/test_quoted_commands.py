@@ -31,7 +31,7 @@ INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`]*)?)`")
 FORM = re.compile(r"[…\[\]]|\b(?:FILE|NAME|PATH|FOLDER|DIR)\b")  # how a command is used, not a command
 
 NOT_RUN = {
-    r"export \w+=.*": "sets a variable; tests/live/test_editors.py and tests/commands/test_cache.py read it",
+    r"export \w+=.*": "sets a variable; test_editors.py and test_cache.py read it",
     r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
     r"sudo apt-get .*": "needs a network and an administrator",
     r"\./play test": "is these tests",

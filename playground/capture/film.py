@@ -21,7 +21,6 @@ from playground.api import headless
 from playground.capture.video import QUALITY, Video, alpha_note
 from playground.engine.engine import Engine, opened
 from playground.errors import ParameterError
-from playground.sketch.keyframes import duration
 from playground.sketch.model import Sketch
 
 FPS = 30
@@ -63,7 +62,7 @@ def film_of(
     if not Fraction(1, 60) <= rate <= 1000:
         raise ParameterError(f"{float(fps):g} pictures a second: expected 1/60 to 1000")
     if seconds is None:
-        seconds = duration(found) - start
+        seconds = found.duration - start
         if seconds <= 0.0:
             raise ParameterError(
                 f"how long? sketch {found.name} has no keyframe after {start:g} s; say how many seconds"

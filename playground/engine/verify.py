@@ -36,7 +36,7 @@ from playground.sketch.model import (
 )
 from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import without_variants
-from playground.sketch.wiring import output_names
+from playground.sketch.wiring import initial_names, inner, output_names
 
 SIZES = ((33, 33), (64, 48), (129, 129), (97, 130), (257, 193))
 """Texels; a technique that takes others is drawn at the nearest that it takes."""
@@ -169,7 +169,19 @@ def _subject(technique: Technique) -> str:
 
 def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
-    return stage(technique, _subject(technique), folder, picture, seed=seed)
+    made = stage(technique, _subject(technique), folder, picture, seed=seed)
+    starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
+    passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
+    return replace(made, graph=replace(made.graph, passes=passes))
+
+
+def _starts(technique: Technique, name: str) -> bool:
+    """Say whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
+    if isinstance(technique, Kernel):
+        return technique.kind == "kernel" and name in initial_names(technique)
+    targets = [t.rpartition(".") for e in technique.inputs if e.name == name for t in e.targets]
+    found = [(inner(technique, path), last) for path, _, last in targets]
+    return any(below is not None and _starts(below, last) for below, last in found)
 
 
 def _inside(spec: PassSpec, prefix: str = "") -> Iterator[tuple[str, Technique]]:

@@ -9,6 +9,7 @@ from playground.engine.plan import Plan, PlanNode, Step, Turns, make_plan
 from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
+from playground.sketch.annotation import note_at
 from playground.sketch.flatten import Ref, Source
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
@@ -129,14 +130,13 @@ def written(kernel: Kernel) -> str:
 
 def _lines(source: SourceText) -> list[str]:
     found = []
-    for line in source.lines:
+    for index, line in enumerate(source.lines):
         if line.pragma:
             if not line.chain:
                 found.append(line.pragma)
         elif line.code.strip():
-            note = line.comment.strip() if line.comment.startswith("!") else ""
-            shown = note and line.code.lstrip().startswith("uniform")
-            found.append(f"{line.code}  //{note}" if shown else line.code)
+            note = note_at(source.lines, index).text if line.code.lstrip().startswith("uniform") else ""
+            found.append(f"{line.code}  //! {note}" if note else line.code)
     return found
 
 

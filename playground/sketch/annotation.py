@@ -7,9 +7,10 @@ Which calls there are, and what their arguments mean, is known elsewhere.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
-from playground.errors import nearest
+from playground.errors import ShaderError, nearest
 from playground.sketch.source import Line
 
 _ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
@@ -18,6 +19,36 @@ _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 
 Argument = tuple[str, str]
 """A name, "" where there is none, and a text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """The text of one annotation, and the lines that it stands on."""
+
+    text: str
+    lines: tuple[tuple[int, Line], ...]  # where in the text each line's part begins, and that line
+
+    def line_at(self, position: int) -> Line:
+        """Return the line that a position of the text stands on."""
+        return next(line for start, line in reversed(self.lines) if start <= position)
+
+    def error(self, message: str, word: str, position: int) -> ShaderError:
+        """Return an error that points at a word of the note, which stands at or before a position."""
+        line = self.line_at(position)
+        return line.error(message, line.text.find(word) + 1)
+
+
+def note_at(lines: Sequence[Line], index: int) -> Note:
+    """Return the annotation that begins on a line, with the lines after it that hold ``//!`` alone."""
+    text, found = "", list[tuple[int, Line]]()
+    for line in lines[index:]:
+        goes_on = not line.code and line.file == lines[index].file and line.chain == lines[index].chain
+        if not line.comment.startswith("!") or (found and not goes_on):
+            break
+        text += " " if found else ""
+        found.append((len(text), line))
+        text += line.comment[1:].strip()
+    return Note(text, tuple(found) or ((0, lines[index]),))
 
 
 def arguments(text: str, line: Line) -> list[Argument]:
@@ -37,9 +68,7 @@ def arguments(text: str, line: Line) -> list[Argument]:
     return found
 
 
-def calls(
-    note: str, line: Line, words: Collection[str], bare: Collection[str]
-) -> tuple[dict[str, list[str]], str]:
+def calls(note: Note, words: Collection[str], bare: Collection[str]) -> tuple[dict[str, list[str]], str]:
     """Return (the calls of a note with their arguments, the tooltip that follows them).
 
     ``words`` may be called; those of ``bare`` may also stand alone, as the first word.
@@ -47,13 +76,12 @@ def calls(
     """
     found: dict[str, list[str]] = {}
     position = 0
-    while match := _WORD.match(note, position):
-        word, opens = match.group(1), bool(match.group(2))
-        column = line.text.find(word) + 1
+    while match := _WORD.match(note.text, position):
+        word, opens, start = match.group(1), bool(match.group(2)), match.start(1)
         if word not in words:
             hint = nearest(word, words) if opens else ""
             if opens and (position == 0 or "did you mean" in hint):
-                raise line.error(f"no widget '{word}'{hint}", column)
+                raise note.error(f"no widget '{word}'{hint}", word, start)
             break
         if not opens:
             if position or word not in bare:
@@ -62,17 +90,17 @@ def calls(
             position = match.end()
             continue
         if word in found:
-            raise line.error(f"'{word}' stands twice", column)
-        end = _closing(note, match.end())
+            raise note.error(f"'{word}' stands twice", word, start)
+        end = _closing(note.text, match.end())
         if end < 0:
-            raise line.error(f"'{word}(' is not closed", column)
-        pairs = arguments(note[match.end() : end], line)
+            raise note.error(f"'{word}(' is not closed", word, start)
+        pairs = arguments(note.text[match.end() : end], note.line_at(start))
         for name, _ in pairs:
             if name:
-                raise line.error(f"{word}() takes no '{name} ='", column)
+                raise note.error(f"{word}() takes no '{name} ='", word, start)
         found[word] = [value for _, value in pairs]
         position = end + 1
-    return found, note[position:].strip()
+    return found, note.text[position:].strip()
 
 
 def _closing(text: str, position: int) -> int:

@@ -9,15 +9,32 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Protocol
 
 from playground.errors import ParameterError, nearest
 from playground.sketch.identity import Same
-from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, Parameter, Sketch, Technique, Value
+from playground.sketch.parameter import LARGEST_SIDE, Parameter, Value
+from playground.sketch.technique import Graph, Kernel, Technique
 from playground.sketch.values import coerce, spell
 
 LAND = ("size", "extent", "relief", "base_elevation")
 """What belongs to the sketch itself, and may be set like a parameter."""
+
+
+class Settable(Protocol):
+    """A sketch, as far as its parameters are concerned."""
+
+    @property
+    def name(self) -> str:
+        """Its name, for messages."""
+
+    @property
+    def graph(self) -> Graph:
+        """Its passes."""
+
+    @property
+    def overrides(self) -> tuple[tuple[str, Value], ...]:
+        """Parameter path → value, over what its file sets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +74,7 @@ def all_paths(technique: Technique) -> list[str]:
     return exported + inner
 
 
-def shown_parameters(sketch: Sketch) -> Iterator[Shown]:
+def shown_parameters(sketch: Settable) -> Iterator[Shown]:
     """Yield every parameter of a sketch, pass by pass, exported ones before inner ones.
 
     An inner parameter that an export stands for is not yielded a second time.
@@ -100,20 +117,7 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
     return found
 
 
-def assign(sketch: Sketch, given: Mapping[str, object]) -> Sketch:
-    """Return the sketch with values set over its own; raise ``ParameterError``."""
-    overrides = dict(sketch.overrides)
-    for path, value in given.items():
-        found = check_value(sketch, path, value)
-        if path in LAND:
-            sketch = _with_land(sketch, path, found)
-        else:
-            overrides.pop(path, None)  # what is set last stands last, and wins
-            overrides[path] = found
-    return replace(sketch, overrides=tuple(overrides.items()))
-
-
-def check_value(sketch: Sketch, path: str, given: object) -> Value:
+def check_value(sketch: Settable, path: str, given: object) -> Value:
     """Return a value as the parameter, or the part of the land, takes it; raise ``ParameterError``."""
     if path in LAND:
         return _land_value(path, given)
@@ -158,12 +162,12 @@ def apply(technique: Technique, found: dict[str, Value], values: Iterable[tuple[
             found[target.path] = value
 
 
-def value_of(sketch: Sketch, path: str, found: Mapping[str, Value]) -> Value:
+def value_of(sketch: Settable, path: str, found: Mapping[str, Value]) -> Value:
     """Return the value that a path has, given the sketch's leaf values."""
     return found[resolve(sketch.graph, path)[0].path]
 
 
-def values_of(sketch: Sketch) -> dict[str, Value]:
+def values_of(sketch: Settable) -> dict[str, Value]:
     """Return the value of every leaf parameter of a sketch, overrides included, by its path."""
     found = effective_values(sketch.graph)
     apply(sketch.graph, found, sketch.overrides)
@@ -218,8 +222,3 @@ def _land_value(key: str, given: object) -> Value:
         wanted = "a number of metres, 0 or more" if key == "relief" else "a number of metres"
         raise ParameterError(f"{key} = {spell(given)}: expected {wanted}")
     return values[0]
-
-
-def _with_land(sketch: Sketch, key: str, value: Value) -> Sketch:
-    changes: dict[str, Any] = {key: value}
-    return replace(sketch, **changes)

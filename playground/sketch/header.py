@@ -33,11 +33,13 @@ _IMAGE = re.compile(
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 _KEYS = {
-    "kernel": ("output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
+    "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
     "source": ("name", "output"),
-    "draw": ("mesh", "count", "output", "blend", "depth", "samples", "repeat"),
-    "compute": ("groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned", "agrees"),
+    "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
+    "compute": ("where", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned", "agrees"),
 }
+# The options that may use the names of where.
+_EXPRESSIONS = ("groups", "buffers", "repeat", "count", "visits", "stride", "at_once")
 _EXAMPLES = {
     "kernel": '(output = "height:r32f")',
     "source": '("elevation_file", output = "height:r32f")',
@@ -45,6 +47,8 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
+_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
+_NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
 
 
@@ -75,6 +79,8 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     _refuse_redefined(source)
     parameters, inputs = read_uniforms(source)
     kernel = Kernel(name, kind, source, (), parameters, inputs, title=title_of(source))
+    if "where" in options:
+        options = _with_names_replaced(options, kernel, line)
     if kind == "compute":
         return _compute(kernel, options, line)
     text = options.get("output", "frame:rgba16f" if kind == "draw" else "")
@@ -266,6 +272,28 @@ def _options(kind: str, text: str, line: Line) -> dict[str, str]:
             raise line.error(f"#pragma {kind} gives '{key}' twice")
         found[key] = value
     return found
+
+
+def _with_names_replaced(options: dict[str, str], kernel: Kernel, line: Line) -> dict[str, str]:
+    """Replace the names that ``where`` gives to expressions, in the options that are expressions."""
+    known = (*_SIZE, "iteration", "iterations", "time", *_numbers(kernel))
+    meant: dict[str, str] = {}
+    for part in filter(None, (p.strip() for p in options["where"].split(";"))):
+        name, equals, text = (piece.strip() for piece in part.partition("="))
+        if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            example = "half = size.x // 2 (several parted by ;)"
+            raise line.error(f"where '{part}': expected name = expression, as {example}")
+        if name in known or name in meant or name in _NOT_IN_WHERE or kernel.parameter(name):
+            raise line.error(f"where: the name '{name}' is taken")
+        text = _replaced(text, meant)
+        _check(f"where '{name}'", text, known, line)
+        meant[name] = f"({text})"
+    return {key: _replaced(text, meant) if key in _EXPRESSIONS else text for key, text in options.items()}
+
+
+def _replaced(text: str, meant: dict[str, str]) -> str:
+    # Not a component, as the x of size.x; nor the name or the type of a buffer, which colons follow.
+    return _NAME.sub(lambda match: meant.get(match.group(), match.group()), text)
 
 
 def _outputs(text: str, line: Line) -> tuple[Output, ...]:

@@ -18,13 +18,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 from playground.sketch.assign import resolve
 from playground.sketch.identity import Same
-from playground.sketch.model import Graph, Keyframe, Parameter, Sketch, Value
+from playground.sketch.parameter import Parameter, Value
+from playground.sketch.technique import Graph
 from playground.sketch.values import is_whole
 
 EASES = ("smooth", "linear", "hold")
@@ -32,6 +33,17 @@ EASES = ("smooth", "linear", "hold")
 
 _TURN = 360.0
 _NO_TURN, _CAMERA_TURN = (), (0,)
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """What the camera and some parameters are at a time, and how they go on from there."""
+
+    time: float  # [s]
+    camera: tuple[tuple[str, float | tuple[float, ...]], ...] = ()  # fields of ``Camera`` → value
+    values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
+    ease: str = "smooth"  # smooth | linear | hold: to the next keyframe that says the same thing
+    line: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,23 +105,14 @@ class Track:
         return coming * going / (share * going + (1.0 - share) * coming)
 
 
-def at(sketch: Sketch, time: float) -> Sketch:
-    """Return the sketch with the camera and the values that its keyframes say for a time in seconds.
-
-    What was set by hand, by a preset or by a shot stays as it was set.
-    """
-    if not sketch.keyframes:
-        return sketch
-    cameras, tracks = _tracks(sketch.keyframes, Same(sketch.graph))
-    changes: dict[str, Any] = {name: track.at(time) for name, track in cameras}
-    values = tuple((path, track.at(time)) for path, track in tracks)
-    camera = replace(sketch.camera, **changes) if changes else sketch.camera
-    return replace(sketch, camera=camera, overrides=(*values, *sketch.overrides), keyframes=())
-
-
-def duration(sketch: Sketch) -> float:
-    """Return the time in seconds of the last keyframe; 0 where there is none."""
-    return sketch.keyframes[-1].time if sketch.keyframes else 0.0
+def at(
+    keyframes: tuple[Keyframe, ...], graph: Graph, time: float
+) -> tuple[dict[str, Any], tuple[tuple[str, Value], ...]]:
+    """Return what keyframes say of the camera's fields and of a graph's parameters at a time in seconds."""
+    cameras, tracks = _tracks(keyframes, Same(graph))
+    return {name: track.at(time) for name, track in cameras}, tuple(
+        (path, track.at(time)) for path, track in tracks
+    )
 
 
 @lru_cache(maxsize=64)

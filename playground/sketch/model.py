@@ -1,19 +1,59 @@
-"""What a sketch is made of: frozen values that can be hashed, compared and sent to a child process."""
+"""What a sketch is made of: frozen values that can be hashed, compared and sent to a child process.
+
+Its parts are in ``parameter``, ``technique`` and ``keyframes``; all of them can be imported from here.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
-from playground.errors import ParameterError, ShaderError, SketchError, nearest
-from playground.sketch.agreement import Bound
-from playground.sketch.source import Line, SourceText
+from playground.errors import ParameterError, SketchError, nearest
+from playground.sketch.assign import LAND, check_value
+from playground.sketch.keyframes import Keyframe, at
+from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
+from playground.sketch.technique import (
+    VARIANTS,
+    Buffer,
+    Export,
+    Graph,
+    Input,
+    Kernel,
+    Output,
+    PassSpec,
+    Technique,
+    Variant,
+    kernels_of,
+)
 
-Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
-"""A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
-
-LARGEST_SIDE = 16_384
-"""Texels or pixels that a side may have: what common graphics cards take."""
+__all__ = [
+    "DEFAULT_PICTURE",
+    "DRIVERS",
+    "LARGEST_PICTURE",
+    "LARGEST_SIDE",
+    "VARIANTS",
+    "Buffer",
+    "Camera",
+    "Export",
+    "Follows",
+    "Graph",
+    "Input",
+    "Kernel",
+    "Keyframe",
+    "Output",
+    "Parameter",
+    "PassSpec",
+    "Preset",
+    "Sampling",
+    "Shot",
+    "Sketch",
+    "Technique",
+    "Value",
+    "Variant",
+    "Widget",
+    "kernels_of",
+]
 
 LARGEST_PICTURE = 65_536
 """Pixels that a side of a picture drawn in parts may have: so far, single precision tells pixels apart."""
@@ -23,252 +63,6 @@ DEFAULT_PICTURE = (1280, 720)
 
 DRIVERS = ("auto", "fragment", "compute")
 """What may run kernels; "auto" takes for each the one that it gains by."""
-
-VARIANTS = ("compute", "passes")
-"""The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
-
-
-@dataclass(frozen=True, slots=True)
-class Widget:
-    """How a parameter is shown and what it may be."""
-
-    kind: str = "number"  # a row of sketch/widgets.py
-    low: float | None = None  # None: unbounded
-    high: float | None = None
-    choices: tuple[str, ...] = ()  # of a menu
-
-
-@dataclass(frozen=True, slots=True)
-class Sampling:
-    """How a texture is read."""
-
-    filter: str = "nearest"  # nearest | linear
-    wrap: str = "clamp"  # clamp | repeat
-    mipmap: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Follows:
-    """An angle that takes a direction's azimuth while it has its default."""
-
-    direction: str  # a parameter of the same file
-    menu: str = ""  # likewise; "" where it always follows
-    choice: int = 0  # of the menu, while it follows
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """A uniform with its ``//!`` annotation."""
-
-    name: str
-    type: str  # GLSL: float int uint bool vec2..4 ivec2..4 uvec2..4, or sampler2D for a file
-    default: Value
-    widget: Widget = Widget()
-    step: float | None = None
-    unit: str = ""
-    group: str = ""
-    label: str = ""
-    tooltip: str = ""
-    sampling: Sampling = Sampling()  # of a file
-    painted: bool = False  # a file that may be painted on in the window
-    follows: Follows | None = None  # where its value comes from while nobody sets it
-    parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
-    file: str = ""
-    line: int = 0
-
-    @property
-    def title(self) -> str:
-        """What a panel writes beside it."""
-        return self.label or self.name.replace("_", " ").capitalize()
-
-
-@dataclass(frozen=True, slots=True)
-class Input:
-    """A texture that a kernel reads."""
-
-    name: str
-    sampling: Sampling = Sampling()
-    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
-    line: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """A texture that a kernel writes."""
-
-    name: str
-    format: str  # r8 r16 r16f r32f and their rg and rgba forms
-
-    @property
-    def components(self) -> int:
-        """Channels of a texel."""
-        return 4 if self.format.startswith("rgba") else 2 if self.format.startswith("rg") else 1
-
-    @property
-    def glsl(self) -> str:
-        """The GLSL type of a texel."""
-        return {1: "float", 2: "vec2", 4: "vec4"}[self.components]
-
-
-@dataclass(frozen=True, slots=True)
-class Buffer:
-    """A storage buffer of a compute variant."""
-
-    name: str
-    type: str  # GLSL scalar or vec4
-    count: str  # expression
-
-
-@dataclass(frozen=True)
-class Kernel:
-    """One GLSL file that can be run: a kernel, a source, a draw, a compute variant or a plain shader."""
-
-    name: str  # "generation/diamond_square"
-    kind: str  # kernel | source | draw | compute | plain_fragment | plain_compute
-    source: SourceText
-    outputs: tuple[Output, ...]
-    parameters: tuple[Parameter, ...] = ()
-    inputs: tuple[Input, ...] = ()
-    repeat: str = "1"
-    accepts: str = ""
-    visits: str = ""
-    stride: str = ""  # after a turn, only texels at multiples of it are known
-    between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
-    at_once: str = "1"  # turns that one run may take
-    registry: str = ""  # of a source or a draw: the name of the source or mesh
-    blend: str = "none"
-    depth: str = "less"
-    count: str = ""  # of a draw: elements of a mesh that has no size of its own
-    samples: int = 0  # of a draw: samples a pixel; 0: the view's
-    groups: str = ""  # of a compute variant
-    local: tuple[int, int] = (8, 8)
-    buffers: tuple[Buffer, ...] = ()
-    aligned: int = 8  # bytes that rows of an output's buffer are filled up to
-    stages: tuple[int, ...] = ()  # of a compute variant: what each of its turns does
-    overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
-    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
-    title: str = ""  # the sentence that the file begins with
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
-
-    @property
-    def path(self) -> str:
-        """Absolute path of the file."""
-        return self.source.path
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Absolute paths of every file the kernel is made of."""
-        return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
-
-    @property
-    def pragma(self) -> Line | None:
-        """The line of its header; a plain shader has none."""
-        return next((line for line in self.source.lines if line.pragma and not line.chain), None)
-
-    def error(self, message: str) -> ShaderError:
-        """Return an error that points at its header."""
-        line = self.pragma
-        return line.error(message) if line else ShaderError(message, file=self.path)
-
-    def parameter(self, name: str) -> Parameter | None:
-        """Return the parameter of that name, if there is one."""
-        return next((p for p in self.parameters if p.name == name), None)
-
-    def reads(self, given: str) -> bool:
-        """Say whether the text names something that the engine gives."""
-        return given in self.source.names
-
-    @property
-    def needs_inputs(self) -> tuple[str, ...]:
-        """Inputs that must be wired."""
-        return tuple(i.name for i in self.inputs if not i.fallback)
-
-
-@dataclass(frozen=True, slots=True)
-class Export:
-    """A name that a technique of several passes shows outside, and what it stands for inside."""
-
-    name: str
-    targets: tuple[str, ...]  # paths inside; the first gives annotation and default
-    line: int = 0
-
-
-@dataclass(frozen=True)
-class PassSpec:
-    """A ``[[pass]]`` of a TOML file, with the technique that fills it."""
-
-    name: str
-    use: str
-    technique: Technique
-    inputs: tuple[tuple[str, str], ...] = ()  # input → "pass[.inner…][:output]"
-    values: tuple[tuple[str, Value], ...] = ()  # parameter path inside the technique → value
-    size: tuple[str, str] | None = None  # expressions; None: the size of what it stands in
-    repeat: str = ""
-    feedback: tuple[tuple[str, str], ...] = ()  # input → own output
-    file: str = ""
-    line: int = 0
-    set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
-
-    def error(self, message: str) -> SketchError:
-        """Return an error that points at this pass."""
-        return SketchError(message, file=self.file, line=self.line)
-
-
-@dataclass(frozen=True)
-class Graph:
-    """A technique of several passes; a sketch is one too."""
-
-    name: str
-    path: str  # absolute path of its TOML
-    passes: tuple[PassSpec, ...]
-    parameters: tuple[Export, ...] = ()
-    inputs: tuple[Export, ...] = ()
-    outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
-    title: str = ""
-    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique beside it
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
-    line: int = 0  # of its outputs
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Absolute paths of every file the technique is made of."""
-        found = dict.fromkeys([self.path])
-        for spec in self.passes:
-            found |= dict.fromkeys(spec.technique.files)
-        for variant in self.variants:
-            found |= dict.fromkeys(variant.files)
-        return tuple(found)
-
-    def find(self, name: str) -> PassSpec | None:
-        """Return the pass of that name, if there is one."""
-        return next((p for p in self.passes if p.name == name), None)
-
-
-Technique = Kernel | Graph
-
-
-@dataclass(frozen=True)
-class Variant:
-    """A fast variant: another form of a technique, that gives the same within a stated bound."""
-
-    technique: Technique  # of a .comp its kernel, of a .fast.toml its passes
-    verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
-    record: str = ""  # absolute path of the user's file that says so; "" where there is none
-
-    @property
-    def kind(self) -> str:
-        """One of ``VARIANTS``."""
-        return "passes" if isinstance(self.technique, Graph) else "compute"
-
-    @property
-    def path(self) -> str:
-        """Absolute path of its file."""
-        return self.technique.path
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Absolute paths of every file that it is made of."""
-        return (*self.technique.files, *filter(None, [self.record]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,17 +98,6 @@ class Preset:
 
     name: str
     values: tuple[tuple[str, Value], ...]
-
-
-@dataclass(frozen=True)
-class Keyframe:
-    """What the camera and some parameters are at a time, and how they go on from there."""
-
-    time: float  # [s]
-    camera: tuple[tuple[str, float | tuple[float, ...]], ...] = ()  # fields of ``Camera`` → value
-    values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
-    ease: str = "smooth"  # smooth | linear | hold: to the next keyframe that says the same thing
-    line: int = 0
 
 
 @dataclass(frozen=True)
@@ -359,9 +142,15 @@ class Sketch:
         ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well.
         Raises ``ParameterError`` naming the nearest path or the range.
         """
-        from playground.sketch.assign import assign  # it needs this module
-
-        return assign(self, values)
+        overrides, terrain = dict(self.overrides), dict[str, Any]()
+        for path, given in values.items():
+            found = check_value(self, path, given)
+            if path in LAND:
+                terrain[path] = found
+            else:
+                overrides.pop(path, None)  # what is set last comes last, and wins
+                overrides[path] = found
+        return replace(self, overrides=tuple(overrides.items()), **terrain)
 
     def with_camera(self, camera: Camera) -> Sketch:
         """Return the sketch seen by another camera, whatever its keyframes say of theirs."""
@@ -373,10 +162,20 @@ class Sketch:
         return replace(self, plain=plain)
 
     def at(self, time: float) -> Sketch:
-        """Return the sketch as its keyframes make it at a time in seconds, and without them."""
-        from playground.sketch.keyframes import at  # it needs this module
+        """Return the sketch as its keyframes make it at a time in seconds, and without them.
 
-        return at(self, time)
+        What the user, a preset or a shot has set stays as it was set.
+        """
+        if not self.keyframes:
+            return self
+        changes, values = at(self.keyframes, self.graph, time)
+        camera = replace(self.camera, **changes) if changes else self.camera
+        return replace(self, camera=camera, overrides=(*values, *self.overrides), keyframes=())
+
+    @property
+    def duration(self) -> float:
+        """The time in seconds of the last keyframe; 0 where there is none."""
+        return self.keyframes[-1].time if self.keyframes else 0.0
 
     def with_preset(self, name: str) -> Sketch:
         """Return the sketch with a preset's values; raise ``ParameterError`` if there is no such preset."""
@@ -394,12 +193,3 @@ class Sketch:
         if shot.samples is not None:
             sketch = replace(sketch, samples=shot.samples)
         return sketch
-
-
-def kernels_of(technique: Technique, prefix: str = "") -> Iterator[tuple[str, Kernel]]:
-    """Yield (path, kernel) of every kernel a technique is made of, in the order of the files."""
-    if isinstance(technique, Kernel):
-        yield prefix, technique
-        return
-    for spec in technique.passes:
-        yield from kernels_of(spec.technique, f"{prefix}.{spec.name}" if prefix else spec.name)

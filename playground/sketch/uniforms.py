@@ -12,8 +12,10 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from playground.errors import Diagnostic, ParameterError, nearest
+from playground.paths import shown
 from playground.sketch import values
 from playground.sketch.annotation import calls as read_calls
+from playground.sketch.annotation import note_at
 from playground.sketch.follows import read_follows
 from playground.sketch.model import Input, Parameter, Sampling, Value, Widget
 from playground.sketch.reserved_names import (
@@ -63,7 +65,7 @@ def read_uniforms(
     inputs: list[Input] = []
     seen: dict[str, Line] = {}
     following: list[tuple[int, list[str], Line]] = []  # which parameter, what it follows
-    for line in source.lines:
+    for index, line in enumerate(source.lines):
         match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
         if not plain:
             _check_declaration(line, match)
@@ -82,10 +84,10 @@ def read_uniforms(
             # A file that is included twice stands here twice; its guard leaves one to the driver.
             if (seen[name].file, seen[name].number) == (line.file, line.number):
                 continue
-            raise line.error(f"'{name}' is declared twice")
+            first = f"{shown(seen[name].file)}:{seen[name].number}"
+            raise line.error(f"'{name}' is declared twice: first at {first}")
         seen[name] = line
-        note = line.comment[1:] if line.comment.startswith("!") else ""
-        calls, tooltip = read_calls(note, line, _ROLES | _MODIFIERS, _BARE)
+        calls, tooltip = read_calls(note_at(source.lines, index), _ROLES | _MODIFIERS, _BARE)
         if glsl_type == "sampler2D":
             item = _sampler(name, calls, tooltip, line)
             if isinstance(item, Input) and plain:
@@ -101,9 +103,9 @@ def read_uniforms(
             parameters.append(_parameter(name, glsl_type, initial, calls, tooltip, line))
         else:
             raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
-    for index, words, line in following:
-        found = read_follows(parameters[index], words, parameters, line)
-        parameters[index] = replace(parameters[index], follows=found)
+    for number, words, line in following:
+        found = read_follows(parameters[number], words, parameters, line)
+        parameters[number] = replace(parameters[number], follows=found)
     return tuple(parameters), tuple(inputs)
 
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from playground.errors import Diagnostic
 from playground.sketch.model import Kernel, kernels_of
 
 
 def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return a warning for each parameter and input of a kernel's own file that nothing reads.
+    """Return a warning for each parameter and input of a kernel that nothing reads.
 
-    What a fast variant, a pragma or a macro reads counts as read. Uniforms of included files are
-    left alone, for a library serves many; so are sources and draws, whose uniforms the engine reads.
+    Included declarations count, at their own file and line. What a fast variant, a pragma or a macro
+    reads counts as read. Sources and draws are left alone: the engine reads their uniforms.
     """
     if kernel.kind in ("source", "draw"):
         return ()
@@ -28,7 +27,7 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
             continue
         for line in kernel.source.lines:
             match = re.search(declared, line.code)
-            if match and Path(line.file) == Path(kernel.source.path):
+            if match:
                 column = match.start() + match[0].index(name) + 1
                 found.append(
                     line.diagnostic(f"nothing reads '{name}', so it has no effect", column, "warning")

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 
 from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
-from playground.sketch.model import Parameter, Value
+from playground.sketch.parameter import Parameter, Value
 from playground.sketch.widgets import VECTORS, WIDGETS
 
 _LENGTH = {vector: int(vector[-1]) for vector in VECTORS}

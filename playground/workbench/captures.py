@@ -22,7 +22,6 @@ from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
-from playground.sketch.keyframes import duration
 from playground.sketch.model import LARGEST_PICTURE, LARGEST_SIDE, Parameter, Sketch
 from playground.sketch.values import is_whole, length_of
 
@@ -159,7 +158,7 @@ def job_of(wish: Wish, actions: Actions) -> Job:
 
 def seconds_of(wish: Wish, sketch: Sketch) -> float:
     """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
-    left = duration(sketch) - wish.start
+    left = sketch.duration - wish.start
     return wish.seconds if wish.seconds > 0.0 else left if left > 0.0 else 10.0
 
 

@@ -485,9 +485,9 @@ def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp
     using = {
         p.relative_to(ROOT / "playground").as_posix()
         for p in (ROOT / "playground").rglob("*.py")
-        if "store" in (text := p.read_text("utf-8")) and "engine.store" in text
+        if "engine.disk_cache" in p.read_text("utf-8")
     }
-    assert {name.partition("/")[0] for name in using} == {"commands", "engine", "live"}
+    assert {name.partition("/")[0] for name in using} == {"commands", "engine", "workbench"}
     assert {name for name in using if name.startswith("commands")} == {
         "commands/cache.py",
         "commands/doctor.py",

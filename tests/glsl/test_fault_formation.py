@@ -146,7 +146,7 @@ def test_a_line_parts_the_corners_even_through_one_point_twice(on_gpu):
     first, second = np.concatenate([first, ends[:-1]]), np.concatenate([second, ends[1:]])
     assert (first == second).all(axis=1).sum() > 1000
     corners = [
-        on_gpu(LINE, f"int(is_raised(fault_line(p, q), {corner} * LAND_SIDE))", p=first, q=second)
+        on_gpu(LINE, f"int(is_raised(fault_line(p, q), {corner} * PLACES))", p=first, q=second)
         for corner in ("ivec2(0, 0)", "ivec2(1, 0)", "ivec2(0, 1)", "ivec2(1, 1)")
     ]
     assert set(np.sum(corners, axis=0)) <= {1, 2, 3}

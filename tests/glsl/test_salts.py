@@ -12,7 +12,9 @@ from playground.sketch.source import read_source
 from playground.terrain import delaunay
 
 SALT = re.compile(r'^const uint \w*SALT = 0x([0-9a-f]{8})u;  // CRC-32 of "([^"]+)"$', re.M)
-DRAWS = re.compile(r"\b(hash3|random|random_pair|random_signed|lattice_seed|perlin|simplex|\w+_periodic)\(")
+DRAWS = re.compile(
+    r"\b(hash3|random|random_pair|random_signed|lattice_seed|seed_of_layer|perlin|simplex|\w+_periodic)\("
+)
 FILES = [path for end in ("glsl", "comp") for path in sorted(GLSL.rglob(f"*.{end}"))]
 WINDOW = 2**20
 """Seeds go up to 9999, times 64 in some materials, and each has some numbers more for its layers."""
@@ -63,7 +65,9 @@ def test_whoever_draws_has_a_salt():
         if not DRAWS.search(re.sub(r"//.*", "", text)) and "octaves_seed" not in own:
             continue
         seen += 1
-        assert re.search(r"\b\w*SALT\b|\boctaves_seed\(", text), f"{name} draws without a salt"
+        assert re.search(r"\b\w*SALT\b|\b(octaves_seed|seed_of_layer)\(", text), (
+            f"{name} draws without a salt"
+        )
     assert seen > 20
 
 

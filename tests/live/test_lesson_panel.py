@@ -16,7 +16,7 @@ from playground.sketch.find import find
 from playground.workbench.lesson.links import follow
 
 from .lesson_desk import Desk, shelved
-from .test_lesson_stage import FILE, OWN, value
+from .test_lesson_figures import FILE, OWN, value
 
 
 @pytest.fixture

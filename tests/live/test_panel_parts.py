@@ -1,333 +1,137 @@
-"""The panel's pure parts: what it lists, what is typed, values by chance, undo."""
+"""The window's pure parts: numbers, the sky's disc, gestures, names of pictures."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from playground.errors import ParameterError
-from playground.sketch.load import load
+from playground.engine.frame import Frame
+from playground.errors import DataError
+from playground.live.dome import direction_at, dot_of
+from playground.live.widgets import CONTROLS
 from playground.sketch.model import Camera, Parameter, Widget
-from playground.sketch.values import coerce, tidied
-from playground.workbench.edits import Draft, Edits
-from playground.workbench.history import History, applied, edits_of, in_words, state_of
-from playground.workbench.parameter_list import Filter, Listing, set_words
-from playground.workbench.randomise import at_random, mutated
-from playground.workbench.typed_values import read_typed
-
-KERNEL = """// land.glsl -- level land
-#pragma kernel(output = "height:r32f")
-uniform float level = 0.5; //! slider(0, 1) How high it lies
-uniform float other = 0.5; //! slider(0, 1) group("More") label("Beside it")
-float kernel(ivec2 texel) { return level + other; }
-"""
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./both"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
-BOTH = '[[pass]]\nname = "inner"\nuse = "./land"\n[parameters]\nhigh = "inner.level"\n'
+from playground.sketch.widgets import WIDGETS
+from playground.terrain.camera import look
+from playground.workbench.camera_drag import Gesture, steered
+from playground.workbench.error_excerpt import numbered, short_place
+from playground.workbench.number_format import decimals, format_of, snapped
+from playground.workbench.snapshot import save_new
 
 
-@pytest.fixture
-def draft(tmp_path: Path) -> Draft:
-    for name, text in {"land.glsl": KERNEL, "sketch.toml": SKETCH, "both.toml": BOTH}.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    sketch = load(tmp_path)
-    return Draft(sketch, sketch)
-
-
-# ── what is listed ───────────────────────────────────────────────────────────
-
-
-def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
-    height, view = Listing().sections(draft)
-    assert (height.name, view.name) == ("height", "view")
-    assert [(g.name, [i.path for i in g.items]) for g in height.groups] == [("", ["height.high"])]
-    ((heading, (group,)),) = height.inner
-    assert (heading, group.name, group.items[0].path) == ("inner", "More", "height.inner.other")
+def test_every_widget_of_an_annotation_has_a_control():
+    assert CONTROLS.keys() == WIDGETS.keys()
 
 
 @pytest.mark.parametrize(
-    ("search", "found"),
+    ("parameter", "form"),
     [
-        ("high", {"height.high"}),  # name
-        ("BESIDE", {"height.inner.other"}),  # label
-        ("lies how", {"height.high"}),  # description, in any order
-        ("more", {"height.inner.other"}),  # group
-        ("inner other", {"height.inner.other"}),  # path
-        ("nothing like it", set()),
+        (Parameter("a", "float", 0.0, Widget("slider", 0, 1), step=0.01), "%.2f"),
+        (Parameter("a", "float", 0.0, Widget("slider", 0, 1), step=0.125, unit="m"), "%.3f m"),
+        (Parameter("a", "float", 0.0, Widget("slider", 0, 1)), "%.3f"),
+        (Parameter("a", "float", 0.0, Widget("slider", 0, 5000), unit="%"), "%.0f%%"),
+        (Parameter("a", "float", 0.0, Widget("angle", -360, 360)), "%.1f°"),
+        (Parameter("a", "float", 0.0, Widget("log_slider", 0.01, 1000), unit="1/m"), "%.4g 1/m"),
+        (Parameter("a", "int", 0, Widget("slider", 0, 9), unit="m"), "%d m"),
     ],
 )
-def test_a_search_finds_every_word_somewhere(draft: Draft, search: str, found: set[str]) -> None:
-    kept = Listing().filtered(draft, Filter(search))
-    assert {i.path for section in kept.values() for i in section.items if section.name == "height"} == found
+def test_a_number_is_written_as_finely_as_it_can_be_set(parameter: Parameter, form: str) -> None:
+    assert format_of(parameter) == form
 
 
-def test_what_is_changed_by_any_name_is_marked_and_found(draft: Draft) -> None:
-    listing = Listing()
-    by_leaf = draft.with_edits(Edits((("height.inner.level", 0.75),)))
-    assert listing.values(by_leaf).changed == {"height.high"}
-    assert listing.values(by_leaf).of["height.high"] == 0.75
-    assert set(listing.filtered(by_leaf, Filter(changed=True))) == {"height"}
-    same = draft.with_edits(Edits((("height.high", 0.5),)))
-    assert listing.values(same).changed == frozenset(), "set, but to what the file says"
-    assert listing.filtered(same, Filter(changed=True)) == {}
+def test_a_number_keeps_to_its_steps_and_its_range() -> None:
+    parameter = Parameter("a", "float", 0.0, Widget("slider", 0.05, 1.0), step=0.1)
+    assert snapped(parameter, 0.312) == pytest.approx(0.35)
+    assert snapped(parameter, 0.999) == 0.95 or snapped(parameter, 0.999) == 1.0
+    assert snapped(parameter, -4.0) == 0.05
+    assert decimals(parameter) == 1
 
 
-def test_what_is_set_can_be_set_again_on_the_command_line(draft: Draft) -> None:
-    edited = draft.with_edits(Edits((("height.high", 0.75), ("height.inner.other", 0.1), ("size", (17, 17)))))
-    words = set_words(edited, Listing().values(edited)).split()
-    assert words[::2] == ["--set"] * 3
-    pairs = dict(word.split("=") for word in words[1::2])
-    assert draft.file.with_values(pairs) == edited.sketch
+def test_the_middle_of_the_sky_is_the_zenith_and_its_rim_the_horizon() -> None:
+    assert dot_of(123.0, 90.0) == pytest.approx((0.0, 0.0))
+    assert dot_of(90.0, 0.0) == pytest.approx((1.0, 0.0))
+    assert dot_of(0.0, 0.0) == pytest.approx((0.0, 1.0))
+    assert dot_of(180.0, -40.0) == pytest.approx((0.0, -1.0), abs=1e-12)
 
 
-# ── what is typed ────────────────────────────────────────────────────────────
-
-ANGLE = Parameter("a", "float", 0.0, Widget("slider", 0, 10))
-WHOLE = Parameter("a", "int", 0, Widget("slider", 0, 9))
-PAIR = Parameter("a", "vec2", (0.0, 0.0))
-MENU = Parameter("a", "int", 0, Widget("menu", choices=("soft", "hard")))
+@pytest.mark.parametrize("azimuth", [0.0, 45.0, 135.0, 250.0, 359.0])
+@pytest.mark.parametrize("elevation", [0.0, 10.0, 60.0])
+def test_a_dot_gives_back_its_direction(azimuth: float, elevation: float) -> None:
+    assert direction_at(*dot_of(azimuth, elevation)) == pytest.approx((azimuth, elevation), abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("parameter", "text", "value"),
-    [
-        (ANGLE, "pi/4", math.pi / 4),
-        (ANGLE, " 2 * 3.5 ", 7.0),
-        (WHOLE, "2**3", 8),
-        (PAIR, "1/4, max(1, 2)", (0.25, 2.0)),
-        (MENU, "hard", 1),
-        (Parameter("a", "vec3", (0.0, 0.0, 0.0), Widget("colour")), "#ff0000", (1.0, 0.0, 0.0)),
-    ],
-)
-def test_a_value_may_be_typed_as_an_expression(parameter: Parameter, text: str, value: object) -> None:
-    found = read_typed(parameter, text, "p.a")
-    assert found == value and type(found) is type(value)
+def test_a_dot_outside_the_disc_is_on_the_horizon() -> None:
+    assert direction_at(7.0, 0.0) == pytest.approx((90.0, 0.0))
 
 
-@pytest.mark.parametrize(
-    ("parameter", "text", "said"),
-    [
-        (ANGLE, "11", "outside its range 0 to 10"),
-        (ANGLE, "1/0", "division by zero"),
-        (ANGLE, "__import__('os')", "p.a"),
-        (ANGLE, "pie", "did you mean 'pi'"),
-        (WHOLE, "1/2", "expected a whole number"),
-        (PAIR, "1", "expected 2 numbers"),
-        (MENU, "hrad", "did you mean 'hard'"),
-    ],
-)
-def test_what_cannot_be_taken_is_said(parameter: Parameter, text: str, said: str) -> None:
-    with pytest.raises(ParameterError, match=r"p\.a") as caught:
-        read_typed(parameter, text, "p.a")
-    assert said in str(caught.value)
+def test_lines_are_numbered_their_indentation_goes_and_a_mark_is_below_the_column() -> None:
+    lines = [(9, "    float a;"), (10, "\tfloat x = foo;"), (11, "")]
+    rows, wrong = numbered(lines, 10, 12, 60)
+    assert rows == [" 9 | float a;", "10 | float x = foo;", "   |           ^", "11 |"]
+    assert wrong == 1
+    assert numbered(lines, 10, 0, 60)[0] == [" 9 | float a;", "10 | float x = foo;", "11 |"]
 
 
-def test_a_number_of_the_graphics_card_is_written_short() -> None:
-    for value in (0.37, 1e-7, -2.5, 123456.7, 0.1 + 0.2):
-        short = tidied(float(np.float32(value)))
-        assert np.float32(short) == np.float32(value) and len(repr(short)) <= 12
+@pytest.mark.parametrize("column", [1, 40, 120, 200])
+def test_a_long_line_is_cut_around_its_column(column: int) -> None:
+    line = "".join(chr(97 + n % 26) for n in range(200))
+    rows, wrong = numbered([(4, "short"), (5, line), (6, "")], 5, column, 44)
+    assert all(len(row) <= 44 for row in rows)
+    assert rows[wrong][rows[wrong + 1].index("^")] == line[column - 1]
 
 
-# ── chance ───────────────────────────────────────────────────────────────────
-
-MANY = [
-    ("p.slider", Parameter("slider", "float", 0.5, Widget("slider", 0.0, 1.0), step=0.25)),
-    ("p.log", Parameter("log", "float", 1.0, Widget("log_slider", 0.01, 100.0))),
-    ("p.count", Parameter("count", "int", 3, Widget("slider", 1, 9))),
-    ("p.kind", Parameter("kind", "int", 0, Widget("menu", choices=("a", "b", "c")))),
-    ("p.on", Parameter("on", "bool", True, Widget("checkbox"))),
-    ("p.sun", Parameter("sun", "vec2", (135.0, 40.0), Widget("direction"))),
-    ("p.tint", Parameter("tint", "vec4", (0.2, 0.3, 0.1, 0.5), Widget("colour"))),
-    ("p.at", Parameter("at", "vec2", (0.5, 0.5), Widget("point", 0.0, 1.0))),
-]
-FREE = ("p.free", Parameter("free", "float", 2.0))
-FILE = ("p.file", Parameter("file", "sampler2D", "x.png", Widget("file")))
+def test_places_are_named_from_the_sketchs_folder(tmp_path: Path) -> None:
+    inside = tmp_path / "inc" / "wave.glsl"
+    assert short_place(f"{inside}:2:7", str(tmp_path)) == "inc/wave.glsl:2:7"
+    assert short_place("glsl/noise/hash.glsl:3", str(tmp_path)) == "glsl/noise/hash.glsl:3"
 
 
-def test_chance_stays_in_the_ranges_and_repeats_itself() -> None:
-    parameters = dict(MANY)
-    seen: dict[str, list[object]] = {path: [] for path in parameters}
-    for seed in range(200):
-        values = at_random([*MANY, FREE, FILE], seed)
-        assert values.keys() == parameters.keys() and values == at_random(MANY[::-1], seed)
-        for path, value in values.items():
-            assert coerce(parameters[path], value, path) == value
-            seen[path].append(value)
-    assert set(seen["p.slider"]) == {0.0, 0.25, 0.5, 0.75, 1.0}
-    assert set(seen["p.kind"]) == {0, 1, 2} and set(seen["p.on"]) == {True, False}
-    assert set(seen["p.count"]) == set(range(1, 10))
-    below = sum(float(v) < 1.0 for v in seen["p.log"])  # type: ignore[arg-type]
-    assert 70 <= below <= 130, "half of a logarithmic slider's way lies below its middle"
-    assert all(tint[3] == 0.5 for tint in seen["p.tint"])  # type: ignore[index]
+CAMERA = Camera(azimuth=200.0, elevation=30.0, distance=1000.0)
+EYE = look(CAMERA, (1000.0, 1000.0), 100.0, (640, 480))
 
 
-def test_a_mutation_stays_near_and_goes_farther_with_its_strength() -> None:
-    parameters = dict([*MANY, FREE])
-    values = {path: p.default for path, p in parameters.items()}
-
-    def way(strength: float) -> float:
-        gone = []
-        for seed in range(200):
-            found = mutated([*MANY, FREE, FILE], values | {"p.file": "x.png"}, seed, strength)
-            assert found.keys() == parameters.keys()
-            assert all(coerce(parameters[path], v, path) == v for path, v in found.items())
-            gone.append(abs(math.log10(float(found["p.log"]))) / 4)  # type: ignore[arg-type]
-        return float(np.mean(gone))
-
-    # The mean of a normal distribution's absolute value is 0.798 of its deviation.
-    assert way(0.05) == pytest.approx(0.798 * 0.05, rel=0.15)
-    assert way(0.01) == pytest.approx(0.798 * 0.01, rel=0.15)
+def project(camera: Camera, point: tuple[float, float, float]) -> np.ndarray:
+    """Return where a point of the land is in the picture: right and up, -1..1."""
+    clip = look(camera, (1000.0, 1000.0), 100.0, (640, 480)).clip_from_world @ np.array([*point, 1.0])
+    return clip[:2] / clip[3]
 
 
-# ── undo ─────────────────────────────────────────────────────────────────────
+@pytest.mark.parametrize("panning", [False, True])
+def test_the_land_follows_the_hand(panning: bool) -> None:
+    # A point between the eye and the middle: it is on the near side of the turn.
+    near = tuple(0.7 * t + 0.3 * p for t, p in zip(EYE.target, EYE.position, strict=True))
+    point = (near[0], near[1], 50.0)
+    gesture = Gesture(480, across=30, down=12, orbiting=not panning, panning=panning)
+    moved = project(steered(CAMERA, EYE, gesture), point) - project(CAMERA, point)
+    assert moved[0] > 0, "to the right"
+    assert moved[1] < 0, "downwards"
 
 
-class Desk:
-    """A history, and the edits that it follows; a second passes in each turn."""
-
-    def __init__(self) -> None:
-        self.history, self.edits, self.now, self.file = History(), Edits(), 0.0, object()
-        self.turn()
-
-    def turn(self, held: bool = False, seconds: float = 1.0) -> None:
-        self.now += seconds
-        self.history.look(self.edits, {}, self.file, held=held, now=self.now)
-
-    def set(self, path: str, value: float, **how: float) -> None:
-        self.edits = self.edits.with_value(path, value)
-        self.turn(**how)  # type: ignore[arg-type]
-
-    def take(self, changes: object) -> None:
-        self.edits = edits_of(applied(state_of(self.edits, {}), changes))  # type: ignore[arg-type]
-        self.history.settle(self.edits, {})
-        self.turn()
+def test_the_wheel_brings_the_land_nearer_and_back() -> None:
+    near = steered(CAMERA, EYE, Gesture(480, wheel=1.0))
+    assert near.distance < CAMERA.distance
+    eye = look(near, (1000.0, 1000.0), 100.0, (640, 480))
+    assert steered(near, eye, Gesture(480, wheel=-1.0)).distance == pytest.approx(CAMERA.distance)
 
 
-def test_undo_and_redo_go_through_every_state() -> None:
-    desk, states = Desk(), [Edits()]
-    for n in range(5):
-        desk.set(f"p.{n % 2}", float(n))
-        states.append(desk.edits)
-    desk.edits = Edits(desk.edits.values, (("p", "x"),), Camera(azimuth=1.0), ("p.1",))
-    desk.turn()
-    states.append(desk.edits)
-    for state in reversed(states[:-1]):
-        desk.take(desk.history.undo())
-        assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_undo and desk.history.undo() == {}
-    for state in states[1:]:
-        desk.take(desk.history.redo())
-        assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_redo and len(desk.history.steps) == 6
+def test_the_eye_never_goes_over_the_top() -> None:
+    camera = steered(CAMERA, EYE, Gesture(480, down=5000, orbiting=True))
+    assert camera.elevation == 89.0
 
 
-def test_a_drag_is_one_step_and_one_that_comes_back_is_none() -> None:
-    desk = Desk()
-    for n in range(10):
-        desk.set("p.a", n / 10, held=True, seconds=2.0)
-    desk.turn(held=False)
-    assert [s.after for s in desk.history.steps] == [{("value", "p.a"): 0.9}]
-    for value in (0.5, 0.9):
-        desk.set("p.a", value, held=True)
-    desk.set("p.a", 0.9, held=False, seconds=0.1)
-    desk.turn()
-    desk.set("p.b", 1.0)
-    assert [list(s.after) for s in desk.history.steps] == [[("value", "p.a")], [("value", "p.b")]]
+def test_a_mouse_that_only_passes_does_nothing() -> None:
+    assert not Gesture(480, across=10, down=3).acts
+    assert steered(CAMERA, EYE, Gesture(480, across=10)) == CAMERA
 
 
-def test_what_goes_on_in_the_same_way_is_one_step() -> None:
-    desk = Desk()
-    for n in range(5):
-        desk.edits = Edits(camera=Camera(distance=100.0 - n))
-        desk.turn(seconds=0.1)
-    desk.turn(seconds=5.0)
-    desk.edits = Edits(camera=Camera(distance=50.0))
-    desk.turn()
-    assert len(desk.history.steps) == 2
+def test_pictures_never_replace_one_another(tmp_path: Path) -> None:
+    frame = Frame(np.zeros((4, 6, 4), np.uint8), "my sketch/x")
+    names = [save_new(frame, tmp_path, frame.sketch).name for _ in range(3)]
+    assert names == ["my-sketch-x.png", "my-sketch-x-2.png", "my-sketch-x-3.png"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(names)
 
 
-def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
-    desk = Desk()
-    desk.history = History(most=4)
-    desk.turn()
-    for n in range(6):
-        desk.set("p.a", float(n))
-    assert len(desk.history.steps) == 4 and desk.history.steps[0].after == {("value", "p.a"): 2.0}
-    desk.take(desk.history.undo())
-    desk.take(desk.history.undo())
-    desk.set("p.b", 1.0)
-    assert len(desk.history.steps) == 3 and not desk.history.can_redo
-
-
-def test_undo_leaves_alone_what_its_step_did_not_change_and_reloads_are_no_steps() -> None:
-    desk = Desk()
-    desk.set("p.a", 1.0)
-    desk.set("p.b", 1.0)
-    desk.file, desk.edits = object(), Edits((("p.b", 1.0),))  # a reload took p.a away
-    desk.turn()
-    assert len(desk.history.steps) == 2
-    desk.take(desk.history.undo())
-    assert desk.edits == Edits()
-    desk.take(desk.history.redo())
-    assert desk.edits == Edits((("p.b", 1.0),))
-
-
-def test_an_undo_that_takes_its_time_is_no_step() -> None:
-    desk = Desk()
-    desk.edits = Edits(techniques=(("p", "x"),))
-    desk.turn()
-    desk.history.undo()
-    desk.history.settle(desk.edits, {})  # nothing has come of it yet
-    desk.turn()
-    desk.edits = Edits()
-    desk.turn()
-    assert desk.history.done == 0 and desk.history.can_redo
-    desk.edits = Edits(techniques=(("p", "x"),))  # by hand, not by redo
-    desk.turn()
-    assert desk.history.done == 1 and not desk.history.can_redo
-
-
-def test_what_is_saved_into_the_file_can_be_undone() -> None:
-    desk = Desk()
-    desk.set("p.a", 0.9)
-    desk.history.saved({("value", "p.a"): 0.5})
-    desk.file, desk.edits = object(), Edits()  # the reload that follows
-    desk.turn()
-    desk.take(desk.history.undo())
-    assert desk.edits == Edits((("p.a", 0.5),)), "what the file said before"
-    desk.take(desk.history.redo())
-    assert desk.edits == Edits((("p.a", 0.9),))
-
-
-def test_steps_have_names() -> None:
-    desk = Desk()
-    desk.set("p.a", 0.5)
-    desk.history.call("Preset dusk")
-    desk.edits = desk.edits.with_value("p.a", 0.75).with_value("p.b", 0.25)
-    desk.turn()
-    desk.edits = Edits(desk.edits.values, (("p", "x"),))
-    desk.turn()
-    desk.edits = Edits(desk.edits.values, (("p", "x"),), locked=("p.a",))
-    desk.turn()
-    desk.history.jump(1.0, 0.0, held=False, now=desk.now)
-
-    def said(path: str, value: object) -> str:
-        return "the file's" if value is None else f"{value:g}"
-
-    assert [in_words(s, str.upper, said) for s in desk.history.steps] == [
-        "P.A: the file's to 0.5",
-        "Preset dusk",
-        "p: x",
-        "Lock P.A",
-        "Time 1.00 s to 0.00 s",
-    ]
+def test_a_folder_that_is_not_there_is_said(tmp_path: Path) -> None:
+    with pytest.raises(DataError, match="nothing can be written here"):
+        save_new(Frame(np.zeros((4, 6, 4), np.uint8)), tmp_path / "none", "a")

@@ -8,7 +8,9 @@ import pytest
 
 from playground.paths import GLSL
 from playground.reduce import blocks, edits
+from playground.reduce.inline import written
 from playground.reduce.tokens import print_tokens, tidy, tokens_of
+from playground.sketch.techniques import read_kernel
 
 from ..cases import each
 
@@ -33,6 +35,15 @@ def test_tidying_changes_no_token_and_is_done_once(path: Path):
     tokens = tokens_of(text)
     assert tokens_of(print_tokens(tokens)) == tokens
     assert tidy(tidy(text)) == tidy(text)
+
+
+def test_an_annotation_of_several_lines_is_written_on_one(tmp_path: Path):
+    (tmp_path / "gain.glsl").write_text("uniform float gain;  //! slider(0, 4)\n    //! How high\n")
+    text = '#include "gain.glsl"\n#pragma kernel(output = "height:r32f")\n'
+    (tmp_path / "k.glsl").write_text(text + "float kernel(ivec2 texel) { return gain; }\n")
+    kernel = read_kernel(tmp_path / "k.glsl", tmp_path)
+    assert kernel is not None
+    assert "uniform float gain;  //! slider(0, 4) How high" in written(kernel).splitlines()
 
 
 def test_a_statement_is_a_line():

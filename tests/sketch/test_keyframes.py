@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from playground.errors import SketchError
-from playground.sketch.keyframes import EASES, Track, at, duration
+from playground.sketch.keyframes import EASES, Track
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 
@@ -137,8 +137,8 @@ def test_azimuths_go_the_short_way_round():
 
 
 def test_a_sketch_at_a_time_is_a_sketch_without_keyframes(sketch: Sketch):
-    assert duration(sketch) == 5.0 and len(sketch.keyframes) == 3
-    assert sketch.at(2.0) == at(sketch, 2.0) and hash(sketch.at(2.0))
+    assert sketch.duration == 5.0 and len(sketch.keyframes) == 3
+    assert sketch.at(2.0) == sketch.at(2.0) and hash(sketch.at(2.0))
     assert sketch.at(2.0).keyframes == () and sketch.at(2.0).at(9.0) == sketch.at(2.0)
     plain = load("jacksboro")
     assert plain.at(3.0) is plain

@@ -1,4 +1,4 @@
-// generation/fault_formation/lines.glsl -- random faults, one a texel: where each runs, and how far it moves the land.
+// generation/fault_formation/lines.glsl -- random faults, one a texel: where each runs, and its height.
 //
 //   gives    fault: its line in red, green and blue; in alpha its height, in units
 //   needs    generation/fault_formation/line.glsl, noise/hash.glsl
@@ -8,7 +8,7 @@
 //            Terrain" (Dr. Dobb's Journal, July)
 //   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
 //
-// A line goes through two random points of the land. The thesis's height is random, and falls
+// A line goes through two random points of the terrain. The thesis's height is random, and falls
 // by a factor from fault to fault: here the factor falls from 1 for the first fault towards
 // `last`, where the fault after the last would be, in equal steps or in equal ratios.
 #include "generation/fault_formation/line.glsl"
@@ -16,11 +16,14 @@
 #pragma kernel(output = "fault:rgba32f")
 
 uniform int faults = 200;        //! slider(0, 1000) How many
-uniform uint seed = 7u;          //! slider(0, 9999) Which land
+uniform uint seed = 7u;          //! slider(0, 9999) Which terrain
 uniform float amount = 0.05;     //! log_slider(0.001, 1) Height of the first fault, at most
-uniform int fall = 0;            //! menu("linear", "ratio") From the first fault to the last: by equal steps, or in equal ratios
-uniform float last = 0.1;        //! slider(0.001, 1) step(0.001) What the height falls to, as a share of the first
-uniform float variation = 1.0;   //! slider(0, 1) step(0.01) How far heights are random: 0 not at all, 1 from nothing to all
+uniform int fall = 0;            //! menu("linear", "ratio") From the first fault to the last: by
+                                 //! equal steps, or in equal ratios
+uniform float last = 0.1;        //! slider(0.001, 1) step(0.001) What the height falls to, as a
+                                 //! share of the first
+uniform float variation = 1.0;   //! slider(0, 1) step(0.01) How far heights are random: 0 not at
+                                 //! all, 1 from nothing to all
 
 const uint SALT = 0xa3d24078u;  // CRC-32 of "generation/fault_formation"
 

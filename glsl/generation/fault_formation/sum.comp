@@ -1,6 +1,6 @@
 // generation/fault_formation/sum.comp -- the sum of many faults, row by row: each line crosses a row once.
 //
-//   gives    height, for any land; not normalised
+//   gives    height, for any terrain; not normalised
 //   needs    generation/fault_formation/line.glsl, maths/whole.glsl
 //   units    heights without unit
 //   source   made here: differences, and their prefix sum
@@ -10,14 +10,14 @@
 // A work group has a row. Its readers share the faults: a fault adds one number where the row
 // begins and one where the line crosses it. Then the numbers are summed along the row, each
 // reader a run of neighbours, twice: first for what the runs before add to each, then for the
-// heights. So a land costs faults times rows, and its texels, but not faults times texels.
+// heights. So a terrain costs faults times rows, and its texels, but not faults times texels.
 #include "generation/fault_formation/line.glsl"
 #include "maths/whole.glsl"
 #pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height", agrees = "exact")
 
 uniform sampler2D lines;     //! input
-uniform int faults = 200;    //! slider(0, 1000) How many
-uniform float amount = 0.05; //! log_slider(0.001, 1) Height of the first fault, at most
+uniform int faults = 200;    //! slider(0, 1000) As in the technique
+uniform float amount = 0.05; //! log_slider(0.001, 1) As in the technique
 
 const int READERS = 32;
 const int LONGEST = 2112;  // texels of a row that fit; longer rows are done part by part
@@ -26,7 +26,8 @@ shared int sums[READERS];
 
 // How many texels of a row lie before its crossing, and whether those after it are raised.
 int crossing_of(ivec3 line, int row, out bool after) {
-    int value = fault_value(line, ivec2(0, row)) + fault_edge(line);  // > 0: the row's first place is raised
+    // Above 0 where the row's first place is raised.
+    int value = fault_value(line, ivec2(0, row)) + fault_edge(line);
     int slope = abs(line.x);
     after = line.x > 0;
     if ((value > 0) == after || slope == 0) {
@@ -35,7 +36,7 @@ int crossing_of(ivec3 line, int row, out bool after) {
     }
     // value + line.x place changes its side after this many places.
     int far = value > 0 ? value - 1 : -value;
-    if (far >= slope * LAND_SIDE) return size.x;
+    if (far >= slope * PLACES) return size.x;
     int place = quotient(far, slope);
     // The last texel at or before it: place_of_texel, the other way round.
     int most = max(size.x - 1, 1);

@@ -1,12 +1,17 @@
-// generation/fault_formation/sum.glsl -- faults added to the land: one side of each line up, the other down.
+// generation/fault_formation/sum.glsl -- faults: one side of each line goes up, the other down.
 //
-//   gives    height, for any land; not normalised, half of it below 0
+//   gives    height, for any terrain; not normalised, half of it below 0
 //   needs    generation/fault_formation/line.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.6
 //   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
 //
-// A turn is a fault; one run takes as many as are asked for. Sums of whole numbers are exact, so
+// Fault i goes through the points (x1, y1) and (x2, y2), and moves the terrain by a_i:
+//
+//     h(x, y) += a_i   where (x2 - x1)(y - y1) - (y2 - y1)(x - x1) > 0, to the left of the line
+//     h(x, y) -= a_i   elsewhere
+//
+// A step is a fault; one run takes as many as are asked for. Sums of whole numbers are exact, so
 // the order of faults is free: sum.comp and sum.fast.toml beside it take them in other orders.
 #include "generation/fault_formation/line.glsl"
 #pragma kernel(output = "height:r32f", repeat = "faults", at_once = "faults")
@@ -26,6 +31,6 @@ float kernel(ivec2 texel) {
     }
     // end: change
     float unit = fault_unit(faults, amount);
-    // A land to begin with is rounded to the same units: so the order of turns stays free.
+    // A terrain to begin with is rounded to the same units: so the order of steps stays free.
     return (floor(previous(texel) / unit + 0.5) + float(change)) * unit;
 }

@@ -1,40 +1,36 @@
-// generation/layered_noise/bands.glsl -- for each band and column, the sum of all layers as a polynomial of the row.
+// generation/layered_noise/bands.glsl -- for each band and column, all layers as one polynomial.
 //
 //   gives    bands: what stands with 1, v, v² and v³, where v counts rows from the band's first
-//   needs    noise/hash.glsl
+//   needs    generation/layered_noise/layers.glsl, noise/hash.glsl
 //   units    heights without unit
-//   source   Belaiche 2010, section 1.3.9 (there "Perlin"; it is what is now called value noise);
-//            the polynomial is derived here
-//   tested   tests/glsl/test_layered_noise.py, against a twin in NumPy written as its loops
+//   source   the sum of generation/layered_noise/sum.glsl; the polynomial is derived here
+//   tested   tests/glsl/test_layered_noise.py, as part of the fast variant
 //
-// Layer k has the weight persistence^(k+1); its nodes take their heights from one number each
-// of a layer of random numbers, which is the same at every size (layers.glsl). Within a band
-// every layer runs between two of its rows of nodes, d rows apart, from one height to the other
-// along 3a² - 2a³ (or a), where a = a0 + v / d.
-// Written out in powers of v such layers add up, however many they are: four numbers hold all.
+// Within a band every layer runs between two of its rows of nodes, d rows apart, from one height
+// to the other along 3a² - 2a³ (or a), where a = a0 + v / d. Written out in powers of v such
+// layers add up, however many they are: four numbers hold all.
+#include "generation/layered_noise/layers.glsl"
 #include "noise/hash.glsl"
 #pragma kernel(output = "bands:rgba32f")
 
 uniform sampler2D columns;       //! input
 uniform sampler2D rows;          //! input
 uniform sampler2D nodes;         //! input
-uniform int octaves = 2;         //! slider(0, 8) Layers
-uniform int left_out = 0;        //! slider(0, 8) Of these, so many of the coarsest are left out
-uniform float persistence = 0.2; //! slider(0, 1) step(0.01) Weight of the first layer; each next layer has this share of it
-uniform uint seed = 7u;          //! slider(0, 9999) Which land
-uniform int interpolation = 1;   //! menu("linear", "smooth") Between nodes: a line, or 3a² - 2a³
-uniform int random_layers = 0;   //! menu("one", "independent") All layers read one random layer, or each its own
-uniform int overflow = 0;        //! menu("divide", "clamp", "wrap") A sum above 1: divided by the weights' sum, cut, or begun again at 0 (a fault, to look at)
-uniform int layer = 0;           //! slider(0, 8) Show this layer alone, at full weight; 0: their sum
+uniform int octaves = 2;         //! slider(0, 8) As in the technique
+uniform int left_out = 0;        //! slider(0, 8) As in the technique
+uniform float persistence = 0.2; //! slider(0, 1) step(0.01) As in the technique
+uniform uint seed = 7u;          //! slider(0, 9999) As in the technique
+uniform int interpolation = 1;   //! menu("linear", "smooth") As in the technique
+uniform int random_layers = 0;   //! menu("one", "independent") As in the technique
+uniform int overflow = 0;        //! menu("divide", "clamp", "wrap") As in the technique
+uniform int layer = 0;           //! slider(0, 8) As in the technique
 
-const uint SALT = 0x31b64f5bu;  // CRC-32 of "generation/layered_noise"
-
-// The curve from 0 to 1 in powers of v, where it is a0 far at v = 0 and rises by `step_on` a row.
-vec4 curve(float a0, float step_on) {
-    if (interpolation == 0) return vec4(a0, step_on, 0.0, 0.0);
+// The curve from 0 to 1 in powers of v, where it is a0 far at v = 0 and rises by `rise` a row.
+vec4 curve(float a0, float rise) {
+    if (interpolation == 0) return vec4(a0, rise, 0.0, 0.0);
     vec4 powers = vec4(a0 * a0 * (3.0 - 2.0 * a0), 6.0 * a0 * (1.0 - a0), 3.0 - 6.0 * a0, -2.0);
-    float squared = step_on * step_on;
-    return powers * vec4(1.0, step_on, squared, squared * step_on);
+    float squared = rise * rise;
+    return powers * vec4(1.0, rise, squared, squared * rise);
 }
 
 vec4 kernel(ivec2 texel) {
@@ -46,15 +42,13 @@ vec4 kernel(ivec2 texel) {
     if (layer == 0) for (int k = 0; k < first; k++) weight *= persistence;
     float weights = 0.0;
     vec4 total = vec4(0.0);
-    // anchor: layers
     for (int k = first; k < last; k++) {
         if (layer == 0) weight *= persistence;
         vec4 column = texelFetch(columns, ivec2(texel.x, k), 0);
         vec4 row = texelFetch(nodes, ivec2(texel.y, k), 0);
         ivec2 x = ivec2(column.xy);
         ivec2 y = ivec2(row.xy);
-        // An odd number far from every seed, so that the second layer of one land is not the first of the next.
-        uint which = random_layers == 1 ? seed + SALT + uint(k) * 2654435769u : seed + SALT;
+        uint which = seed_of_layer(seed, random_layers == 1 ? k : 0);
         vec2 west = vec2(random(ivec2(x.x, y.x), which), random(ivec2(x.x, y.y), which));
         vec2 east = vec2(random(ivec2(x.y, y.x), which), random(ivec2(x.y, y.y), which));
         vec2 between = west + (east - west) * column.b;
@@ -63,5 +57,4 @@ vec4 kernel(ivec2 texel) {
         weights += weight;
     }
     return overflow == 0 && weights > 0.0 ? total / weights : total;
-    // end: layers
 }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from playground.capture.film import FPS
-from playground.sketch.keyframes import duration
 from playground.sketch.model import Sketch
 from playground.workbench.clock import Clock
 
@@ -17,7 +16,7 @@ _EPSILON = 1e-6
 
 def span_of(sketch: Sketch, clock: Clock) -> float:
     """Return the last time [s] on the bar, which begins at 0."""
-    last = duration(sketch) or USUAL
+    last = sketch.duration or USUAL
     if clock.loop is not None:
         last = max(last, clock.loop[1])
     return last if clock.time <= last else math.ceil(clock.time / USUAL) * USUAL

@@ -18,9 +18,9 @@ from playground.live.errors_list import draw_errors
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
+from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeTrial
 from .desk import Bare
 from .screen import ROOT
-from .test_session import KERNEL, SKETCH, TILT, FakeTrial
 
 
 def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[PlaygroundError]]:

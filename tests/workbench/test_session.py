@@ -134,6 +134,18 @@ def test_a_save_shows(bench: Bench, name: str, old: str, new: str) -> None:
     assert bench.session.error is None and bench.session.last_reload is not None
 
 
+def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
+    declared = "uniform float level = 0.25; //! slider(0, 1)\n"
+    bench.write("inc/level.glsl", declared)
+    bench.change("land.glsl", declared, '#include "inc/level.glsl"\n')
+    before = bench.picture()
+    bench.change("inc/level.glsl", "0.25", "0.75")
+    assert not np.array_equal(bench.picture(), before)
+    bench.change("inc/level.glsl", "slider(0, 1)", "slider(1, 0)")
+    assert bench.session.error is not None
+    assert "inc/level.glsl:1:" in str(bench.session.error)
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new", "place"),
     [

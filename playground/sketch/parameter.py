@@ -1,0 +1,69 @@
+"""What a parameter is: a uniform with its annotation, and the values that it takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
+"""A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
+
+LARGEST_SIDE = 16_384
+"""Texels or pixels that a side may have: what common graphics cards take."""
+
+
+@dataclass(frozen=True, slots=True)
+class Widget:
+    """How a parameter is shown and what it may be."""
+
+    kind: str = "number"  # a row of sketch/widgets.py
+    low: float | None = None  # None: unbounded
+    high: float | None = None
+    choices: tuple[str, ...] = ()  # of a menu
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How a texture is read."""
+
+    filter: str = "nearest"  # nearest | linear
+    wrap: str = "clamp"  # clamp | repeat
+    mipmap: bool = False
+
+
+AS_IT_IS = Sampling()
+"""Texel by texel: what an annotation that says nothing means."""
+
+
+@dataclass(frozen=True, slots=True)
+class Follows:
+    """An angle that takes a direction's azimuth while it has its default."""
+
+    direction: str  # a parameter of the same file
+    menu: str = ""  # likewise; "" where it always follows
+    choice: int = 0  # of the menu, while it follows
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A uniform with its ``//!`` annotation."""
+
+    name: str
+    type: str  # GLSL: float int uint bool vec2..4 ivec2..4 uvec2..4, or sampler2D for a file
+    default: Value
+    widget: Widget = Widget()
+    step: float | None = None
+    unit: str = ""
+    group: str = ""
+    label: str = ""
+    tooltip: str = ""
+    sampling: Sampling = AS_IT_IS  # of a file
+    painted: bool = False  # a file that may be painted on in the window
+    follows: Follows | None = None  # where its value comes from while nobody sets it
+    parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
+    file: str = ""
+    line: int = 0
+
+    @property
+    def title(self) -> str:
+        """What a panel writes beside it."""
+        return self.label or self.name.replace("_", " ").capitalize()

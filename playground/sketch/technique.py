@@ -1,0 +1,212 @@
+"""What fills a pass: a kernel, or a technique of several passes; frozen values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from playground.errors import ShaderError, SketchError
+from playground.sketch.agreement import Bound
+from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
+from playground.sketch.source import Line, SourceText
+
+VARIANTS = ("compute", "passes")
+"""The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A texture that a kernel reads."""
+
+    name: str
+    sampling: Sampling = AS_IT_IS
+    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
+    line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A texture that a kernel writes."""
+
+    name: str
+    format: str  # r8 r16 r16f r32f and their rg and rgba forms
+
+    @property
+    def components(self) -> int:
+        """Channels of a texel."""
+        return 4 if self.format.startswith("rgba") else 2 if self.format.startswith("rg") else 1
+
+    @property
+    def glsl(self) -> str:
+        """The GLSL type of a texel."""
+        return {1: "float", 2: "vec2", 4: "vec4"}[self.components]
+
+
+@dataclass(frozen=True, slots=True)
+class Buffer:
+    """A storage buffer of a compute variant."""
+
+    name: str
+    type: str  # GLSL scalar or vec4
+    count: str  # expression
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """One GLSL file that can be run: a kernel, a source, a draw, a compute variant or a plain shader."""
+
+    name: str  # "generation/diamond_square"
+    kind: str  # kernel | source | draw | compute | plain_fragment | plain_compute
+    source: SourceText
+    outputs: tuple[Output, ...]
+    parameters: tuple[Parameter, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    repeat: str = "1"
+    accepts: str = ""
+    visits: str = ""
+    stride: str = ""  # after a turn, only texels at multiples of it are known
+    between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
+    at_once: str = "1"  # turns that one run may take
+    registry: str = ""  # of a source or a draw: the name of the source or mesh
+    blend: str = "none"
+    depth: str = "less"
+    count: str = ""  # of a draw: elements of a mesh that has no size of its own
+    samples: int = 0  # of a draw: samples a pixel; 0: the view's
+    groups: str = ""  # of a compute variant
+    local: tuple[int, int] = (8, 8)
+    buffers: tuple[Buffer, ...] = ()
+    aligned: int = 8  # bytes that rows of an output's buffer are filled up to
+    stages: tuple[int, ...] = ()  # of a compute variant: what each of its turns does
+    overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
+    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
+    title: str = ""  # the sentence that the file begins with
+    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+
+    @property
+    def path(self) -> str:
+        """Absolute path of the file."""
+        return self.source.path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file the kernel is made of."""
+        return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
+
+    @property
+    def pragma(self) -> Line | None:
+        """The line of its header; a plain shader has none."""
+        return next((line for line in self.source.lines if line.pragma and not line.chain), None)
+
+    def error(self, message: str) -> ShaderError:
+        """Return an error that points at its header."""
+        line = self.pragma
+        return line.error(message) if line else ShaderError(message, file=self.path)
+
+    def parameter(self, name: str) -> Parameter | None:
+        """Return the parameter of that name, if there is one."""
+        return next((p for p in self.parameters if p.name == name), None)
+
+    def reads(self, given: str) -> bool:
+        """Say whether the text names something that the engine gives."""
+        return given in self.source.names
+
+    @property
+    def needs_inputs(self) -> tuple[str, ...]:
+        """Inputs that must be wired."""
+        return tuple(i.name for i in self.inputs if not i.fallback)
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """A name that a technique of several passes shows outside, and what it stands for inside."""
+
+    name: str
+    targets: tuple[str, ...]  # paths inside; the first gives annotation and default
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class PassSpec:
+    """A ``[[pass]]`` of a TOML file, with the technique that fills it."""
+
+    name: str
+    use: str
+    technique: Technique
+    inputs: tuple[tuple[str, str], ...] = ()  # input → "pass[.inner…][:output]"
+    values: tuple[tuple[str, Value], ...] = ()  # parameter path inside the technique → value
+    size: tuple[str, str] | None = None  # expressions; None: the size of what it stands in
+    repeat: str = ""
+    feedback: tuple[tuple[str, str], ...] = ()  # input → own output
+    file: str = ""
+    line: int = 0
+    set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
+
+    def error(self, message: str) -> SketchError:
+        """Return an error that points at this pass."""
+        return SketchError(message, file=self.file, line=self.line)
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A technique of several passes; a sketch is one too."""
+
+    name: str
+    path: str  # absolute path of its TOML
+    passes: tuple[PassSpec, ...]
+    parameters: tuple[Export, ...] = ()
+    inputs: tuple[Export, ...] = ()
+    outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
+    title: str = ""
+    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique beside it
+    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+    line: int = 0  # of its outputs
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file the technique is made of."""
+        found = dict.fromkeys([self.path])
+        for spec in self.passes:
+            found |= dict.fromkeys(spec.technique.files)
+        for variant in self.variants:
+            found |= dict.fromkeys(variant.files)
+        return tuple(found)
+
+    def find(self, name: str) -> PassSpec | None:
+        """Return the pass of that name, if there is one."""
+        return next((p for p in self.passes if p.name == name), None)
+
+
+Technique = Kernel | Graph
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A fast variant: another form of a technique, that gives the same within a stated bound."""
+
+    technique: Technique  # of a .comp its kernel, of a .fast.toml its passes
+    verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
+    record: str = ""  # absolute path of the user's file that says so; "" where there is none
+
+    @property
+    def kind(self) -> str:
+        """One of ``VARIANTS``."""
+        return "passes" if isinstance(self.technique, Graph) else "compute"
+
+    @property
+    def path(self) -> str:
+        """Absolute path of its file."""
+        return self.technique.path
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Absolute paths of every file that it is made of."""
+        return (*self.technique.files, *filter(None, [self.record]))
+
+
+def kernels_of(technique: Technique, prefix: str = "") -> Iterator[tuple[str, Kernel]]:
+    """Yield (path, kernel) of every kernel a technique is made of, in the order of the files."""
+    if isinstance(technique, Kernel):
+        yield prefix, technique
+        return
+    for spec in technique.passes:
+        yield from kernels_of(spec.technique, f"{prefix}.{spec.name}" if prefix else spec.name)

@@ -1,0 +1,197 @@
+"""Parameters that several kernels share: declared once in an included file, read as if they stood there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.errors import ShaderError
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Kernel
+from playground.sketch.source import read_source
+from playground.sketch.unused_parameters import unread
+
+PRAGMA = '#pragma kernel(output = "height:r32f")\n'
+SUN = """#ifndef SUN
+#define SUN
+uniform float gain = 2.0;  //! slider(0, 4) group("Sun")
+                           //! The light is multiplied by it
+uniform int steps = 4;     //! slider(1, 9)
+#endif
+"""
+
+
+class Folder:
+    """A folder of GLSL files."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def write(self, **texts: str) -> None:
+        for name, text in texts.items():
+            (self.path / f"{name}.glsl").write_text(text, encoding="utf-8")
+
+    def kernel(self, text: str) -> Kernel:
+        self.write(kernel=text)
+        found = parse_kernel("kernel", read_source(self.path / "kernel.glsl", (self.path,)))
+        assert found is not None
+        return found
+
+    def refused(self, text: str) -> tuple[str, str, int, tuple[str, ...]]:
+        with pytest.raises(ShaderError) as caught:
+            self.kernel(text)
+        found = caught.value.diagnostics[0]
+        chain = tuple(Path(place).name for place in found.chain)
+        return found.message, Path(found.file).name, found.line, chain
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Folder:
+    made = Folder(tmp_path)
+    made.write(sun=SUN)
+    return made
+
+
+def test_an_included_parameter_has_its_annotation_and_its_own_place(folder: Folder) -> None:
+    gain = folder.kernel(PRAGMA + '#include "sun.glsl"\n').parameters[0]
+    assert (gain.default, gain.widget.high, gain.group, gain.tooltip) == (
+        2.0,
+        4.0,
+        "Sun",
+        "The light is multiplied by it",
+    )
+    assert (Path(gain.file).name, gain.line) == ("sun.glsl", 3)
+
+
+def test_the_panel_has_them_where_the_include_stands(folder: Folder) -> None:
+    text = f'{PRAGMA}uniform float first;\n#include "sun.glsl"\nuniform float last;\n'
+    assert [p.name for p in folder.kernel(text).parameters] == ["first", "gain", "steps", "last"]
+
+
+def test_an_expression_of_the_pragma_may_name_one(folder: Folder) -> None:
+    pragma = '#pragma kernel(output = "height:r32f", repeat = "steps")\n'
+    assert folder.kernel(pragma + '#include "sun.glsl"\n').repeat == "steps"
+
+
+def test_a_file_that_comes_twice_gives_its_parameters_once(folder: Folder) -> None:
+    folder.write(light='#include "sun.glsl"\nuniform float ambient;\n')
+    found = folder.kernel(PRAGMA + '#include "sun.glsl"\n#include "light.glsl"\n#include "sun.glsl"\n')
+    assert [p.name for p in found.parameters] == ["gain", "steps", "ambient"]
+
+
+@pytest.mark.parametrize(
+    ("own", "place"),
+    [
+        ('uniform float gain = 1.0;\n#include "sun.glsl"\n', ("sun.glsl", 3, ("kernel.glsl:3",))),
+        ('#include "sun.glsl"\nuniform float gain = 1.0;\n', ("kernel.glsl", 3, ())),
+    ],
+)
+def test_a_kernel_that_declares_it_again_is_told_where_both_stand(
+    folder: Folder, own: str, place: tuple[str, int, tuple[str, ...]]
+) -> None:
+    message, *found = folder.refused(PRAGMA + own)
+    assert tuple(found) == place
+    first = "kernel.glsl:2" if place[0] == "sun.glsl" else "sun.glsl:3"
+    assert message.startswith("'gain' is declared twice: first at ") and message.endswith(first)
+
+
+def test_one_that_differs_stands_in_the_kernel_and_the_rest_is_included(folder: Folder) -> None:
+    folder.write(steps="uniform int steps = 4;\n")
+    text = f'{PRAGMA}uniform float gain = 1.0;  //! label("Brightness")\n#include "steps.glsl"\n'
+    gain, steps = folder.kernel(text).parameters
+    assert (gain.default, gain.label, steps.default) == (1.0, "Brightness", 4)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("\nuniform float a = 1.0;  //! slidr(0, 1)\n", 2, "no widget 'slidr'"),
+        ("\nuniform float a = 1.0;  //! slider(1, 0)\n", 2, "slider of 'a'"),
+        ('uniform float a;  //! slider(0, 1)\n  //! unit("m")\n//! grup("Sun") Words\n', 3, "'group'"),
+        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' stands twice"),
+        ("uniform float a;  //! step(1)\n//! slider(0,\n", 2, "'slider(' is not closed"),
+    ],
+)
+def test_a_mistake_in_an_included_annotation_is_told_at_its_line(
+    folder: Folder, text: str, line: int, words: str
+) -> None:
+    folder.write(shared=text)
+    message, *place = folder.refused(f'{PRAGMA}\n#include "shared.glsl"\n')
+    assert words in message
+    assert place == ["shared.glsl", line, ("kernel.glsl:3",)]
+
+
+def test_what_no_code_reads_is_told_at_its_declaration(folder: Folder) -> None:
+    found = unread(folder.kernel(f'{PRAGMA}#include "sun.glsl"\nfloat kernel(ivec2 t) {{ return gain; }}\n'))
+    assert [(Path(d.file).name, d.line, d.message) for d in found] == [
+        ("sun.glsl", 5, "nothing reads 'steps', so it has no effect")
+    ]
+    assert [Path(place).name for place in found[0].chain] == ["kernel.glsl:2"]
+
+
+# Annotations of several lines
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'uniform float a;  //! slider(0, 1) unit("m") How far\n',
+        'uniform float a;  //! slider(0, 1)\n    //! unit("m")\n    //! How far\n',
+        'uniform float a;  //! slider(0,\n//! 1) unit("m") How\n//! far\n',
+        'uniform float a;  //!\n//! slider(0, 1) unit("m") How far\n',
+    ],
+)
+def test_an_annotation_goes_on_in_lines_of_its_own(folder: Folder, text: str) -> None:
+    found = folder.kernel(f"{PRAGMA}{text}// no part of it\nuniform float b;  //! Another\n").parameters
+    assert (found[0].widget.high, found[0].unit, found[0].tooltip) == (1.0, "m", "How far")
+    assert [(p.name, p.line) for p in found] == [("a", 2), ("b", text.count("\n") + 3)]
+    assert found[1].tooltip == "Another"
+
+
+def test_a_line_without_an_annotation_takes_none_from_the_next(folder: Folder) -> None:
+    found = folder.kernel(f"{PRAGMA}uniform float a;\n//! Words\n").parameters
+    assert found[0].tooltip == ""
+
+
+# Named expressions of a pragma
+
+
+def test_where_names_expressions_of_the_pragma(folder: Folder) -> None:
+    found = folder.kernel(
+        '#pragma kernel(output = "height:r32f", where = "half = size.x // 2; both = half + steps", \\\n'
+        '               repeat = "2 * both")\nuniform int steps = 3;\n'
+    )
+    assert found.repeat == "2 * ((size.x // 2) + steps)"
+
+
+def test_where_reaches_groups_and_the_counts_of_buffers_not_their_names(folder: Folder) -> None:
+    found = folder.kernel(
+        '#pragma compute(where = "row = size.x + 1; float = 2", groups = "row, 1", \\\n'
+        '                buffers = "row:float:row * size.y * float")\n'
+    )
+    assert found.groups == "(size.x + 1), 1"
+    assert [(b.name, b.type, b.count) for b in found.buffers] == [
+        ("row", "float", "(size.x + 1) * size.y * (2)")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("where", "words"),
+    [
+        ("half", "expected name = expression"),
+        ("2 = size.x", "expected name = expression"),
+        ("half = size.z", "where 'half': "),
+        ("half = later; later = 2", "where 'half': "),
+        ("half = 2; half = 3", "the name 'half' is taken"),
+        ("steps = 2", "the name 'steps' is taken"),
+        ("max = 2", "the name 'max' is taken"),
+    ],
+)
+def test_mistakes_in_where(folder: Folder, where: str, words: str) -> None:
+    text = (
+        f'#pragma kernel(output = "height:r32f", where = "{where}", repeat = "2")\nuniform int steps = 3;\n'
+    )
+    message, *place = folder.refused(text)
+    assert words in message
+    assert place == ["kernel.glsl", 1, ()]
