@@ -18,12 +18,15 @@ import pytest
 
 
 def each(
-    names: str | tuple[str, ...], cases: Iterable[Any], ids: Callable[[Any], object] = repr
+    names: str | tuple[str, ...],
+    cases: Iterable[Any] | Callable[[], Iterable[Any]],
+    ids: Callable[[Any], object] = repr,
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Call the test for every case; fail with the name, the line and the message of each that fails."""
+    """Call the test for every case; fail with the name, the line and the message of each that fails.
+
+    Cases that take long to find are a function, which is called when the test runs.
+    """
     arguments = (names,) if isinstance(names, str) else names
-    found = list(cases)
-    assert found, "there are no cases"
 
     def over_all(test: Callable[..., None]) -> Callable[..., None]:
         signature = inspect.signature(test)
@@ -32,6 +35,8 @@ def each(
         @functools.wraps(test)
         def all_cases(**given: Any) -> None:
             failed = []
+            found = list(cases() if callable(cases) else cases)
+            assert found, "there are no cases"
             for case in found:
                 values = (case,) if isinstance(names, str) else case
                 try:

@@ -57,7 +57,6 @@ CIRCLES: tuple[set[str], ...] = (
     {"commands/lesson.py", "commands/live.py"},
     {"engine/disk_caching.py", "engine/engine.py", "engine/eye_height.py", "engine/non_finite.py"},
     {"lessons/read.py", "lessons/translate.py"},
-    {"sketch/assign.py", "sketch/keyframes.py", "sketch/model.py", "sketch/values.py"},
     {
         "workbench/actions.py",
         "workbench/captures.py",
@@ -152,7 +151,8 @@ def files_named(tree: ast.Module, path: Path, there: dict[str, Path]) -> set[Pat
 def circles_of(takes: dict[Path, set[Path]]) -> list[set[Path]]:
     """Return the sets of files that reach each other, with more than one file."""
     files = sorted(takes)
-    rows, columns = zip(*((files.index(a), files.index(b)) for a in files for b in takes[a]), strict=True)
+    number = {file: i for i, file in enumerate(files)}
+    rows, columns = zip(*((number[a], number[b]) for a in files for b in takes[a]), strict=True)
     shape = (len(files), len(files))
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=shape)
     count, labels = connected_components(graph, connection="strong")

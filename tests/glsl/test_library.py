@@ -1,6 +1,7 @@
 """Each library file introduces itself, compiles alone in every stage, and is pure."""
 
 import re
+from functools import cache
 
 import moderngl
 import pytest
@@ -15,13 +16,18 @@ TEXTS = sorted(
     p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp") and not p.is_relative_to(SKETCHES)
 )
 NAMES = [p.relative_to(GLSL).as_posix() for p in TEXTS]
-LIBRARY = [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
 FACTS = ("gives", "needs", "units", "source", "tested")
 PURE = ("maths", "noise", "colour")
 
 
+@cache
+def pure_files():
+    """Return the names of the files that others include: they hold no kernel."""
+    return [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
+
+
 def test_there_is_a_library():
-    assert "noise/hash.glsl" in LIBRARY and len(LIBRARY) >= 5
+    assert "noise/hash.glsl" in pure_files() and len(pure_files()) >= 5
 
 
 @each("name", NAMES)
@@ -49,7 +55,7 @@ def test_its_tests_are_there(name):
     assert (root / tested.group(1)).is_file()
 
 
-@each("name", LIBRARY)
+@each("name", pure_files)
 def test_it_holds_no_state(name):
     """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
     source = read_source(GLSL / name, (GLSL,))
@@ -65,7 +71,7 @@ def test_it_holds_no_state(name):
         assert not any(word.startswith("sampler") for word in source.names)
 
 
-@each("name", LIBRARY)
+@each("name", pure_files)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
     text = (GLSL / name).read_text(encoding="utf-8")
@@ -74,7 +80,7 @@ def test_it_is_guarded(name):
     assert guard.group(1) == re.sub(r"\W", "_", name.removesuffix(".glsl")).upper()
 
 
-@each("name", LIBRARY)
+@each("name", pure_files)
 def test_it_compiles_alone(ctx, name):
     code = read_source(GLSL / name, (GLSL,)).code
     quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
