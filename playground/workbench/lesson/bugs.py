@@ -25,7 +25,6 @@ from playground.workbench.actions import Actions
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import Stage
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
-from playground.workbench.reload_stages import Stage as Coming
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
 _SAME = 0.25
@@ -101,7 +100,7 @@ class Faults:
         if not self._to_check or block is None or block.scene is None or self.stage.busy:
             return False
         self._to_check = False
-        if session.error is not None or session.plan is None or session.stage is not Coming.NONE:
+        if session.error is not None or session.plan is None or not session.rests:
             return True
         path = file_of(block)
         text = self.copies.text_of(path)
@@ -178,7 +177,7 @@ class Faults:
         self.leave()
         if self.copies.open:
             self.copies.close()
-        if drawn and self.actions.session.texts:
+        if drawn and self.actions.session.drafts.texts:
             self._draw()
 
     def forget(self) -> None:

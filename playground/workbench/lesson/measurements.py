@@ -8,7 +8,6 @@ from playground.errors import PlaygroundError
 from playground.lessons.measuring import Number, filled, measured, named_in
 from playground.lessons.model import Block, Lesson, Measure, Words, words_of
 from playground.workbench.inspect.compare import as_before
-from playground.workbench.reload_stages import Stage
 from playground.workbench.session import Session
 
 Known = dict[str, Number]
@@ -43,8 +42,7 @@ class Numbers:
     @property
     def ready(self) -> bool:
         """Whether a number is wanted, and the picture rests."""
-        session = self.session
-        return bool(self.wanted) and session.plan is not None and session.stage is Stage.NONE
+        return bool(self.wanted) and self.session.rests
 
     def compute(self) -> bool:
         """Compute the next number that is wanted, where the picture rests; say whether one was."""
