@@ -24,7 +24,8 @@ from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Fed, Flat, Leaf, Loop, Node, flatten
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flatten import flatten
 from playground.sketch.identity import Same
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
