@@ -74,6 +74,12 @@ def test_a_block_of_parameters_holds_nothing_else(name):
     assert all(line.comment.startswith("!") for line in source.lines if line.code.startswith("uniform "))
 
 
+@pytest.mark.parametrize("name", [n for n in NAMES if n.split("/")[0] not in ("generation", "noise")])
+def test_its_lines_can_be_quoted(name):
+    lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
+    assert [f"{n}: {line}" for n, line in enumerate(lines, 1) if len(line) >= 100] == []
+
+
 @pytest.mark.parametrize("name", LIBRARY)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
@@ -85,9 +91,9 @@ def test_it_is_guarded(name):
 
 @pytest.mark.parametrize("name", LIBRARY)
 def test_it_compiles_alone(ctx, name):
-    code = read_source(GLSL / name, (GLSL,)).code
+    text, code = (GLSL / name).read_text(encoding="utf-8"), read_source(GLSL / name, (GLSL,)).code
+    assert bool(ASKED.search(text)) == ("//   asks " in text)
     for kind, function, takes in ASKED.findall(code):
-        assert "//   asks " in (GLSL / name).read_text(encoding="utf-8")
         code += f"{kind} {function}({takes}) {{ return {kind}(0); }}\n"
     quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
     for version in ("330", "430"):
