@@ -161,7 +161,7 @@ def make_many(
     quality = asked.quality or QUALITY
     check_video(Path(asked.video).expanduser(), pixels, fps, quality)
     with _drawing(f"filming {sketch.name}", film.count, renderer, driver) as (engine, done), _stoppable():
-        print(write_film(engine, film, asked.video, quality=quality, done=done, say=note))
+        print(write_film(engine, film, asked.video, quality=quality, done=done, notice=note))
 
 
 def _make_sweep(
@@ -195,7 +195,7 @@ def _make_sweep(
                     time=moment.time,
                     quality=quality,
                     done=done,
-                    say=note,
+                    notice=note,
                 )
             )
         return
@@ -205,13 +205,15 @@ def _make_sweep(
     if output:
         path = _checked_png(output)
         with _drawing(f"sweeping {sketch.name}", count, renderer, driver) as (engine, done):
-            print(sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, say=note))
+            print(
+                sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, notice=note)
+            )
         return
     with (
         new_name(f"{sketch.name}-sweep.png") as path,
         _drawing(f"sweeping {sketch.name}", count, renderer, driver) as (engine, done),
     ):
-        print(sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, say=note))
+        print(sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, notice=note))
 
 
 def _checked_png(output: str) -> Path:

@@ -250,9 +250,9 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         beginning = bench.begin()
         probe = beginning.probe
         found = beginning.finding
-        # A refusal's word is its message; of the rest, what is told says where and how much.
+        # A refusal's word is its message; of the rest, the details say where and how much.
         note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, beginning.finding, probe, seconds=limit, tries=tries, tell=tell)
+        search = Search(beginning.case, beginning.finding, probe, seconds=limit, tries=tries, progress=tell)
         stopped = False
         try:
             search.run()
@@ -265,7 +265,7 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
         finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
     account = Account(
-        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
         sketch=question.sketch.name,
         before=beginning.case,
         after=search.best,

@@ -19,8 +19,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from playground.engine.error_place import told_at
-from playground.engine.plan import make_plan
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
+from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, stage, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from playground.engine.all_errors import all_mistakes
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Step, smallest_land
+from playground.engine.plan import Step
+from playground.engine.planner import smallest_land
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
 from playground.gpu.context import open_context

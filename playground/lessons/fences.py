@@ -114,7 +114,7 @@ def _figure(fence: Fence) -> Figure:
 
 
 def _steps(fence: Fence) -> Steps:
-    from playground.engine.plan import repeated_in, repeats_of  # it needs what is loaded by then only
+    from playground.engine.planner import repeated_in, repeats_of  # it needs what is loaded by then only
 
     fence.only(*STATE, "passes", "turns", "caption", "alt", "captions")
     scene = fence.scene(FRAME)

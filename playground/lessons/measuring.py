@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan, Step, Turns, every_node, make_plan, needed
+from playground.engine.plan import Plan, Step, Turns, every_node, needed
+from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
 from playground.lessons.model import Lesson, Measure, Scene, Words

@@ -90,7 +90,7 @@ def read_scene(
     size = _pixels(file, whole, place, shot.size if shot.name else pixels)
     try:
         if steps:
-            from playground.engine.plan import make_plan  # it needs what is loaded by then only
+            from playground.engine.planner import make_plan  # it needs what is loaded by then only
 
             make_plan(made, frame_size=size, time=time, steps=steps)
     except ParameterError as error:

@@ -15,9 +15,9 @@ slider only puts new values into it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
@@ -96,6 +96,13 @@ class Flat:
     values: dict[str, Value]  # every leaf parameter, by path
     outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
     wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
+    shape: Shape  # the same before any value is set
+    folder: str
+
+    @cached_property
+    def leaves(self) -> list[Leaf]:
+        """Every leaf, those inside loops included."""
+        return leaves_of(self.nodes)
 
     def user(self, path: str) -> PassSpec:
         """Return the sketch's own pass that a pass at any level belongs to."""
@@ -115,7 +122,7 @@ class Flat:
 
 
 @dataclass(frozen=True)
-class _Shape:
+class Shape:
     """A flat graph before any value is set."""
 
     nodes: tuple[Node, ...]  # leaves without values and folder
@@ -127,6 +134,7 @@ class _Shape:
     constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
     copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
     rules: tuple[Rule, ...]  # of parameters that follow others until they are set
+    readers: dict[str, set[str]]  # path of a value → the leaves that have it
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
 
 
@@ -136,6 +144,7 @@ def flatten(
     variants: Collection[str] = (),
     opened: tuple[str, ...] = (),
     stopped: tuple[str, ...] = (),
+    before: Flat | None = None,
 ) -> Flat:
     """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
 
@@ -143,6 +152,7 @@ def flatten(
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, nor for one that is itself among
     the ``stopped`` or that starts from something wired.
+    Of ``before``, an earlier result, the leaves are taken whose values are the same objects still.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
@@ -158,17 +168,34 @@ def flatten(
             values[target] = value
     follow(shape.rules, values)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
-    nodes = tuple(_filled(node, shape, values, sketch.folder) for node in shape.nodes)
-    return Flat(nodes, shape.specs, shape.graphs, values, shape.outputs, shape.wires)
+    fill = _Filler(shape, values, sketch.folder)
+    if before is None or before.shape is not shape or before.folder != sketch.folder:
+        nodes = tuple([fill.node(node) for node in shape.nodes])
+    else:
+        changed = [path for path, value in values.items() if value is not before.values[path]]
+        stale = set[str]().union(*[shape.readers.get(path, ()) for path in changed])
+        nodes = fill.renewed(before.nodes, stale)
+    return Flat(
+        nodes=nodes,
+        specs=shape.specs,
+        graphs=shape.graphs,
+        values=values,
+        outputs=shape.outputs,
+        wires=shape.wires,
+        shape=shape,
+        folder=sketch.folder,
+    )
 
 
-def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> Iterator[Leaf]:
-    """Yield every leaf, those inside loops included."""
+def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
+    """Return every leaf, those inside loops included."""
+    found: list[Leaf] = []
     for node in nodes:
         if isinstance(node, Loop):
-            yield from leaves_of(node.body)
+            found += leaves_of(node.body)
         else:
-            yield node
+            found.append(node)
+    return found
 
 
 @lru_cache(maxsize=32)
@@ -178,7 +205,7 @@ def _shape(
     opened: tuple[str, ...],
     stopped: tuple[str, ...],
     overrides: tuple[str, ...],
-) -> _Shape:
+) -> Shape:
     maker = _Flattener(key.object, kinds, opened, stopped, overrides)
     nodes = tuple(maker.expand(key.object, "", {}))
     outputs = {
@@ -192,17 +219,54 @@ def _shape(
     }
     inside = tuple(f"{path}.{INSIDE}." for path in maker.inside)  # there values are copied
     rules = rules_of({path: g for path, g in maker.graphs.items() if not f"{path}.".startswith(inside)})
-    return _Shape(
-        nodes, maker.specs, maker.graphs, outputs, wires, maker.paths, maker.constants, maker.copied, rules
+    readers: dict[str, set[str]] = {}
+    for leaf, pairs in maker.paths.items():
+        for _, path in pairs:
+            readers.setdefault(path, set()).add(leaf)
+    return Shape(
+        nodes=nodes,
+        specs=maker.specs,
+        graphs=maker.graphs,
+        outputs=outputs,
+        wires=wires,
+        paths=maker.paths,
+        constants=maker.constants,
+        copied=maker.copied,
+        rules=rules,
+        readers=readers,
     )
 
 
-def _filled(node: Node, shape: _Shape, values: Mapping[str, Value], folder: str) -> Node:
-    if isinstance(node, Loop):
-        body = tuple(_filled(inside, shape, values, folder) for inside in node.body)
-        return Loop(node.path, node.repeat, body, node.feedback, node.spec)
-    own = tuple((name, values[path]) for name, path in shape.paths[node.path])
-    return Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec)
+class _Filler:
+    """Puts values into the leaves of a shape."""
+
+    def __init__(self, shape: Shape, values: Mapping[str, Value], folder: str) -> None:
+        self.shape = shape
+        self.values = values
+        self.folder = folder
+
+    def node(self, node: Node) -> Node:
+        """Return a node of the shape with its values."""
+        if isinstance(node, Loop):
+            return replace(node, body=tuple([self.node(inside) for inside in node.body]))
+        values = self.values
+        own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
+        return Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec)
+
+    def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
+        """Return nodes that had values, with those of now in the ``stale`` leaves."""
+        if not stale:
+            return nodes
+        return tuple(
+            [
+                replace(node, body=self.renewed(node.body, stale))
+                if isinstance(node, Loop)
+                else self.node(node)
+                if node.path in stale
+                else node
+                for node in nodes
+            ]
+        )
 
 
 def _is_exported(graph: Graph, path: str) -> bool:

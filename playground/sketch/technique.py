@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from playground.errors import ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
+from playground.sketch.reserved_names import GIVEN
 from playground.sketch.source import Line, SourceText
 
 VARIANTS = ("compute", "passes")
@@ -92,10 +94,20 @@ class Kernel:
         """Absolute paths of every file the kernel is made of."""
         return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
 
+    @cached_property
+    def given(self) -> tuple[str, ...]:
+        """Which names the text reads of those that the engine gives: see ``reserved_names.GIVEN``."""
+        return tuple(name for name in GIVEN if self.reads(name))
+
     @property
     def pragma(self) -> Line | None:
         """The line of its header; a plain shader has none."""
         return next((line for line in self.source.lines if line.pragma and not line.chain), None)
+
+    @cached_property
+    def file_parameters(self) -> tuple[Parameter, ...]:
+        """Those of its parameters that name files."""
+        return tuple(p for p in self.parameters if p.widget.kind == "file")
 
     def error(self, message: str) -> ShaderError:
         """Return an error that points at its header."""

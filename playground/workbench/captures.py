@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob
 from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
@@ -120,7 +120,7 @@ def size_of(wish: Wish, actions: Actions) -> tuple[int, int]:
     return size
 
 
-def job_of(wish: Wish, actions: Actions) -> Job:
+def job_of(wish: Wish, actions: Actions) -> CaptureJob:
     """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
     session = actions.session
     if session.sketch is None:
@@ -141,7 +141,7 @@ def job_of(wish: Wish, actions: Actions) -> Job:
         swept(at, [read_sweep(at, text) for text in sweeps])
         if steps:
             raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
-    return Job(
+    return CaptureJob(
         kind=wish.kind,
         sketch=sketch,
         folder=actions.folder,

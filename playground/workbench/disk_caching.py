@@ -7,7 +7,7 @@ time, and nobody would be told which of them made it.
 from __future__ import annotations
 
 from playground.engine.disk_cache import store_for
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.workbench.actions import Actions
 from playground.workbench.non_finite import FiniteWatch
@@ -28,11 +28,11 @@ class Storing:
     def attach(self, engine: Engine) -> None:
         """Have an engine keep its land, from its next frame on."""
         if self._limit:
-            engine.keeping = Keeping(store_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(store_for(engine.info, self._limit))
 
     def turn(self, actions: Actions, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""
-        session, keeping = self._session, self._session.engine.keeping
+        session, keeping = self._session, self._session.engine.disk_caching
         self.patience = None
         if keeping is None or session.plan is None:
             return
@@ -50,5 +50,5 @@ class Storing:
 
     def close(self) -> None:
         """Wait until all is written that was read back."""
-        if self._session.engine.keeping is not None:
-            self._session.engine.keeping.close()
+        if self._session.engine.disk_caching is not None:
+            self._session.engine.disk_caching.close()

@@ -16,7 +16,8 @@ from playground.engine.engine import Engine
 from playground.engine.files import content_hash
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Plan, repeats_of
+from playground.engine.plan import Plan
+from playground.engine.planner import repeats_of
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.allowed_files import Signature, signature
 from playground.sketch.map_sketch import Map
@@ -353,9 +354,9 @@ class Session(Drafts):
         seen = self._framed(chosen, size)
         steps, now = self._steps_for(sketch), self.clock.time
         texture = self.engine.draw(seen, size=size, time=now, steps=steps, interpolated=self.interpolated)
-        if self.engine.ground.message and not self._told_of_ground:
+        if self.engine.eye_height.message and not self._told_of_ground:
             self._told_of_ground = True
-            self.notes.append(self.engine.ground.message)
+            self.notes.append(self.engine.eye_height.message)
         if self._read_for is not sketch:
             self._note_read(sketch)
         self.hasty = chosen is not sketch

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.plan import smallest_land
+from playground.engine.planner import smallest_land
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from playground.api import headless
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, do
 from playground.capture.job_process import JobProcess
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
@@ -230,7 +230,7 @@ def test_a_job_takes_a_new_name_every_time(actions: Actions) -> None:
 
 
 def test_a_job_in_its_process_gives_the_bytes_of_this_one(actions: Actions) -> None:
-    job = Job(
+    job = CaptureJob(
         kind=PICTURE,
         sketch=job_of(Wish(), actions).sketch,
         folder=actions.folder,
