@@ -12,19 +12,17 @@ import pytest
 from playground import cli
 from playground.images.files import read_png
 
+from ..sketch_texts import passes
+
 SKETCH = """format = 1
 title = "A small land without end"
 size = 25
 extent = 1440.0
 relief = 700.0
-[[pass]]
-name = "height"
-use = "generation/endless"
-set = { apron = 4, hills = 64, "detail.octaves" = 2 }
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-"""
+""" + passes(
+    height=("generation/endless", 'set = { apron = 4, hills = 64, "detail.octaves" = 2 }'),
+    light="lighting/l_dot_n",
+)
 HEADER = {
     "format": "playground flight",
     "version": 1,

@@ -26,6 +26,8 @@ from playground.shots.studio_child import _HEAD, _MARK, Rubbish, receive, send
 from playground.shots.suite import ShotCase, shots_of, take
 from playground.sketch.model import Graph, Shot, Sketch
 
+from ..sketch_texts import map_of_height
+
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"),
     reason="the reference renderer, Mesa's llvmpipe, is chosen by name on Linux",
@@ -42,16 +44,10 @@ float kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[preset]]
+SKETCH = (
+    "format = 1\nsize = 32\n"
+    + map_of_height(channel="red")
+    + """[[preset]]
 name = "dim"
 set = { "height.gain" = 0.1 }
 [[shot]]
@@ -74,6 +70,7 @@ name = "first"
 size = [32, 32]
 steps = { height = 1 }
 """
+)
 
 
 @pytest.fixture
@@ -393,21 +390,11 @@ def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: Studio, tmp_
         assert lives.read() == b""  # waits until the child is gone
 
 
-ENDING = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[shot]]
-name = "crash"
-[[shot]]
-name = "hang"
-[[shot]]
-name = "next"
-"""
+ENDING = (
+    "format = 1\nsize = 32\n"
+    + map_of_height()
+    + '[[shot]]\nname = "crash"\n[[shot]]\nname = "hang"\n[[shot]]\nname = "next"\n'
+)
 
 
 def test_a_real_childs_ends_are_told_by_the_plugin(

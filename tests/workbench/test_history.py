@@ -16,6 +16,8 @@ from playground.workbench.actions import Actions
 from playground.workbench.save_commands import rounded, save_a_copy, save_as_preset, save_values
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
+
 SIZE = (48, 32)
 KERNEL = """// land.glsl -- a slope
 #pragma kernel(output = "height:r32f")
@@ -23,18 +25,11 @@ uniform float level = 0.25; //! slider(0, 1)
 uniform float other = 0.0; //! slider(0, 1)
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + other; }
 """
-SKETCH = """format = 1  # ours
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0, "height.other" = 0.5 }
-"""
+SKETCH = (
+    "format = 1  # ours\nsize = 33\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
+)
 
 
 class Desk:

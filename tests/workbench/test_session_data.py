@@ -17,19 +17,15 @@ from playground.sketch.model import Camera
 from playground.terrain import elevation, sources
 from playground.workbench.session import Session, Stage
 
+from ..sketch_texts import map_of, passes
 from .test_session import FakeTrial
 
 SIZE = (32, 32)
-SKETCH = """format = 1
-extent = 100.0
-[[pass]]
-name = "height"
-use = "generation/heightmap"
-set = { elevation = "land.npy" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = (
+    "format = 1\nextent = 100.0\n"
+    + passes(height=("generation/heightmap", 'set = { elevation = "land.npy" }'))
+    + map_of("height")
+)
 
 
 @pytest.fixture
