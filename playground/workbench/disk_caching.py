@@ -7,7 +7,7 @@ time, and nobody would be told which of them made it.
 from __future__ import annotations
 
 from playground.engine.disk_cache import store_for
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.workbench.actions import Actions
 from playground.workbench.non_finite import FiniteWatch
@@ -28,21 +28,21 @@ class Storing:
     def attach(self, engine: Engine) -> None:
         """Have an engine keep its land, from its next frame on."""
         if self._limit:
-            engine.keeping = Keeping(store_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(store_for(engine.info, self._limit))
 
     def turn(self, actions: Actions, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""
-        session, keeping = self._session, self._session.engine.keeping
+        session, keeping = self._session, self._session.engine.disk_caching
         self.patience = None
-        if keeping is None or session.plan is None:
+        if keeping is None or session.plan is None or session.awaits_data:
             return
         keeping.skips = not (actions.see.graph.on or actions.see.inspector.on)
         if keeping.skipped and not keeping.skips and self._asked != session.draws:
             self._asked = session.draws
-            session.look_again()
+            session.redraw()
             return
         looked_at = finite.patience is None and not finite.found
-        if keeping.going or (looked_at and not session.testing and not session.hasty):
+        if keeping.going or (looked_at and not session.drafts.testing and not session.is_preview):
             self.patience = keeping.look(session.engine, session.plan)
         if keeping.store.trouble != self._told:
             self._told = keeping.store.trouble
@@ -50,5 +50,5 @@ class Storing:
 
     def close(self) -> None:
         """Wait until all is written that was read back."""
-        if self._session.engine.keeping is not None:
-            self._session.engine.keeping.close()
+        if self._session.engine.disk_caching is not None:
+            self._session.engine.disk_caching.close()

@@ -23,7 +23,7 @@ from pathlib import Path
 import moderngl
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.gpu.context import open_context
 from playground.paths import GLSL
 from playground.workbench.reload import Follower
@@ -41,7 +41,7 @@ class Bench:
     """A sketch in a folder, and a session that follows it as the window's does."""
 
     def __init__(
-        self, folder: Path, engine: Engine, trial: Trial, side: int, picture: tuple[int, int]
+        self, folder: Path, engine: Engine, trial: Sandbox, side: int, picture: tuple[int, int]
     ) -> None:
         self.engine, self.trial, self.picture = engine, trial, picture
         text = (GLSL / f"{KERNEL}.glsl").read_text(encoding="utf-8")
@@ -64,10 +64,10 @@ class Bench:
         for file in self.texts:
             self.save(file)
         self.woken = threading.Event()
-        self.session = Session(engine, folder, trial=trial)
+        self.session = Session(engine, folder, sandbox=trial)
         self.watcher = Watcher(self.woken.set, (".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
-        self.until(lambda: self.session.draws > 0 and not self.session.hasty)
+        self.until(lambda: self.session.draws > 0 and not self.session.is_preview)
 
     def save(self, file: Path) -> str:
         """Save a text that was never there; return the number in it."""
@@ -88,7 +88,7 @@ class Bench:
             if shown():
                 self.engine.ctx.finish()
                 return True
-            self.woken.wait(0.004 if self.session.testing else 0.05)
+            self.woken.wait(0.004 if self.session.drafts.testing else 0.05)
             self.woken.clear()
         return False
 
@@ -98,7 +98,7 @@ class Bench:
 
         def is_shown() -> bool:
             draft = self.session.shown
-            if draft is None or self.session.coming is not None:
+            if draft is None or self.session.drafts.coming is not None:
                 return False
             if file.suffix == ".toml":
                 return float(number) in dict(draft.file.graph.find("colour").values).values()
@@ -108,7 +108,7 @@ class Bench:
 
     def processor(self) -> float:
         """Return the seconds that processors have spent on this process and on the trial's."""
-        child = self.trial._child
+        child = self.trial._workers.worker
         return sum(spent(pid) for pid in (os.getpid(), child.pid if child else 0) if pid)
 
 
@@ -137,7 +137,7 @@ def objects() -> int:
 
 @contextmanager
 def opened(side: int, picture: tuple[int, int]) -> Iterator[Bench]:
-    with tempfile.TemporaryDirectory() as folder, Trial() as trial:
+    with tempfile.TemporaryDirectory() as folder, Sandbox() as trial:
         trial.start()
         with Engine(open_context(), owns_context=True) as engine:
             bench = Bench(Path(folder), engine, trial, side, picture)
@@ -203,7 +203,7 @@ def time_saves(bench: Bench, file: Path, saves: int) -> tuple[list[float], float
     """Return the milliseconds from each save to its picture, and those of processors for each."""
     times, used = [], 0.0
     for number in range(saves + 2):
-        bench.until(lambda: not bench.session.hasty)
+        bench.until(lambda: not bench.session.is_preview)
         time.sleep(PAUSE)
         before, start = bench.processor(), time.perf_counter()
         if not bench.save_and_show(file):

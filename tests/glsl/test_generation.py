@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.plan import repeats_of
+from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.find import is_part

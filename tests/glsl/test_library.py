@@ -16,6 +16,7 @@ TEXTS = sorted(
     p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp") and not p.is_relative_to(SKETCHES)
 )
 NAMES = [p.relative_to(GLSL).as_posix() for p in TEXTS]
+ASKED = re.compile(r"^(\w+) (\w+)\(([^()]*)\);$", re.MULTILINE)  # a function that the includer gives
 FACTS = ("gives", "needs", "units", "source", "tested")
 PURE = ("maths", "noise", "colour")
 
@@ -24,6 +25,11 @@ PURE = ("maths", "noise", "colour")
 def pure_files():
     """Return the names of the files that others include: they hold no kernel."""
     return [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
+
+
+def parameter_blocks():
+    """Return the names of those among them that hold parameters which several kernels share."""
+    return [n for n in pure_files() if "/parameters/" in n]
 
 
 def test_there_is_a_library():
@@ -55,7 +61,7 @@ def test_its_tests_are_there(name):
     assert (root / tested.group(1)).is_file()
 
 
-@each("name", pure_files)
+@each("name", lambda: [n for n in pure_files() if n not in parameter_blocks()])
 def test_it_holds_no_state(name):
     """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
     source = read_source(GLSL / name, (GLSL,))
@@ -71,6 +77,20 @@ def test_it_holds_no_state(name):
         assert not any(word.startswith("sampler") for word in source.names)
 
 
+@each("name", parameter_blocks)
+def test_a_block_of_parameters_holds_nothing_else(name):
+    source = read_source(GLSL / name, (GLSL,))
+    code = [line.code for line in source.lines if line.code and not line.code.startswith("#")]
+    assert code and all(line.startswith("uniform ") for line in code)
+    assert all(line.comment.startswith("!") for line in source.lines if line.code.startswith("uniform "))
+
+
+@each("name", [n for n in NAMES if n.split("/")[0] not in ("generation", "noise")])
+def test_its_lines_can_be_quoted(name):
+    lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
+    assert [f"{n}: {line}" for n, line in enumerate(lines, 1) if len(line) >= 100] == []
+
+
 @each("name", pure_files)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
@@ -82,7 +102,10 @@ def test_it_is_guarded(name):
 
 @each("name", pure_files)
 def test_it_compiles_alone(ctx, name):
-    code = read_source(GLSL / name, (GLSL,)).code
+    text, code = (GLSL / name).read_text(encoding="utf-8"), read_source(GLSL / name, (GLSL,)).code
+    assert bool(ASKED.search(text)) == ("//   asks " in text)
+    for kind, function, takes in ASKED.findall(code):
+        code += f"{kind} {function}({takes}) {{ return {kind}(0); }}\n"
     quad = "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n"
     for version in ("330", "430"):
         if ctx.version_code < int(version):

@@ -12,7 +12,7 @@ import pytest
 
 from playground.engine.disk_cache import listed
 from playground.engine.disk_caching import REST as LAND_RESTS
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
 from playground.workbench import disk_caching as storing_module
@@ -111,10 +111,10 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
     made = Desk(ctx, folder)
 
-    def keeping(store: object) -> Keeping:  # all land is worth it, by the test's clock
-        return Keeping(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
+    def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
+        return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(storing_module, "Keeping", keeping)
+    monkeypatch.setattr(storing_module, "DiskCaching", keeping)
     made.open()
     yield made
     made.close()
@@ -158,13 +158,13 @@ def test_nothing_is_kept_of_land_in_which_a_number_is_not_finite(desk: Desk, tmp
     """The next session must name the pass that made it, and so must run it."""
     assert desk.session is not None
     desk.turn()
-    desk.session.set("low.level", -0.5)
+    desk.session.drafts.set("low.level", -0.5)
     desk.rest()
     assert [found.path for found in desk.watch.found] == ["low"]
     assert desk.storing.patience is None
     desk.storing.close()
     assert kept(tmp_path) == set()
-    desk.session.set("low.level", 0.75)
+    desk.session.drafts.set("low.level", 0.75)
     desk.rest()
     desk.open()
     assert kept(tmp_path) == {"sketch: height"}
@@ -228,7 +228,7 @@ def test_a_folder_that_cannot_be_written_is_told_once(desk: Desk, tmp_path: Path
 
 def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
     assert desk.session is not None
-    desk.session.engine.keeping = None
+    desk.session.engine.disk_caching = None
     desk.storing = Storing(desk.session, 0)
     desk.rest()
     desk.close()
@@ -286,13 +286,13 @@ def test_land_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk:
     assert thumbnails.is_current(name)
     pool, outputs = engine.pool, engine.results["height"].outputs
     first = pool.take((5, 3), outputs)
-    engine.results = {**engine.results, "height": first}
+    engine.record.results = {**engine.results, "height": first}
     thumbnails.refresh([name], now=1.0)
     assert thumbnails.is_current(name)
     pool.give(first)
     again = pool.take((5, 3), outputs)
     assert again.textures["height"] is first.textures["height"]
-    engine.results = {**engine.results, "height": again}
+    engine.record.results = {**engine.results, "height": again}
     assert not thumbnails.is_current(name)
     thumbnails.release()
     again.release()

@@ -79,8 +79,8 @@ def test_one_item_among_many_takes_few_tries():
 
 def test_it_tries_the_same_each_time():
     def run():
-        seen = []
-        ddmin(range(20), lambda some: seen.append(tuple(some)) or {4, 17} <= set(some))
-        return seen
+        results = []
+        ddmin(range(20), lambda some: results.append(tuple(some)) or {4, 17} <= set(some))
+        return results
 
     assert run() == run()

@@ -308,3 +308,11 @@ def test_accepted_sizes_may_be_of_either_form():
     assert not is_accepted("2**n or 2**n + 1", (512, 513))
     assert nearest_accepted("2**n or 2**n + 1", (1000, 1000)) == ((513, 513), (1024, 1024))
     assert is_accepted("2**n or 2**n + 1, 2**m or 2**m + 1", (512, 65))
+
+
+def test_accepted_sizes_may_end():
+    assert accepted_sizes("2**n up to 16 or n up to 3", 100)[0] == (1, 2, 3, 4, 8, 16)
+    assert is_accepted("n up to 4097, m", (4097, 5000)) and not is_accepted("n up to 4097, m", (4098, 1))
+    for wrong in ("n up to", "n up to m", "n up to 4.5", "2 up to 1"):
+        with pytest.raises(ExpressionError):
+            accepted_sizes(wrong)

@@ -11,7 +11,8 @@ from playground.errors import PlaygroundError
 from playground.sketch import flatten as module
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flatten import Fed, Leaf, Loop, Ref, flatten, leaves_of
+from playground.sketch.flat import Fed, Leaf, Loop, Ref, leaves_of
+from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS
 from playground.sketch.wiring import (
     initial_names,

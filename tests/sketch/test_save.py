@@ -23,8 +23,8 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
-from playground.sketch.toml_lines import Place
-from playground.sketch.toml_spans import Spans, append, drop, put
+from playground.sketch.toml_edit import append, drop, put
+from playground.sketch.toml_places import Place, TomlPlaces
 
 from ..cases import each
 
@@ -59,7 +59,7 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
     path: Path, every: bool
 ) -> None:
     text = path.read_bytes().decode()
-    spans, found = Spans(text), dict(leaves(tomllib.loads(text)))
+    spans, found = TomlPlaces(text), dict(leaves(tomllib.loads(text)))
     assert {place for place in spans.pairs if place in found} == set(found), "tomllib sees the same values"
     for place, value in found.items():
         pair = spans.pairs[place]

@@ -66,7 +66,7 @@ def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
     wanted = set()
     for side in tiles.SIDES:
         step = 1 << (piece[1] + bool(piece[2] & side) if piece[1] < 4 else 4)
-        nodes = [(*node, 0) for node in tiles._side(side, step)]
+        nodes = [(*divmod(int(node), tiles.CELLS + 1)[::-1], 0) for node in tiles._side(side, step)]
         wanted |= set(pairwise(nodes))
     assert open_edges == wanted, "its sides are those of its neighbours"
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport, TrySketch
-from playground.errors import TrialTimeout
+from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.errors import SandboxTimeout
 from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
@@ -33,12 +33,12 @@ class SlowTrial:
 
     def __init__(self) -> None:
         self.asked: list[TrySketch] = []
-        self.answer: TrialReport | None = None
+        self.answer: SandboxReport | None = None
 
     def submit(self, request: TrySketch) -> None:
         self.asked.append(request)
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         found, self.answer = self.answer, None
         return found
 
@@ -59,13 +59,13 @@ class Desk:
         assert complaint == ""
         self.found = found.compared
         self.trial = SlowTrial()
-        self.session = Session(self.engine, self.folder, edits=found.edits, trial=self.trial)
+        self.session = Session(self.engine, self.folder, start=found.start, sandbox=self.trial)
         self.compare = Compare(self.session)
         self.rememberer = Rememberer(self.session, memory, found, compare=self.compare)
         self.session.frame(SIZE)
-        self.answer(TrialReport(True))
+        self.answer(SandboxReport(True))
 
-    def answer(self, report: TrialReport) -> None:
+    def answer(self, report: SandboxReport) -> None:
         self.trial.answer = report
         self.turn()
 
@@ -93,11 +93,11 @@ def desk(tmp_path: Path, any_engine: Engine):
 
 
 def compare_something(desk: Desk) -> None:
-    desk.session.set("height.level", 0.75)
+    desk.session.drafts.set("height.level", 0.75)
     desk.turn()
     desk.compare.keep()
     desk.compare.mode, desk.compare.split, desk.compare.gain = Mode.DIFFERENCE, 0.25, 16.0
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     desk.close()
 
@@ -109,13 +109,13 @@ def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
     desk.turn()
     assert not desk.compare.on and desk.rememberer.waits, "it waits for the trial"
     assert values_of(desk.trial.asked[-1].sketch)["height.level"] == 0.75
-    desk.answer(TrialReport(True))
+    desk.answer(SandboxReport(True))
     desk.turn()
     compare = desk.compare
     assert (compare.mode, compare.split, compare.gain) == (Mode.DIFFERENCE, 0.25, 16.0)
     assert desk.session.sketch is not None
     alone = desk.session.sketch.with_values({"height.level": 0.75})
-    if desk.session.hasty:
+    if desk.session.is_preview:
         desk.session.read()
         desk.turn()
     expected = desk.engine.render(framed(alone, 0.0, DEFAULT_PICTURE, SIZE), size=SIZE).array
@@ -128,7 +128,7 @@ def test_an_a_that_fails_the_trial_is_never_drawn(desk: Desk) -> None:
     desk.open()
     desk.turn()
     draws = desk.compare.draws
-    desk.answer(TrialReport(False, TrialTimeout("pass 'height' took longer than 10 s in the trial")))
+    desk.answer(SandboxReport(False, SandboxTimeout("pass 'height' took longer than 10 s in the trial")))
     desk.turn()
     assert not desk.compare.on and desk.compare.draws == draws
     assert any("A of the last session is left out: pass 'height' took" in note for note in desk.session.notes)
@@ -152,19 +152,19 @@ def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:
     desk.turn()
     asked = len(desk.trial.asked)
     (desk.folder / "land.glsl").write_text(LAND.replace("float(texel.x)", "float(texel.y)"), encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn()
-    assert len(desk.trial.asked) == asked + 1 and desk.session.testing
-    desk.answer(TrialReport(True))
-    assert not desk.session.testing and not desk.compare.on
+    assert len(desk.trial.asked) == asked + 1 and desk.session.drafts.testing
+    desk.answer(SandboxReport(True))
+    assert not desk.session.drafts.testing and not desk.compare.on
     desk.turn()
-    desk.answer(TrialReport(True))
+    desk.answer(SandboxReport(True))
     desk.turn()
     assert desk.compare.on and desk.session.error is None
 
 
 def test_nothing_compared_is_nothing_remembered(desk: Desk) -> None:
-    desk.session.set("height.level", 0.75)
+    desk.session.drafts.set("height.level", 0.75)
     desk.compare.keep()
     desk.compare.end()
     desk.turn()
