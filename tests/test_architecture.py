@@ -64,12 +64,6 @@ CIRCLES: tuple[set[str], ...] = (
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()
 GLSL_IN_PYTHON = {
-    "engine/fill_between.py",
-    "engine/kernels.py",
-    "engine/standalone.py",
-    "flight/cutter.py",
-    "flight/shaders.py",
-    "gpu/wrap.py",
     "workbench/inspect/blend.py",
     "workbench/inspect/legend.py",
     "workbench/inspect/surface_point.py",
