@@ -117,11 +117,9 @@ def run(
             engine,
             path,
             values=checked,
-            edits=found.edits,
-            in_file=dict(found.in_file),
-            camera_in_file=found.camera_in_file,
+            start=found.start,
             plain=plain,
-            trial=trial,
+            sandbox=trial,
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
@@ -266,11 +264,11 @@ class Live:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0:
             return 0.0
-        if self.session.testing:
+        if self.session.drafts.testing:
             return _TRIAL
         if self.warnings.waiting:
             return 0.0
-        if self.session.hasty:
+        if self.session.is_preview:
             return REST / 2
         if self.finite.patience is not None:
             return self.finite.patience
@@ -353,11 +351,11 @@ class Live:
         draw("what is not finite", lambda: draw_not_finite(found, actions, look, above), None)
         draw("the list of errors", lambda: draw_errors(actions, look, above), None)
         if picture is None and session.error is None:
-            subject, seconds = session.trying or (session.path.name, 0.0)
+            subject, seconds = session.drafts.checking or (session.path.name, 0.0)
             draw_waiting(trial_text(subject, seconds), look, area)
         else:
             draw_trial(session, look, area)
-        if picture is not None and session.sketch is not None and session.map is None:
+        if picture is not None and session.sketch is not None and session.view.map is None:
             parted, free = session.sketch, below_bar(actions, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = actions, picture, look, area, self.window.density
@@ -380,7 +378,7 @@ class Live:
 
     def _follow_up(self) -> None:
         """Do what waits for a moment without anything else to do."""
-        rests = self._settling == 0 and not self.session.testing
+        rests = self._settling == 0 and not self.session.drafts.testing
         if rests:
             self.warnings.look()
         self.status.write(self.actions, self.finite.found)

@@ -42,10 +42,10 @@ def draw_costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
         _plots(record, look)
     paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
     if any_variants(sketch.graph):
-        changed, plain = imgui.checkbox("Plain form", session.plain)
+        changed, plain = imgui.checkbox("Plain form", session.drafts.plain)
         imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
         if changed:
-            session.run_plain(plain)
+            session.drafts.run_plain(plain)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     if imgui.begin_table("costs", 3, flags):
         for path in paths:
@@ -62,9 +62,9 @@ def draw_costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
     compiled = session.last_reload
     if compiled is not None:
         imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms")
-        if compiled.trial:
+        if compiled.sandbox:
             imgui.same_line(0, 0)
-            imgui.text_disabled(f", {compiled.trial * 1e3:.0f} of them the trial")
+            imgui.text_disabled(f", {compiled.sandbox * 1e3:.0f} of them the sandbox")
     _compiling(engine.runner.compile_times)
 
 

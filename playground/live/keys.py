@@ -42,7 +42,7 @@ KEYS: tuple[Key, ...] = (
     Key(imgui.Key.none, ".", "a frame of time on", "", lambda a: a.step_time(1), letter="."),
     Key(imgui.Key.l, "L", "time goes round, or no longer", "", lambda a: a.toggle_loop()),
     Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
-    Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.reset_camera()),
+    Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.drafts.set_camera(None)),
     Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
     Key(
         imgui.Key.i,

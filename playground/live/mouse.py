@@ -38,7 +38,7 @@ class Hand:
         left, right = _dragged(0), _dragged(1)
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
-                session.turn_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
+                session.drafts.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
             return
         if self._divide(io.mouse_pos.x - area[0], area[2]) or (not io.key_shift and self._paint(area)):
             left = False
@@ -55,7 +55,7 @@ class Hand:
             # Keyframes move the camera; a drag begins where it stood in the picture that is seen.
             plan, sketch = session.plan, session.sketch
             camera = sketch.camera if by_hand else sketch.at(plan.time).camera
-            session.look(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
+            session.drafts.set_camera(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
@@ -64,7 +64,7 @@ class Hand:
     def _divide(self, across: float, width: float) -> bool:
         """Move the line that is held, or take hold of the one under the mouse; say whether one is held."""
         session = self.session
-        if session.map is not None or session.sketch is None:
+        if session.view.map is not None or session.sketch is None:
             return False
         if imgui.is_mouse_clicked(0):
             self.divider = divider_at(session.sketch, across, width)
@@ -72,7 +72,7 @@ class Hand:
             self.divider = ""
         motion = imgui.get_io().mouse_delta
         if self.divider and motion.x:
-            session.set(self.divider, moved(across, width))
+            session.drafts.set(self.divider, moved(across, width))
         if motion.x or motion.y:
             self.on_divider = bool(self.divider or divider_at(session.sketch, across, width))
         if self.on_divider:

@@ -37,7 +37,7 @@ def draw_not_finite(watch: FiniteWatch, actions: Actions, look: Theme, area: Are
         return
     session, first = actions.session, watch.found[0]
     ref = ref_of(first)
-    shows = session.map is not None and session.map.ref == ref
+    shows = session.view.map is not None and session.view.map.ref == ref
     if shows:
         centre = ImVec2(*place_in(first, area))
         draw = imgui.get_background_draw_list()

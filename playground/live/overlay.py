@@ -25,7 +25,7 @@ def draw_waiting(text: str, look: Theme, area: Area) -> None:
 
 def draw_trial(session: Session, look: Theme, area: Area) -> None:
     """Say that a trial is running, and for what, once it has taken so long that a person wonders."""
-    trying = session.trying
+    trying = session.drafts.checking
     if trying is None or trying[1] < PATIENCE:
         return
     margin, padding = 14 * look.scale, 9 * look.scale

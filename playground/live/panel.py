@@ -86,14 +86,14 @@ class Panel:
 def _map(actions: Actions, look: Theme) -> None:
     """Draw how the map is shown, while there is one."""
     session = actions.session
-    if session.map is None:
+    if session.view.map is None:
         return
-    for parameter in session.map.kernel.parameters:
-        path, value = f"map.{parameter.name}", session.map.value(parameter.name)
+    for parameter in session.view.map.kernel.parameters:
+        path, value = f"map.{parameter.name}", session.view.map.value(parameter.name)
         with row(parameter.title, explanation(parameter, path)):
             changed = draw_value(parameter, value, Place(f"##{path}", look.scale, Path()))
         if changed is not None:
-            session.set_map(parameter.name, changed)
+            session.view.set_map(parameter.name, changed)
     if imgui.button("Fit to the values"):
         session.fit_map()
     draw_spread(actions, look)

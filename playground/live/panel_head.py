@@ -207,14 +207,14 @@ def _resets(actions: Actions) -> None:
     if not imgui.begin_popup("resets"):
         return
     edits = session.shown.edits if session.shown else None
-    touched = edits is not None and bool(edits.values or edits.techniques or session.steps)
+    touched = edits is not None and bool(edits.values or edits.techniques or session.view.steps)
     if imgui.menu_item_simple("View", "R", False, edits is not None and edits.camera is not None):
-        session.reset_camera()
+        session.drafts.set_camera(None)
     if imgui.menu_item_simple("All values and techniques", "", False, touched):
         actions.reset_values()
     if imgui.menu_item_simple("Locks", "", False, edits is not None and bool(edits.locked)):
         for path in edits.locked if edits is not None else ():
-            session.lock(path, False)
+            session.drafts.lock(path, False)
     imgui.end_popup()
 
 
@@ -306,12 +306,12 @@ def _shown(actions: Actions) -> None:
     session = actions.session
     with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
         if imgui.begin_combo(
-            "##shown", fitting_choice(ref_name(session.map.ref) if session.map else _OWN_VIEW)
+            "##shown", fitting_choice(ref_name(session.view.map.ref) if session.view.map else _OWN_VIEW)
         ):
-            if imgui.selectable(_OWN_VIEW, session.map is None)[0]:
+            if imgui.selectable(_OWN_VIEW, session.view.map is None)[0]:
                 actions.show(None)
             for ref in session.refs:
-                now = session.map is not None and session.map.ref == ref
+                now = session.view.map is not None and session.view.map.ref == ref
                 if imgui.selectable(ref_name(ref), now)[0]:
                     actions.show(ref)
             imgui.end_combo()

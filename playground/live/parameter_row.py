@@ -42,18 +42,18 @@ def draw_parameter(
                 if _typing(item, values, memory, actions):
                     new = None
             if new is not None:
-                session.set(path, new)
+                session.drafts.set(path, new)
     locked = path in values.locked
     mouse = imgui.get_mouse_pos()
     here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered(_PRESSED)
     if locked or here:
         imgui.same_line(end - 2 * slot() - 2)
         if _lock(path, locked, look):
-            session.lock(path, not locked)
+            session.drafts.lock(path, not locked)
     if changed:
         imgui.same_line(end - slot())
         if cross(f"{item.label}-reset", "Back to the file's value"):
-            session.unset(path)
+            session.drafts.unset(path)
     if here and imgui.is_mouse_clicked(1):
         memory.menu, memory.menu_opens = item.label, True
 
@@ -73,9 +73,9 @@ def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: A
         if imgui.menu_item_simple("Type a value", "double click"):
             open_entry(item, values, memory, actions)
         if imgui.menu_item_simple("Reset", "", False, path in values.changed):
-            session.unset(path)
+            session.drafts.unset(path)
         if imgui.menu_item_simple("Unlock" if locked else "Lock"):
-            session.lock(path, not locked)
+            session.drafts.lock(path, not locked)
         if imgui.menu_item_simple("Copy as --set"):
             text = write(item.parameter, values.of[path])
             imgui.set_clipboard_text(f"--set {path}={text}")
@@ -104,9 +104,9 @@ def _typing(item: Item, values: Values, memory: Memory, actions: Actions) -> boo
     open_entry(item, values, memory, actions)
     if not imgui.get_io().key_ctrl and held == path:
         if by_hand:
-            session.set(path, before)
+            session.drafts.set(path, before)
         else:
-            session.unset(path)
+            session.drafts.unset(path)
         memory.entry_text = write(item.parameter, before)
     return True
 
@@ -126,7 +126,7 @@ def _entry(item: Item, memory: Memory, actions: Actions) -> None:
     left = imgui.is_item_deactivated()
     if entered or (left and not imgui.is_key_pressed(imgui.Key.escape)):
         try:
-            actions.session.set(item.path, read_typed(item.parameter, memory.entry_text, item.path))
+            actions.session.drafts.set(item.path, read_typed(item.parameter, memory.entry_text, item.path))
         except ParameterError as error:
             actions.say(str(error))
     if entered or left:

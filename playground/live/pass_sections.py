@@ -75,7 +75,7 @@ class Sections:
             if imgui.begin_combo("##use", _use_name(spec.use), imgui.ComboFlags_.height_large):
                 for use in self._choices_for(spec.name, actions):
                     if imgui.selectable(use, use == spec.use)[0]:
-                        actions.session.choose(spec.name, use)
+                        actions.session.drafts.choose(spec.name, use)
                 imgui.end_combo()
 
     def _choices_for(self, name: str, actions: Actions) -> list[str]:
@@ -226,10 +226,10 @@ def _steps(spec: PassSpec, actions: Actions) -> None:
         if whole > 0 and (path == spec.name or path.startswith(f"{spec.name}."))
     }
     for path, whole in mine.items():
-        turn = session.steps.get(path, whole)
+        turn = session.view.steps.get(path, whole)
         label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
         note = f"How many of its {counted(whole, 'turn')} {path} has taken; Ctrl+click to type a number"
-        with row(label, note, edited=path in session.steps):
+        with row(label, note, edited=path in session.view.steps):
 
             def words(now: int, last: int = whole) -> str:
                 return f"all {now}" if now == last else str(now)
@@ -237,11 +237,12 @@ def _steps(spec: PassSpec, actions: Actions) -> None:
             chosen = slide_whole(f"##steps of {path}", turn, (0, whole), words)
             if chosen is not None:
                 session.stop_at(path, chosen)
-    if any(path in session.steps for path in mine) and any(k.between for _, k in kernels_of(spec.technique)):
+    stopped = any(path in session.view.steps for path in mine)
+    if stopped and any(k.between for _, k in kernels_of(spec.technique)):
         with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
-            changed, on = imgui.checkbox("##interpolated", session.interpolated)
+            changed, on = imgui.checkbox("##interpolated", session.view.interpolated)
             if changed:
-                session.interpolate(on)
+                session.view.interpolate(on)
 
 
 def _use_name(use: str) -> str:

@@ -43,24 +43,25 @@ class Status:
         if self.path is None:
             return
         session = actions.session
+        checking = session.drafts.checking or ("", 0.0)
         now = {
             "draws": session.draws,
             "picture": self._hash(actions),
             "error": str(session.error) if session.error else "",
-            "stage": session.stage.name,
+            "stage": session.drafts.stage.name,
             "notices": [n.text for n in actions.notices],
             "playing": session.clock.playing,
             "typing": typing(actions),
             "takes_text": imgui.get_io().want_text_input,
             "unsaved": unsaved(actions.editing),
-            "map": session.map.ref if session.map else "",
-            "steps": dict(session.steps),
+            "map": session.view.map.ref if session.view.map else "",
+            "steps": dict(session.view.steps),
             "saved": str(actions.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(found) for found in not_finite],
             "runs": dict(session.engine.runs),
             "edited": dict(session.shown.edits.values) if session.shown else {},
-            "trying": session.trying[0] if session.trying and session.trying[1] >= PATIENCE else "",
+            "trying": checking[0] if checking[1] >= PATIENCE else "",
             "layers": open_layers(actions),
         }
         if now != self._last:

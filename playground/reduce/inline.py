@@ -11,7 +11,7 @@ from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
 from playground.sketch.annotation import note_at
-from playground.sketch.flatten import Ref, Source
+from playground.sketch.flat import Ref, Source
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText

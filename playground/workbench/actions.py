@@ -19,7 +19,7 @@ from playground.workbench.inspect.toggles import See
 from playground.workbench.interface_size import InterfaceSize
 from playground.workbench.painting import Painting
 from playground.workbench.problems import Problems
-from playground.workbench.reload_stages import Stage
+from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 from playground.workbench.snapshot import save_new
 from playground.workbench.text_file import Editing
@@ -105,7 +105,7 @@ class Actions:
 
     def toggle_map(self) -> None:
         """Go between the sketch's own view and the map last looked at, at first of the first texture."""
-        if self.session.map is not None:
+        if self.session.view.map is not None:
             self.session.show(None)
             return
         refs = self.session.refs
@@ -163,7 +163,7 @@ class Actions:
         session, self.held = self.session, held
         if session.shown is not None:
             draft = session.shown
-            self.history.look(draft.edits, session.steps, draft.file, held=held, now=self.now())
+            self.history.look(draft.edits, session.view.steps, draft.file, held=held, now=self.now())
 
     def undo(self) -> None:
         """Take the last step back; with the brush in the hand, the last stroke."""
@@ -210,7 +210,7 @@ class Actions:
         session = self.session
         if session.shown is None:
             return
-        wanted = applied(state_of(self._asked(), session.steps), changes)
+        wanted = applied(state_of(self._asked(), session.view.steps), changes)
         keyframes = wanted.pop((KEYFRAMES, ""), None)
         if isinstance(keyframes, tuple):
             from playground.workbench.keyframe_edits import put_back  # it needs this module
@@ -220,16 +220,16 @@ class Actions:
         if isinstance(time, float):
             session.clock.time = time
         stops = steps_of(wanted)
-        for path in {*session.steps, *stops}:
+        for path in {*session.view.steps, *stops}:
             session.stop_at(path, stops.get(path, -1))
-        session.restore(edits_of(wanted))
-        self.history.settle(session.shown.edits, session.steps)
+        session.drafts.restore(edits_of(wanted))
+        self.history.settle(session.shown.edits, session.view.steps)
 
     def _asked(self) -> Edits:
         """Return the edits of now, or those that an undo has asked for and that are still tried."""
         session = self.session
         assert session.shown is not None
-        coming = session.coming if session.stage is not Stage.FAILED else None
+        coming = session.drafts.coming if session.drafts.stage is not ReloadStage.FAILED else None
         return coming.edits if coming is not None else session.shown.edits
 
     def seek(self, time: float) -> None:
@@ -259,7 +259,7 @@ class Actions:
         locked = len(set(values) & set(draft.edits.locked))
         self.look_back(False)
         self.history.call(name)
-        self.session.set_all(values)
+        self.session.drafts.set_all(values)
         self.look_back(False)
         kept = f"; {counted(locked, 'locked parameter')} left alone" if locked else ""
         self.say(f"{name}: {counted(len(values) - locked, 'parameter')}{kept}")
@@ -284,5 +284,5 @@ class Actions:
         if draft is not None:
             self.look_back(False)
             self.history.call(f"Reset {name}")
-            self.session.unset(*(path for path in paths if path not in draft.edits.locked))
+            self.session.drafts.unset(*(path for path in paths if path not in draft.edits.locked))
             self.look_back(False)

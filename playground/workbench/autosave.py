@@ -15,7 +15,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SandboxError
 from playground.folders import state_folder
 from playground.sketch.map_sketch import Map
-from playground.workbench.edit_merge import Said, said_by_files
+from playground.workbench.edit_merge import FileValue, file_values
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.compare import Compare
 from playground.workbench.memory import Memory, Remembered
@@ -53,7 +53,7 @@ class Rememberer:
         self._written_at = now()
         self._is_told = False
         self._recalled = False  # what is shown was set in an earlier session
-        self._in_file: tuple[Draft | None, tuple[tuple[str, Said], ...]] = (None, ())
+        self._in_file: tuple[Draft | None, tuple[tuple[str, FileValue], ...]] = (None, ())
         self._compared = Remembered().compared
         self._recall(found or Remembered())
 
@@ -68,8 +68,7 @@ class Rememberer:
         self._memory = Memory(sketch, self._memory.path.parent)
         found, complaint = self._memory.read()
         session = self.session
-        in_file = dict(found.in_file)
-        session.open(sketch, edits=found.edits, in_file=in_file, camera_in_file=found.camera_in_file)
+        session.open(sketch, start=found.start)
         session.notes.extend(filter(None, [complaint]))
         self._path, self._seen, self._written, self._is_told = session.path, None, None, False
         self._recall(found)
@@ -85,7 +84,7 @@ class Rememberer:
             self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
             self._seen = self._written = None
             self._is_told, self._compared = False, None
-        if session.shown is None or session.leaves:
+        if session.shown is None or session.drafts.opening:
             if self._recalled and isinstance(session.error, SandboxError):
                 session.notes.append("playground live --fresh opens it without what was set by hand")
                 self._recalled = False
@@ -129,23 +128,23 @@ class Rememberer:
         self._recalled = not found.is_nothing
         clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
         if found.loop is not None:
-            clock.go_round(*found.loop)
-        session.view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
+            clock.set_loop(*found.loop)
+        session.restore_view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:
         session = self.session
         if self._in_file[0] is not draft:
             paths = [path for path, _ in draft.edits.values]
-            self._in_file = draft, tuple(said_by_files(draft.base, paths).items())
+            self._in_file = draft, tuple(file_values(draft.base, paths).items())
         return Remembered(
             draft.edits,
             self._in_file[1],
             session.clock.time if session.animated else 0.0,
             session.clock.playing,
             session.clock.speed,
-            session.map.ref if session.map else "",
-            session.map.values if session.map else (),
-            tuple(sorted(session.steps.items())),
+            session.view.map.ref if session.view.map else "",
+            session.view.map.values if session.view.map else (),
+            tuple(sorted(session.view.steps.items())),
             window,
             at,
             draft.file.camera if draft.edits.camera is not None else None,

@@ -125,9 +125,9 @@ def job_of(wish: Wish, actions: Actions) -> CaptureJob:
     session = actions.session
     if session.sketch is None:
         raise DataError("there is no picture to save yet")
-    sketch = session.map.of(session.sketch) if session.map is not None else session.sketch
+    sketch = session.view.map.of(session.sketch) if session.view.map is not None else session.sketch
     turns = session.repeats
-    steps = {path: turn for path, turn in session.steps.items() if turn < turns.get(path, 0)}
+    steps = {path: turn for path, turn in session.view.steps.items() if turn < turns.get(path, 0)}
     size = size_of(wish, actions)
     moves = wish.kind in (FILM, PICTURES)
     time_of = wish.start if moves else session.clock.time

@@ -1,4 +1,4 @@
-"""Which files a sketch stands on, so that they can be watched."""
+"""Which files a sketch depends on, so that they can be watched."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from playground.errors import DataError, PlaygroundError
 from playground.paths import GLSL, current_folder
 from playground.sketch.allowed_files import Signature
 from playground.sketch.assign import values_of
-from playground.sketch.model import Sketch, kernels_of
+from playground.sketch.model import Sketch
+from playground.workbench.traits import traits_of
 
 
 def files_of(sketch: Sketch) -> frozenset[Path]:
@@ -24,16 +25,16 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
 def data_files(sketch: Sketch) -> frozenset[Path]:
     """Return the images and elevation files that a sketch's parameters name, there or missing."""
     found: set[Path] = set()
-    values = values_of(sketch)
-    for prefix, kernel in kernels_of(sketch.graph):
-        for parameter in kernel.parameters:
-            text = values.get(f"{prefix}.{parameter.name}")
-            if parameter.widget.kind != "file" or not text:
-                continue
-            try:
-                found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
-            except DataError:
-                found.add(Path(sketch.folder, str(text)))
+    parameters = traits_of(sketch).files
+    values = values_of(sketch) if parameters else {}
+    for path, parameter in parameters:
+        text = values.get(path)
+        if not text:
+            continue
+        try:
+            found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
+        except DataError:
+            found.add(Path(sketch.folder, str(text)))
     return frozenset(found)
 
 

@@ -34,15 +34,15 @@ class Storing:
         """Do a piece of what is to be done, if it is time to."""
         session, keeping = self._session, self._session.engine.disk_caching
         self.patience = None
-        if keeping is None or session.plan is None:
+        if keeping is None or session.plan is None or session.awaits_data:
             return
         keeping.skips = not (actions.see.graph.on or actions.see.inspector.on)
         if keeping.skipped and not keeping.skips and self._asked != session.draws:
             self._asked = session.draws
-            session.look_again()
+            session.redraw()
             return
         looked_at = finite.patience is None and not finite.found
-        if keeping.going or (looked_at and not session.testing and not session.hasty):
+        if keeping.going or (looked_at and not session.drafts.testing and not session.is_preview):
             self.patience = keeping.look(session.engine, session.plan)
         if keeping.store.trouble != self._told:
             self._told = keeping.store.trouble

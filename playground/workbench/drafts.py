@@ -1,19 +1,19 @@
-"""The drafts of a sketch being worked on: what its files say, what was set by hand, what is wrong.
+"""The drafts of a sketch being worked on: what its files say, the user's edits, what is wrong. Draws nothing.
 
 There are at most two. ``shown`` is the last one that drew well; ``coming`` is what was
-saved or chosen since: it is tried (in the trial child, where there is one), then drawn,
-and only then takes the place of ``shown``. If it fails, its error is kept and ``shown``
-stays. Who draws them is ``workbench.session``.
+saved or chosen since: it goes through the sandbox (where there is one), is then drawn,
+and only then replaces ``shown``. If it fails, its error is reported and ``shown`` stays.
+``workbench.session`` draws them.
 """
 
 from __future__ import annotations
 
 import time
-from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
@@ -27,68 +27,74 @@ from playground.sketch.technique_cache import KeptTechniques
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
-from playground.workbench.clock import Clock
 from playground.workbench.dependencies import watched
-from playground.workbench.edit_merge import Said, said_by_files
 from playground.workbench.edits import Draft, Edits, reload_draft, taken
-from playground.workbench.reload_stages import Stage, Tester, explained, gone
-from playground.workbench.resume import first_draft
+from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error
+from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
 
 _NAMED = 2  # files that are named of those saved at once
 
 
-class Drafts(ABC):
-    """What is shown of a sketch's files, what is coming, and what was set by hand."""
+class Drawn(Protocol):
+    """What has been drawn already: it needs no sandbox."""
+
+    def needs_drawing(self, sketch: Sketch) -> bool:
+        """Say whether the driver would get anything that it has not drawn already."""
+
+    def reads_new_data(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checks:
+    """Where and how a draft is checked before it is drawn."""
+
+    driver: str
+    variants: tuple[str, ...] = ()  # kinds of fast variants that can run
+    sandbox: Sandbox | None = None
+    now: Callable[[], float] = time.perf_counter  # [s] of any clock
+    sketch_time: Callable[[], float] = lambda: 0.0  # [s] at which the sandbox draws
+
+
+class Drafts:
+    """What is shown of a sketch's files, what is coming, and the user's edits."""
 
     def __init__(
         self,
         path: str | Path,
+        checks: Checks,
+        drawn: Drawn,
         *,
-        driver: str,
-        variants: Collection[str] = (),
+        start: StoredEdits | None = None,
         plain: bool = False,
-        values: Mapping[str, Value] | None = None,
-        edits: Edits | None = None,
-        in_file: Mapping[str, Said] | None = None,
-        camera_in_file: Camera | None = None,
-        trial: Tester | None = None,
-        now: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.path = find(path or "").absolute()  # the current folder may be deleted meanwhile
-        self.clock = Clock()
         self.shown: Draft | None = None
         self.coming: Draft | None = None
-        self.stage = Stage.NONE
-        self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them takes them out
+        self.stage = ReloadStage.NONE
+        self.revision = 0  # counts what may change the picture
+        self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them removes them
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
-        self.texts: Mapping[str, str] = {}  # what stands in for shaders' files, by absolute path
-        edits = edits or Edits()
-        for name, value in (values or {}).items():
-            edits = edits.with_value(name, value)
-        self._initial = edits  # set by hand in an earlier session; the values, on the command line
-        self._in_file = {k: v for k, v in (in_file or {}).items() if k not in (values or {})}
-        self._camera_in_file = camera_in_file
-        self._another = False  # what is coming is another sketch than the one that is shown
-        self._driver = driver
+        self.texts: Mapping[str, str] = {}  # replace shaders' files, by absolute path
         self.plain = plain  # every technique in its canonical form
-        self._variants = tuple(variants)  # kinds of fast variants that can run
+        self.draw_error: PlaygroundError | None = None  # of what is shown
+        self.opening = False  # another sketch is coming than the one that is shown
+        self.started = 0.0  # when what is coming began to be read
+        self.sandbox_seconds = 0.0  # [s] that the sandbox took for it
+        self.sandboxed = checks.sandbox is not None
+        self._checks = checks
+        self._drawn = drawn
+        self._start = start or StoredEdits()
         self._techniques = KeptTechniques()
-        self._trial = trial
-        self._now = now
-        self._started = 0.0  # when what is coming began to be read
-        self._subject = self.path.name  # what it is read, or tried, for
-        self._trial_seconds = 0.0
-        self._file_by_hand = False  # what is coming has a file that was chosen by hand
-        self._own_files: set[Path] = set()  # written by this process itself, and so known to be good
-        self._aside: Sketch | None = None  # what the trial was handed last, where that is not what is coming
+        self._subject = self.path.name  # what is read, or checked
+        self._new_file = False  # what is coming names a data file that the user chose
+        self._aside: Sketch | None = None  # what the sandbox got last, where that is not what is coming
         self._coming_notes: list[str] = []
         self._file_error: PlaygroundError | None = None  # of what is coming
-        self._draw_error: PlaygroundError | None = None  # of what is shown
-        self._revision = 0  # of what is to be seen
 
-    # ── what they are ────────────────────────────────────────────────────────
+    # ── state ────────────────────────────────────────────────────────────────
 
     @property
     def sketch(self) -> Sketch | None:
@@ -98,33 +104,34 @@ class Drafts(ABC):
     @property
     def error(self) -> PlaygroundError | None:
         """What is wrong just now."""
-        return self._file_error or self._draw_error
+        return self._file_error or self.draw_error
 
     @property
     def testing(self) -> bool:
-        """Whether an answer of the trial is awaited."""
-        return self.stage is Stage.TRIAL
+        """Whether an answer of the sandbox is awaited."""
+        return self.stage is ReloadStage.SANDBOX
 
     @property
-    def trying(self) -> tuple[str, float] | None:
-        """What is tried just now, a file or a technique, and for how long [s]; None while nothing is."""
-        return (self._subject, self._now() - self._started) if self.testing else None
-
-    @property
-    def leaves(self) -> bool:
-        """Whether another sketch was opened, and the one before is still shown."""
-        return self._another
+    def checking(self) -> tuple[str, float] | None:
+        """What the sandbox checks, a file or a technique, and for how long [s]; None if nothing."""
+        return (self._subject, self._checks.now() - self.started) if self.testing else None
 
     @property
     def files(self) -> frozenset[Path]:
         """Every file worth watching: of the drafts, those that an error points at, and where others may come.
 
-        See ``files.watched``.
+        See ``dependencies.watched``.
         """
         drafts = [draft for draft in (self.shown, self.coming) if draft is not None]
-        errors = [error for error in (self._file_error, self._draw_error) if error is not None]
+        errors = [error for error in (self._file_error, self.draw_error) if error is not None]
         sketches = [sketch for draft in drafts for sketch in (draft.sketch, draft.file)]
         return watched(self.path, sketches, errors, self.places)
+
+    @property
+    def stored(self) -> StoredEdits:
+        """What ``open`` takes to restore the edits of the sketch that is open; it may not be shown yet."""
+        draft = self.coming if self.opening else self.shown or self.coming
+        return self._start if draft is None else stored(draft)
 
     # ── files ────────────────────────────────────────────────────────────────
 
@@ -133,62 +140,54 @@ class Drafts(ABC):
 
         ``changed``: the files that were saved, where that is known.
         """
-        self._subject = _listed(changed) or self.path.name
+        self._begin(_listed(changed) or self.path.name)
         self.read_at = time.time()
-        self._started = self._now()
+        chosen = self._unproved
+        old = None if self.opening else chosen or self.shown or self.coming
         try:
             with noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             loaded = loaded.plainly(self.plain)
-            chosen = self._chosen_by_hand
-            old = None if self._another else chosen or self.shown or self.coming
-            draft, notes = (
-                reload_draft(old, loaded)
-                if old
-                else first_draft(loaded, self._initial, self._in_file, self._camera_in_file)
-            )
+            draft, notes = reload_draft(old, loaded) if old else first_draft(loaded, self._start)
         except Exception as error:
             self._drop_coming()
-            self._file_error = gone(self.path) or explained(error, self.path)
+            self._file_error = missing_file_error(self.path) or explained(error, self.path)
             return
-        if chosen is None and self.shown is not None and loaded == self.shown.file and not self._another:
+        shown = None if self.opening else self.shown
+        if chosen is None and shown is not None and loaded == shown.file:
             self._drop_coming()
-            self._file_error = self._draw_error = None
-            self._revision += 1  # the texts are the same, but an image may be another
-            if self._trial is not None and self._reads_anew(self.shown.sketch):
-                self._propose(self.shown, [])
+            self._file_error = self.draw_error = None
+            self.revision += 1  # the texts are the same, but an image may have changed
+            if self.sandboxed and self._drawn.reads_new_data(shown.sketch):
+                self._propose(shown, [])
             return
-        if self.shown is not None and not self._another:
-            notes = [*notes, *map(str, newly_shadowed(self.shown.file, draft.sketch))]
-        known = () if old is None else left_out(old.base, self._variants)
-        plain_forms = [note for note in left_out(draft.base, self._variants) if note not in known]
-        self._propose(draft, [*notes, *plain_forms], by_hand=chosen is not None)
+        if shown is not None:
+            notes += map(str, newly_shadowed(shown.file, draft.sketch))
+        variants = self._checks.variants
+        known = () if old is None else left_out(old.base, variants)
+        notes += [note for note in left_out(draft.base, variants) if note not in known]
+        self._propose(draft, notes, new_file=chosen is not None)
 
     def open(
         self,
         path: Path,
         *,
         keep: bool = False,
-        edits: Edits | None = None,
-        in_file: Mapping[str, Said] | None = None,
-        camera_in_file: Camera | None = None,
+        start: StoredEdits | None = None,
         texts: Mapping[str, str] | None = None,
     ) -> None:
         """Open another sketch; the picture stays until that one has proved good.
 
-        ``keep``: it is a copy of this one, and what is set by hand goes on. ``edits``: what is set
-        by hand in the other; ``in_file`` and ``camera_in_file``: what its files said then; ``texts``:
-        what stands in for some of them.
+        ``keep``: it is a copy of this one, and the user's edits go on. ``start``: the edits of the
+        other; ``texts`` replace some of its files.
         """
         self.path, self.texts = find(path).absolute(), texts or {}
         if not keep:
-            self._initial, self._in_file, self._another = edits or Edits(), dict(in_file or {}), True
-            self._camera_in_file = camera_in_file
-            self._forget_view()
+            self._start, self.opening = start or StoredEdits(), True
         self.reload()
 
     def read_as(self, texts: Mapping[str, str]) -> None:
-        """Have texts, by absolute path, stand in for shaders' files; nothing is written."""
+        """Replace shaders' files by texts, by absolute path; nothing is written."""
         if texts != self.texts:
             self.texts = dict(texts)
             self.reload()
@@ -203,82 +202,95 @@ class Drafts(ABC):
         """Fill a pass with another technique, once that has proved good."""
         if self.shown is None:
             return
-        self._started, self._subject = self._now(), use
+        chosen = self._unproved
+        draft = chosen or self.shown
+        self._begin(use)
+        self._propose_made(lambda: draft.choose(pass_name, use), new_file=chosen is not None)
+
+    def drawn_well(self) -> None:
+        """Replace what is shown by what was coming: it has been drawn."""
+        self.shown, self.opening = self.coming, False
+        self.notes.extend(self._coming_notes)
+        self._drop_coming()
+        self._file_error = self.draw_error = None
+
+    def failed(self, error: Exception) -> None:
+        """Report why what is coming cannot be shown."""
+        self.stage = ReloadStage.FAILED
+        self._file_error = explained(error, self.path)
+
+    def report(self, error: Exception) -> None:
+        """Report why what is shown cannot be drawn any more."""
+        self.draw_error = explained(error, self.path)
+
+    def _begin(self, subject: str) -> None:
+        self.started, self._subject = self._checks.now(), subject
+
+    def _propose_made(self, make: Callable[[], Draft], *, new_file: bool = False) -> None:
         try:
-            chosen = self._chosen_by_hand
-            self._propose((chosen or self.shown).choose(pass_name, use), [], by_hand=chosen is not None)
+            self._propose(make(), [], new_file=new_file)
         except PlaygroundError as error:
             self._file_error = explained(error, self.path)
 
-    def _propose(self, draft: Draft, notes: list[str], *, by_hand: bool = False) -> None:
-        self.coming, self._coming_notes, self._file_by_hand = draft, notes, by_hand
-        self._file_error, self._trial_seconds = None, 0.0
-        if self._trial is None or not self._draws_anew(draft.sketch):
-            self.stage = Stage.DRAW
+    def _propose(self, draft: Draft, notes: list[str], *, new_file: bool = False) -> None:
+        self.coming, self._coming_notes, self._new_file = draft, notes, new_file
+        self._file_error, self.sandbox_seconds = None, 0.0
+        if self._checks.sandbox is None or not self._drawn.needs_drawing(draft.sketch):
+            self.stage = ReloadStage.DRAW
             return
-        self.stage, self._aside = Stage.TRIAL, None
-        self._submit(self._trial, draft.sketch)
+        self.stage, self._aside = ReloadStage.SANDBOX, None
+        self._submit(self._checks.sandbox, draft.sketch)
 
-    def tried(self, sketch: Sketch) -> SandboxReport | None:
-        """Return how the trial of a sketch ended that is seen beside this one; None while it is not known.
+    def _drop_coming(self) -> None:
+        self.coming, self.stage, self._coming_notes = None, ReloadStage.NONE, []
+
+    # ── the sandbox ──────────────────────────────────────────────────────────
+
+    def check_aside(self, sketch: Sketch) -> SandboxReport | None:
+        """Return what the sandbox says of a sketch drawn besides this one; None while it is not known.
 
         What is coming goes first.
         """
-        if self._trial is None:
+        sandbox = self._checks.sandbox
+        if sandbox is None:
             return SandboxReport(True)
-        if self.stage is Stage.TRIAL:
+        if self.testing:
             return None
         if self._aside is not sketch:
             self._aside = sketch
-            self._submit(self._trial, sketch)
-        report = self._trial.poll()
+            self._submit(sandbox, sketch)
+        report = sandbox.poll()
         if report is not None:
             self._aside = None
         return report
 
-    def _submit(self, trial: Tester, sketch: Sketch) -> None:
-        trial.submit(TrySketch(sketch, time=self.clock.time, drivers=(self._driver,)))
+    def take_report(self) -> None:
+        """Take in the answer of the sandbox, if one is awaited and there."""
+        report = self._checks.sandbox.poll() if self._checks.sandbox is not None else None
+        if report is None:
+            return
+        # Without a context the sandbox can check nothing; this one may well have what it takes.
+        if report.ok or isinstance(report.error, ContextError):
+            self.stage, self.sandbox_seconds = ReloadStage.DRAW, report.seconds
+        else:
+            self.failed(report.error or PlaygroundError("the sandbox failed without saying why"))
 
-    @abstractmethod
-    def _draws_anew(self, sketch: Sketch) -> bool:
-        """Say whether the driver would be given anything that it has not drawn already."""
+    def _submit(self, sandbox: Sandbox, sketch: Sketch) -> None:
+        sandbox.submit(TrySketch(sketch, time=self._checks.sketch_time(), drivers=(self._checks.driver,)))
 
-    @abstractmethod
-    def _reads_anew(self, sketch: Sketch) -> bool:
-        """Say whether a sketch reads data that was never drawn with."""
-
-    @abstractmethod
-    def _forget_view(self) -> None:
-        """Forget what was shown of the sketch before: another one is opened."""
-
-    def _drop_coming(self) -> None:
-        self.coming, self.stage, self._coming_notes = None, Stage.NONE, []
-
-    def set_by_hand(self) -> tuple[Edits, Mapping[str, Said], Camera | None]:
-        """Return what ``open`` takes to bring back what is set by hand in the sketch that is open.
-
-        It may not be shown yet. The edits, what the files say of each of their values, and what of
-        the camera where another is set.
-        """
-        draft = self.coming if self._another else self.shown or self.coming
-        if draft is None:  # it has not loaded yet
-            return self._initial, self._in_file, self._camera_in_file
-        said = said_by_files(draft.base, [path for path, _ in draft.edits.values])
-        return draft.edits, said, draft.file.camera if draft.edits.camera is not None else None
-
-    # ── edits by hand ────────────────────────────────────────────────────────
+    # ── user edits ───────────────────────────────────────────────────────────
 
     def set(self, path: str, value: object) -> None:
-        """Set a parameter by its path; one that it does not take becomes a note."""
-        if self.sketch is None:
+        """Set a parameter by its path; a value that it does not take becomes a note."""
+        if self.shown is None:
             return
         try:
-            changed = self.sketch.with_values({path: value})
+            edited = self.shown.with_value(path, value)
         except ParameterError as error:
             self.notes.append(str(error))
             return
-        kept = dict(changed.overrides).get(path, value)
-        self._edit(lambda edits: edits.with_value(path, kept))  # type: ignore[arg-type]
+        known = edited.edits.values[-1][1]
+        self._take(edited, lambda edits: edits.with_value(path, known))
 
     def set_all(self, values: Mapping[str, Value]) -> None:
         """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
@@ -288,17 +300,17 @@ class Drafts(ABC):
             others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
             self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
 
-    def tidy(self) -> None:
-        """Write what is set by hand in the fewest digits that a shader reads as the same numbers."""
+    def shorten_values(self) -> None:
+        """Write edited values in the fewest digits that a shader reads as the same numbers."""
 
-        def tidied(edits: Edits) -> Edits:
+        def shortened(edits: Edits) -> Edits:
             return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
 
-        if self.shown is not None and tidied(self.shown.edits) != self.shown.edits:
-            self._edit(tidied)
+        if self.shown is not None and shortened(self.shown.edits) != self.shown.edits:
+            self._edit(shortened)
 
     def unset(self, *paths: str) -> None:
-        """Give parameters back the file's values."""
+        """Reset parameters to the file's values."""
         draft = self.shown
         if draft is not None:
             for path in paths:
@@ -307,104 +319,77 @@ class Drafts(ABC):
             self._edit(lambda edits: replace(edits, values=left))
 
     def lock(self, path: str, locked: bool) -> None:
-        """Lock a parameter against presets, chance and reloads, or let it go."""
+        """Lock a parameter against presets, randomising and reloads, or unlock it."""
         self._edit(lambda edits: edits.with_lock(path, locked))
 
     def restore(self, edits: Edits) -> None:
-        """Take other edits for those of now: values and camera at once, techniques once they proved good."""
-        if self.shown is None:
+        """Replace the edits: values and camera at once, techniques once they have proved good."""
+        shown = self.shown
+        if shown is None:
             return
-        if edits.techniques == self.shown.edits.techniques:
+        if edits.techniques == shown.edits.techniques:
             self._edit(lambda old: replace(edits, techniques=old.techniques))
             return
-        self._started, self._subject = self._now(), self.path.name
-        try:
-            self._propose(self.shown.with_techniques(edits.techniques).with_edits(edits), [])
-        except PlaygroundError as error:
-            self._file_error = explained(error, self.path)
+        self._begin(self.path.name)
+        self._propose_made(lambda: shown.with_techniques(edits.techniques).with_edits(edits))
 
-    def look(self, camera: Camera) -> None:
-        """See the land from another camera."""
+    def set_camera(self, camera: Camera | None) -> None:
+        """Set the camera; None: the file's."""
         self._edit(lambda edits: replace(edits, camera=camera))
 
-    def apply_preset(self, name: str) -> None:
-        """Set the values of one of the sketch's presets."""
-        for preset in self.sketch.presets if self.sketch else ():
-            if preset.name == name:
-                self.set_all(dict(preset.values))
-
-    def turn_suns(self, across: float, up: float) -> None:
+    def move_suns(self, across: float, up: float) -> None:
         """Move every sun of the sketch by so much of the picture's height, to the right and upwards."""
         if self.sketch is not None:
             for path, sun in suns_of(self.sketch).items():
                 self.set(path, turned(sun, across, up))
 
-    def reset_camera(self) -> None:
-        """See the land as the file says."""
-        self._edit(lambda edits: replace(edits, camera=None))
-
     def reset_values(self) -> None:
-        """Give all that is not locked, and every pass, back what the file says."""
+        """Reset all that is not locked, and every pass, to what the file says."""
         if self.shown is not None:
             locked = set(self.shown.edits.locked)
             left = tuple(v for v in self.shown.edits.values if v[0] in locked)
             self.restore(replace(self.shown.edits, values=left, techniques=()))
 
-    def vouch_for(self, path: Path) -> None:
-        """Take a file that this process writes itself for good: it needs no trial."""
-        self._own_files.add(path)
-
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
-        self._revision += 1
-        if self.shown is not None:
-            edited = self.shown.with_edits(change(self.shown.edits))
-            if _names_another(self.shown, edited) and self._trial is not None:
-                self._drop_file_set_by_hand()
-                if self._reads_anew(edited.sketch):
+        shown = self.shown
+        self._take(shown.with_edits(change(shown.edits)) if shown is not None else None, change)
+
+    def _take(self, edited: Draft | None, change: Callable[[Edits], Edits]) -> None:
+        """Show an edited draft, and make the same change to what is coming."""
+        self.revision += 1
+        if self.sandboxed and self.shown is not None and edited is not None:
+            if _names_another_file(self.shown, edited):
+                self._drop_failed_file()
+                if self._drawn.reads_new_data(edited.sketch):
                     draft = self.coming or self.shown
-                    self._try_by_hand(draft.with_edits(change(draft.edits)))
+                    self._check_new_file(draft.with_edits(change(draft.edits)))
                     return
-            self.shown = edited
+        self.shown = edited
         if self.coming is not None:
             edited = self.coming.with_edits(change(self.coming.edits))
-            if self._file_by_hand and _names_another(self.coming, edited):
-                self._try_by_hand(edited)  # what is tried, or has failed, is no longer what is chosen
+            if self._new_file and _names_another_file(self.coming, edited):
+                self._check_new_file(edited)  # what is checked, or has failed, is no longer what is chosen
             else:
                 self.coming = edited
 
     @property
-    def _chosen_by_hand(self) -> Draft | None:
-        """What is coming, while it is not known yet whether a file that was chosen by hand is good."""
-        return self.coming if self._file_by_hand and self.stage is not Stage.FAILED else None
+    def _unproved(self) -> Draft | None:
+        """What is coming, while it is not known yet whether a data file that the user chose is good."""
+        return self.coming if self._new_file and self.stage is not ReloadStage.FAILED else None
 
-    def _try_by_hand(self, draft: Draft) -> None:
-        """Have the files that were chosen by hand tried first: what they do to a reader, nobody knows yet."""
-        self._started, self._subject = self._now(), self.path.name
-        self._propose(draft, self._coming_notes, by_hand=self._reads_anew(draft.sketch))
+    def _check_new_file(self, draft: Draft) -> None:
+        """Send data files that the user chose through the sandbox first."""
+        self._begin(self.path.name)
+        self._propose(draft, self._coming_notes, new_file=self._drawn.reads_new_data(draft.sketch))
 
-    def _drop_file_set_by_hand(self) -> None:
-        """Forget a file that was chosen by hand and failed: another is chosen in its place."""
-        if self._file_by_hand and self.stage is Stage.FAILED:
+    def _drop_failed_file(self) -> None:
+        """Forget a data file that the user chose and that failed: another is chosen in its place."""
+        if self._new_file and self.stage is ReloadStage.FAILED:
             self._drop_coming()
-            self._file_error, self._file_by_hand = None, False
-
-    def _hear_trial(self) -> None:
-        if self.stage is not Stage.TRIAL or self._trial is None:
-            return
-        report = self._trial.poll()
-        if report is None:
-            return
-        # Without a context the child can try nothing; this one may well have what it takes.
-        if report.ok or isinstance(report.error, ContextError):
-            self.stage = Stage.DRAW
-            self._trial_seconds = report.seconds
-            return
-        self.stage = Stage.FAILED
-        error = report.error or PlaygroundError("the trial failed without saying why")
-        self._file_error = explained(error, self.path)
+            self._file_error, self._new_file = None, False
 
 
-def _names_another(before: Draft, edited: Draft) -> bool:
+def _names_another_file(before: Draft, edited: Draft) -> bool:
     """Say whether an edit sets another text, as the name of a file is one."""
     return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before.edits.values})
 

@@ -1,8 +1,7 @@
-"""Decide between what was set by hand and what the files say: one rule, for a reload and for a new start.
+"""Merge user edits with what the files say: one rule, for a reload and for a new start.
 
-What the hand set stays, unless the files have come to say another value of their own
-accord: by the sketch's own ``set``, put there, changed or taken away, or by its land. A
-new default alone is no newer word.
+An edit stays, unless the files now set another value themselves: by the sketch's own ``set``,
+added, changed or removed, or by its size, extent or relief. A new default alone does not win.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from playground.sketch.values import write
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class FileValue:
     """What the files say of a parameter."""
 
-    value: Value | None  # None: of the land, left to the heightmap
-    own: bool  # by the sketch's own ``set`` or land; else by a default or inside a technique
+    value: Value | None  # None: of the terrain, left to the heightmap
+    own: bool  # by the sketch itself; else by a default or inside a technique
 
 
-def said_by_files(sketch: Sketch, paths: Iterable[str]) -> dict[str, Said]:
+def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
     """Return what the files say of each parameter, by its path; those that are gone are left out."""
     wanted = tuple(paths)
     if not wanted:
@@ -33,23 +32,23 @@ def said_by_files(sketch: Sketch, paths: Iterable[str]) -> dict[str, Said]:
     found = {}
     for path in wanted:
         if path in LAND:
-            found[path] = Said(getattr(sketch, path), True)
+            found[path] = FileValue(getattr(sketch, path), True)
             continue
         try:
             leaf = resolve(sketch.graph, path)[0].path
         except ParameterError:
             continue
-        found[path] = Said(known[leaf], leaf in own)
+        found[path] = FileValue(known[leaf], leaf in own)
     return found
 
 
-def newer_word(
-    path: str, was: Mapping[str, Said], now: Mapping[str, Said], locked: Iterable[str] = ()
-) -> Said | None:
-    """Return what the files say where it goes before what was set by hand; None where the hand's stays.
+def newer_value(
+    path: str, was: Mapping[str, FileValue], now: Mapping[str, FileValue], locked: Iterable[str] = ()
+) -> FileValue | None:
+    """Return what the files say where it wins over the user's edit; None where the edit stays.
 
-    ``was`` is what they said when it was set by hand, as ``said_by_files`` gives it, or when it was last
-    seen to stand; ``locked`` are the paths whose values stay whatever the files say.
+    ``was`` is what they said when it was edited or last shown, as ``file_values`` gives it; ``locked``
+    are the paths whose values stay whatever the files say.
     """
     before, after = was.get(path), now.get(path)
     if path in locked or before is None or after is None or before.value == after.value:
@@ -57,14 +56,14 @@ def newer_word(
     return after if before.own or after.own else None
 
 
-def notice(sketch: Sketch, path: str, value: Value, said: Said) -> str:
-    """Return the sentence that tells of a value that gave way; "" where the files say that very value."""
-    if said.value == value:
+def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
+    """Return the sentence that reports an edit that gave way; "" where the files say that very value."""
+    if newer.value == value:
         return ""
-    if said.value is None or path in LAND:
+    if newer.value is None or path in LAND:
         return f"{path}: the file's new value is taken"
     parameter = resolve(sketch.graph, path)[0].parameter
-    return f"{path}: the file's new value, {write(parameter, said.value)}, is taken"
+    return f"{path}: the file's new value, {write(parameter, newer.value)}, is taken"
 
 
 def _set_by(sketch: Sketch) -> set[str]:

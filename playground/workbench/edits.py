@@ -35,7 +35,7 @@ from playground.sketch.assign import LAND, check_value, resolve, values_of
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.values import is_whole, write
-from playground.workbench.edit_merge import newer_word, notice, said_by_files
+from playground.workbench.edit_merge import file_values, newer_value, notice
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +91,14 @@ class Draft:
         """Return the same files with other values or another camera set by hand."""
         return replace(self, edits=edits)
 
+    def with_value(self, path: str, given: object) -> Draft:
+        """Return the draft with one parameter set; raise ``ParameterError`` where it cannot be."""
+        sketch = self.sketch.with_values({path: given})
+        value = dict(sketch.overrides).get(path, given)
+        made = self.with_edits(self.edits.with_value(path, value))  # type: ignore[arg-type]
+        made.__dict__.update(sketch=sketch)  # all of it is checked already
+        return made
+
     def without(self, path: str) -> Draft:
         """Return the draft with a parameter as the file says, by whatever name it was set."""
         mine = _leaves(self.base, path)
@@ -142,6 +150,8 @@ def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
 
 def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
     """Return the draft after its files changed, and a sentence for each edit that gave way."""
+    if old.edits == Edits():
+        return Draft(loaded, loaded), []
     notes: list[str] = []
     edits, note = with_camera_of(old.edits, old.file.camera, loaded.camera)
     notes += filter(None, [note])
@@ -181,7 +191,7 @@ def _with_techniques(
 def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
     """Return the values by hand after a reload; add a sentence to the notes for each that gave way."""
     values = _with_locked(old, values_of(base))
-    before, after = (said_by_files(sketch, [p for p, _ in values]) for sketch in (old.base, base))
+    before, after = (file_values(sketch, [p for p, _ in values]) for sketch in (old.base, base))
     kept: list[tuple[str, Value]] = []
     for path, value in values:
         was, now = _parameter(old.base, path), _parameter(base, path)
@@ -190,9 +200,9 @@ def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]
             if now is None and was is not None:
                 notes.append(f"{path} is gone; what was set here is kept in case it returns")
             continue
-        said = newer_word(path, before, after, old.edits.locked)
-        if said is not None:
-            notes += filter(None, [notice(base, path, value, said)])
+        newer = newer_value(path, before, after, old.edits.locked)
+        if newer is not None:
+            notes += filter(None, [notice(base, path, value, newer)])
             continue
         if path in LAND:
             kept.append((path, value))

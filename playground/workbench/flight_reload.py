@@ -16,7 +16,7 @@ from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.dependencies import watched
-from playground.workbench.reload_stages import Tester, explained
+from playground.workbench.reload_stages import Sandbox, explained
 from playground.workbench.watcher import Watcher
 
 
@@ -32,7 +32,7 @@ class SaveFollower:
         path: Path,
         shown: Sketch,
         values: Mapping[str, object],
-        trial: Tester,
+        trial: Sandbox,
         driver: str,
         wake: Callable[[], None],
     ) -> None:
@@ -88,7 +88,7 @@ class SaveFollower:
         self._tried = None
         try:
             with noting_places() as self._places:
-                found = load(self._path).with_values(self._values)
+                found = load(self._path).plainly(self._shown.plain).with_values(self._values)
         except Exception as error:
             self.error = explained(error, self._path)
         else:

@@ -129,14 +129,14 @@ def _write(actions: Actions, keyframes: Sequence[Keyframe], name: str, edits: Ed
         for key in {*old, *new}:
             if old.get(key) != new.get(key):
                 before[key], after[key] = old.get(key), new.get(key)
-        if session.coming is not None:  # what is shown stays as it is until the keyframe is in it
-            techniques = session.coming.edits.techniques
-            session.coming = session.coming.with_edits(replace(edits, techniques=techniques))
+        if session.drafts.coming is not None:  # what is shown stays as it is until the keyframe is in it
+            techniques = session.drafts.coming.edits.techniques
+            session.drafts.coming = session.drafts.coming.with_edits(replace(edits, techniques=techniques))
         else:
-            session.restore(edits)
+            session.drafts.restore(edits)
     actions.history.record(before, after, name, now=actions.now())
     if session.shown is not None:
-        actions.history.settle(session.shown.edits, session.steps)
+        actions.history.settle(session.shown.edits, session.view.steps)
     return True
 
 
@@ -149,7 +149,7 @@ def _saved(actions: Actions, file: Sketch, keyframes: Sequence[Keyframe]) -> boo
     except PlaygroundError as error:
         actions.say(str(error))
         return False
-    actions.session.reload()
+    actions.session.drafts.reload()
     return True
 
 

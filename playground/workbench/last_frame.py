@@ -70,21 +70,16 @@ class Picture:
 
     def __init__(self, painter: Painter) -> None:
         self._painter = painter
-        self._texture: moderngl.Texture | None = None
+        self.texture: moderngl.Texture | None = None  # rgba8; None before the first picture
         self._surface: moderngl.Framebuffer | None = None
 
-    @property
-    def texture(self) -> moderngl.Texture | None:
-        """Its texture, rgba8; None before the first picture."""
-        return self._texture
-
-    def keep(self, texture: moderngl.Texture) -> None:
+    def copy(self, texture: moderngl.Texture) -> None:
         """Take a copy of a texture."""
-        if self._texture is None or self._surface is None or self._texture.size != texture.size:
+        if self.texture is None or self._surface is None or self.texture.size != texture.size:
             self.release()
-            self._texture = make_texture(self._painter.ctx, texture.size, "rgba8")
-            self._texture.filter = (self._painter.ctx.NEAREST, self._painter.ctx.NEAREST)
-            self._surface = self._painter.ctx.framebuffer([self._texture])
+            self.texture = make_texture(self._painter.ctx, texture.size, "rgba8")
+            self.texture.filter = (self._painter.ctx.NEAREST, self._painter.ctx.NEAREST)
+            self._surface = self._painter.ctx.framebuffer([self.texture])
         if (texture.components, texture.dtype, texture.samples) == (4, "f1", 0):
             # Copied, not painted: where the processor draws that takes a tenth of the time.
             source = make_framebuffer(self._painter.ctx, [texture])
@@ -95,17 +90,17 @@ class Picture:
 
     def frame(self, sketch: str = "", time: float = 0.0) -> Frame | None:
         """Read it back, as what can be saved; None before the first picture."""
-        if self._texture is None:
+        if self.texture is None:
             return None
-        width, height = self._texture.size
-        rows = np.frombuffer(self._texture.read(alignment=1), np.uint8).reshape(height, width, 4)
+        width, height = self.texture.size
+        rows = np.frombuffer(self.texture.read(alignment=1), np.uint8).reshape(height, width, 4)
         rows = rows[::-1].copy()
         rows[..., 3] = 255  # nothing shows through a window
         return Frame(rows, sketch, time)
 
     def release(self) -> None:
         """Give the texture back."""
-        for kept in (self._surface, self._texture):
+        for kept in (self._surface, self.texture):
             if kept is not None:
                 kept.release()
-        self._texture = self._surface = None
+        self.texture = self._surface = None

@@ -20,8 +20,9 @@ from playground.errors import DataError
 from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
-from playground.workbench.edit_merge import Said
+from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
+from playground.workbench.resume import StoredEdits
 
 FORMAT = 1
 _LARGEST = 4 * 2**20  # [bytes] no session sets so much by hand
@@ -43,7 +44,7 @@ class Remembered:
     """What is remembered of one sketch."""
 
     edits: Edits = field(default_factory=Edits)
-    in_file: tuple[tuple[str, Said], ...] = ()  # what the files said of each value set by hand
+    in_file: tuple[tuple[str, FileValue], ...] = ()  # what the files said of each value set by hand
     time: float = 0.0  # [s]
     playing: bool = True
     speed: float = 1.0
@@ -55,6 +56,11 @@ class Remembered:
     camera_in_file: Camera | None = None  # the file's, where another was set by hand
     loop: tuple[float, float] | None = None  # [s] the times between which time goes round
     compared: Compared | None = None
+
+    @property
+    def start(self) -> StoredEdits:
+        """The edits, as a session takes them to begin with."""
+        return StoredEdits(self.edits, dict(self.in_file), self.camera_in_file)
 
     @property
     def is_nothing(self) -> bool:
@@ -193,9 +199,7 @@ def _read(table: Any) -> Remembered:
     if table["format"] != FORMAT:
         raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
     in_file = tuple(
-        (str(path), Said(None if entry["file"] is None else _value(entry["file"]), bool(entry.get("own"))))
-        for path, entry in table["values"].items()
-        if "file" in entry
+        (str(path), _file_value(entry)) for path, entry in table["values"].items() if "file" in entry
     )
     width, height = (int(side) for side in table["window"])
     stood, loop, compared, at = (table.get(name) for name in ("camera_in_file", "loop", "compared", "at"))
@@ -214,6 +218,10 @@ def _read(table: Any) -> Remembered:
         (_number(loop[0]), _number(loop[1])) if loop is not None else None,
         _compared(compared) if compared is not None else None,
     )
+
+
+def _file_value(entry: Any) -> FileValue:
+    return FileValue(None if entry["file"] is None else _value(entry["file"]), bool(entry.get("own")))
 
 
 def _edits(table: Any) -> Edits:

@@ -55,7 +55,7 @@ class FiniteWatch:
                 self._going = None
             self._picture, self._done = picture, False
             self._since = now
-        if self._done or held or session.hasty or session.testing:
+        if self._done or held or session.is_preview or session.drafts.testing or session.awaits_data:
             return
         if now < self._next if moving else self._going is None and now - self._since < REST:
             return
@@ -89,14 +89,14 @@ class FiniteWatch:
         session = actions.session
         assert session.plan is not None
         kept: list[NotFinite] = []
-        if session.map is not None and self._of is session.sketch:
+        if session.view.map is not None and self._of is session.sketch:
             ran = (step.path for step in session.plan.walk() if step.path in session.engine.results)
-            there = {session.map.own_path(path) for path in ran}
+            there = {session.view.map.own_path(path) for path in ran}
             kept = [f for f in self.found if f.path not in there]
         self._of = session.sketch
         coming = self._coming
-        if session.map is not None:
-            found = [(f, session.map.own_path(f.path)) for f in coming]
+        if session.view.map is not None:
+            found = [(f, session.view.map.own_path(f.path)) for f in coming]
             coming = [replace(f, path=path) for f, path in found if path]
         self.found = (*coming, *kept)
 

@@ -134,7 +134,7 @@ class Painting:
         if now is not None:
             canvas.paint(self._last or now, now, plan.land.extent, self.brush)
             if canvas.path in self.session.engine.painted:
-                self.session.look_again()
+                self.session.redraw()
             elif self._now() - self._saved_at >= SAVES_EVERY:
                 self._saved(canvas.save)
                 self._saved_at = self._now()
@@ -175,7 +175,7 @@ class Painting:
             act()
         except DataError as error:
             self.session.notes.append(str(error))
-        self.session.look_again()
+        self.session.redraw()
 
     def _shows(self, step: Step, path: Path, size: tuple[int, int]) -> bool:
         """Say whether the picture can show a canvas from memory: a source reads it, texel for texel."""
@@ -218,8 +218,8 @@ class Painting:
             self.session.notes.append(str(error))
             return None
         self._canvases[path] = canvas
-        self.session.vouch_for(canvas.path)
-        self.session.set(path, str(canvas.path))
+        self.session.data.trust(canvas.path)
+        self.session.drafts.set(path, str(canvas.path))
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
         return canvas
 

@@ -1,8 +1,8 @@
-"""Draw a sketch hastily where the processor draws: what is being changed shows at once, and in full at rest.
+"""Draw a preview on a software renderer: what is being changed shows at once, and in full when it rests.
 
-One sample a pixel instead of several, and a mesh of a quarter of the vertices where nobody
-asked for a number of them. Each pass before the draw, and the picture's size, stay as they
-are, so that the picture in full differs from the hasty one along edges alone.
+One sample a pixel instead of several, and a mesh of a quarter of the vertices where the user
+set no number of them. Each pass before the draw, and the picture's size, stay as they
+are, so that the full picture differs from the preview along edges alone.
 """
 
 from __future__ import annotations
@@ -10,25 +10,24 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.sketch.assign import values_of
-from playground.sketch.model import Sketch, kernels_of
+from playground.sketch.model import Sketch
 from playground.terrain.meshes import mesh_parameters
+from playground.workbench.traits import traits_of
 
 GRID = 129  # vertices a side
-_FINENESS = "grid"  # the draw's parameter that its mesh is as fine as
+_RESOLUTION = "grid"  # the draw's parameter that sets the resolution of its mesh
 
 
-def hastily(sketch: Sketch) -> Sketch:
-    """Return a sketch to draw hastily; the same object where that would make no difference."""
-    draws = [(path, kernel) for path, kernel in kernels_of(sketch.graph) if kernel.kind == "draw"]
-    if not draws:
-        return sketch
-    values = values_of(sketch)
+def as_preview(sketch: Sketch) -> Sketch:
+    """Return a sketch to draw as a preview; the same object where that would make no difference."""
+    draws = [(path, k) for path, k in traits_of(sketch).draws if _RESOLUTION in mesh_parameters(k.registry)]
+    values = values_of(sketch) if draws else {}
     coarse = []
     for path, kernel in draws:
-        fineness = kernel.parameter(_FINENESS) if _FINENESS in mesh_parameters(kernel.registry) else None
-        name = f"{path}.{_FINENESS}"
-        if fineness is not None and values[name] == fineness.default and int(fineness.default) > GRID:  # type: ignore[arg-type]
+        found = kernel.parameter(_RESOLUTION)
+        name = f"{path}.{_RESOLUTION}"
+        if found is not None and values[name] == found.default and int(found.default) > GRID:  # type: ignore[arg-type]
             coarse.append((name, GRID))
-    if sketch.samples == 1 and not coarse:
+    if not traits_of(sketch).draws or (sketch.samples == 1 and not coarse):
         return sketch
     return replace(sketch, samples=1, overrides=(*sketch.overrides, *coarse))

@@ -23,17 +23,17 @@ class Follower:
         ``own`` are files that this process writes itself and shows already.
         """
         changed = self.watcher.take() - set(own)
-        if not changed or not (self.session.error or changed & self.session.files):
+        if not changed or not (self.session.error or changed & self.session.drafts.files):
             return False
-        self.session.reload(changed & self.session.files)
+        self.session.drafts.reload(changed & self.session.drafts.files)
         return True
 
     def follow(self) -> None:
         """Watch the files that the session stands on now."""
         session = self.session
-        now = (session.shown, session.coming, session.error, session.places)
+        now = (session.shown, session.drafts.coming, session.error, session.drafts.places)
         before = self._stands_on
         if len(before) == len(now) and all(a is b for a, b in zip(now, before, strict=True)):
             return
         self._stands_on = now
-        self.watcher.follow(session.files, read_at=session.read_at, read=session.places)
+        self.watcher.follow(session.drafts.files, read_at=session.drafts.read_at, read=session.drafts.places)

@@ -1,4 +1,4 @@
-"""The stages that a saved sketch goes through before it is shown, and who tries it."""
+"""The stages that a saved sketch goes through before it is shown, and the errors on the way."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from playground.paths import shown
 log = logging.getLogger("playground.live")
 
 
-class Tester(Protocol):
-    """What tries a sketch where it can do no harm: ``engine.sandbox.Sandbox``, or a test's stand-in."""
+class Sandbox(Protocol):
+    """What draws a sketch in a process of its own first: ``engine.sandbox.Sandbox``, or a fake in a test."""
 
     def submit(self, request: TrySketch) -> None:
-        """Hand over a sketch."""
+        """Submit a sketch; it replaces the one before."""
 
     def poll(self) -> SandboxReport | None:
         """Return the answer to the newest request, once."""
 
 
-class Stage(Enum):
+class ReloadStage(Enum):
     """How far the coming draft has got."""
 
     NONE = "nothing is coming"
-    TRIAL = "tried in the child"
+    SANDBOX = "checked in the sandbox"
     DRAW = "to be drawn"
     FAILED = "failed"
 
 
 @dataclass(frozen=True, slots=True)
 class Reload:
-    """How a save came to be a picture."""
+    """How long a save took to become a picture."""
 
     seconds: float  # from reading the files to the picture
-    trial: float  # [s] of it in the trial child
+    sandbox: float  # [s] of it in the sandbox
 
 
 def explained(error: Exception, sketch: Path) -> PlaygroundError:
@@ -59,8 +59,8 @@ def explained(error: Exception, sketch: Path) -> PlaygroundError:
     return type(error)(diagnostics=placed)
 
 
-def gone(sketch: Path) -> SketchError | None:
-    """Return what to say of a sketch whose file has vanished; None while it is there."""
+def missing_file_error(sketch: Path) -> SketchError | None:
+    """Return the error for a sketch whose file has vanished; None while it is there."""
     if sketch.is_file():
         return None
     where = "from" if sketch.parent.is_dir() else "with its folder"

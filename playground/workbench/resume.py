@@ -1,26 +1,41 @@
-"""Begin where an earlier session ended: what was set by hand there, over the files as they are now."""
+"""User edits of an earlier session, over the files as they are now."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
-from playground.sketch.model import Camera, Sketch
-from playground.workbench.edit_merge import Said, newer_word, notice, said_by_files
+from playground.sketch.model import Camera, Sketch, Value
+from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
 from playground.workbench.edits import Draft, Edits, with_camera_of
 
 
-def first_draft(
-    loaded: Sketch, edits: Edits, in_file: Mapping[str, Said], camera_in_file: Camera | None = None
-) -> tuple[Draft, list[str]]:
-    """Return the draft to begin with, and a sentence for each edit that gave way.
+@dataclass(frozen=True)
+class StoredEdits:
+    """User edits, and what the files said when they were made."""
 
-    ``in_file`` is what the files said of a value when it was last shown: see ``words`` for
-    where what they say now goes before it. ``camera_in_file`` is what they said of the camera then,
-    if that is known; where they say another now, theirs is taken.
-    """
-    edits, note = with_camera_of(edits, camera_in_file or loaded.camera, loaded.camera)
+    edits: Edits = field(default_factory=Edits)
+    in_file: Mapping[str, FileValue] = field(default_factory=dict)  # of each edited value, where it is known
+    camera_in_file: Camera | None = None  # of the camera, where another is set and it is known
+
+    def with_values(self, values: Mapping[str, Value]) -> StoredEdits:
+        """Return them with values set over them, whatever the files said."""
+        edits = self.edits
+        for name, value in values.items():
+            edits = edits.with_value(name, value)
+        return replace(self, edits=edits, in_file={k: v for k, v in self.in_file.items() if k not in values})
+
+
+def stored(draft: Draft) -> StoredEdits:
+    """Return a draft's edits with what its files say now."""
+    said = file_values(draft.base, [path for path, _ in draft.edits.values])
+    return StoredEdits(draft.edits, said, draft.file.camera if draft.edits.camera is not None else None)
+
+
+def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
+    """Return the draft to begin with, and a sentence for each edit that gave way to the files."""
+    edits, note = with_camera_of(start.edits, start.camera_in_file or loaded.camera, loaded.camera)
     draft = Draft(loaded, loaded, replace(edits, techniques=()))
     notes = [note] if note else []
     for name, use in edits.techniques:
@@ -28,12 +43,12 @@ def first_draft(
             draft = draft.choose(name, use)
         except PlaygroundError as error:
             notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
-    now = said_by_files(draft.base, [path for path, _ in edits.values])
-    kept = []
+    now = file_values(draft.base, [path for path, _ in edits.values])
+    values = []
     for path, value in edits.values:
-        said = newer_word(path, in_file, now, edits.locked)
-        if said is None:
-            kept.append((path, value))
+        newer = newer_value(path, start.in_file, now, edits.locked)
+        if newer is None:
+            values.append((path, value))
         else:
-            notes += filter(None, [notice(draft.base, path, value, said)])
-    return draft.with_edits(replace(draft.edits, values=tuple(kept))), notes
+            notes += filter(None, [notice(draft.base, path, value, newer)])
+    return draft.with_edits(replace(draft.edits, values=tuple(values))), notes

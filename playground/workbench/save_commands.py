@@ -27,7 +27,7 @@ def save_values(actions: Actions) -> None:
         return
     actions.history.saved(_before(draft))
     actions.say(f"saved {_what(draft)} into {shown(draft.file.file)}")
-    actions.session.reload()
+    actions.session.drafts.reload()
 
 
 def save_a_copy(actions: Actions) -> None:
@@ -42,7 +42,7 @@ def save_a_copy(actions: Actions) -> None:
         return
     actions.history.saved(_before(draft))
     actions.say(f"saved a copy in {path.parent}; from here on this is the sketch")
-    actions.session.open(path, keep=True)
+    actions.session.drafts.open(path, keep=True)
 
 
 def save_as_preset(actions: Actions, name: str) -> None:
@@ -57,7 +57,7 @@ def save_as_preset(actions: Actions, name: str) -> None:
     if not _is_written(actions, lambda: save_preset(draft.file, name.strip(), values)):
         return
     actions.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
-    actions.session.reload()
+    actions.session.drafts.reload()
 
 
 def _is_written(actions: Actions, write: Callable[[], None]) -> bool:
@@ -104,9 +104,9 @@ def _ready(actions: Actions) -> Draft | None:
     if session.shown is None:
         actions.say("there is no sketch to save yet")
         return None
-    session.tidy()
+    session.drafts.shorten_values()
     if session.shown.edits.camera is not None:
-        session.look(rounded(session.shown.edits.camera))
+        session.drafts.set_camera(rounded(session.shown.edits.camera))
     actions.look_back(True)  # as part of the step that changed them
     return session.shown
 

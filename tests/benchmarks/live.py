@@ -64,10 +64,10 @@ class Bench:
         for file in self.texts:
             self.save(file)
         self.woken = threading.Event()
-        self.session = Session(engine, folder, trial=trial)
+        self.session = Session(engine, folder, sandbox=trial)
         self.watcher = Watcher(self.woken.set, (".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
-        self.until(lambda: self.session.draws > 0 and not self.session.hasty)
+        self.until(lambda: self.session.draws > 0 and not self.session.is_preview)
 
     def save(self, file: Path) -> str:
         """Save a text that was never there; return the number in it."""
@@ -88,7 +88,7 @@ class Bench:
             if shown():
                 self.engine.ctx.finish()
                 return True
-            self.woken.wait(0.004 if self.session.testing else 0.05)
+            self.woken.wait(0.004 if self.session.drafts.testing else 0.05)
             self.woken.clear()
         return False
 
@@ -98,7 +98,7 @@ class Bench:
 
         def is_shown() -> bool:
             draft = self.session.shown
-            if draft is None or self.session.coming is not None:
+            if draft is None or self.session.drafts.coming is not None:
                 return False
             if file.suffix == ".toml":
                 return float(number) in dict(draft.file.graph.find("colour").values).values()
@@ -203,7 +203,7 @@ def time_saves(bench: Bench, file: Path, saves: int) -> tuple[list[float], float
     """Return the milliseconds from each save to its picture, and those of processors for each."""
     times, used = [], 0.0
     for number in range(saves + 2):
-        bench.until(lambda: not bench.session.hasty)
+        bench.until(lambda: not bench.session.is_preview)
         time.sleep(PAUSE)
         before, start = bench.processor(), time.perf_counter()
         if not bench.save_and_show(file):

@@ -88,7 +88,7 @@ def main() -> None:
 
 def _ways(bare: Bare) -> dict[str, Callable[[int], None]]:
     def drag(frame: int) -> None:
-        bare.session.set("height.p0", round(frame % 100 / 100, 2))
+        bare.session.drafts.set("height.p0", round(frame % 100 / 100, 2))
 
     def search(frame: int) -> None:
         bare.panel.memory.filter = Filter("how its where whether what"[: frame % 3])

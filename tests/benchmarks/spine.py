@@ -115,11 +115,11 @@ def save_to_picture(name: str, saves: int, *, trial: bool) -> list[float]:
             if child is not None:
                 child.start()
             woken = threading.Event()
-            session = Session(engine, sketch, trial=child)
+            session = Session(engine, sketch, sandbox=child)
             try:
                 with Watcher(woken.set) as watcher:
                     _settle(session, engine)
-                    watcher.follow(session.files)
+                    watcher.follow(session.drafts.files)
                     time.sleep(0.3)
                     return [
                         _one_save(session, engine, watcher, woken, kernel, text, n) for n in range(saves + 3)
@@ -152,7 +152,7 @@ def _one_save(
     while not watcher.take():
         woken.wait(1.0)
         woken.clear()
-    session.reload()
+    session.drafts.reload()
     while session.draws == drawn:
         session.frame(SIZE)
         if session.error:
@@ -160,13 +160,13 @@ def _one_save(
         time.sleep(0.0005)
     engine.ctx.finish()
     taken = (time.perf_counter() - start) * 1e3
-    watcher.follow(session.files)
+    watcher.follow(session.drafts.files)
     time.sleep(0.1)
     return taken
 
 
 def _settle(session: Session, engine: playground.Engine) -> None:
-    while session.draws == 0 or session.testing:
+    while session.draws == 0 or session.drafts.testing:
         session.frame(SIZE)
         if session.error:
             raise SystemExit(str(session.error))

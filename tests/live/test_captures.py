@@ -85,7 +85,7 @@ def said(actions: Actions) -> str:
 
 
 def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(actions: Actions) -> None:
-    actions.session.set("height.level", 0.2)
+    actions.session.drafts.set("height.level", 0.2)
     actions.session.clock.time = 1.5
     actions.session.frame(SIZE)
     frame = actions.session.read()
@@ -191,8 +191,8 @@ def test_sizes_and_lengths(actions: Actions) -> None:
 def test_the_map_is_captured_where_it_is_shown(actions: Actions) -> None:
     actions.session.show("height:height")
     actions.session.frame(SIZE)
-    assert actions.session.map is not None
-    assert job_of(Wish(), actions).sketch == actions.session.map.of(actions.session.sketch)  # type: ignore[arg-type]
+    assert actions.session.view.map is not None
+    assert job_of(Wish(), actions).sketch == actions.session.view.map.of(actions.session.sketch)  # type: ignore[arg-type]
 
 
 def test_a_chosen_parameter_is_swept_over_its_range(actions: Actions) -> None:

@@ -21,7 +21,7 @@ from playground.workbench.inspect.blend import Beside
 from playground.workbench.inspect.compare import PERIOD, Compare, Mode
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.inspect.toggles import See
-from playground.workbench.preview import hastily
+from playground.workbench.preview import as_preview
 from playground.workbench.session import Session
 
 from .desk import Bare
@@ -87,7 +87,7 @@ def drawn(engine: Engine, session: Session, level: float) -> NDArray[np.uint8]:
     """Return the picture of the files with a level, seen as the session sees it, drawn for itself."""
     assert session.plan is not None
     sketch = load(session.path).with_values({"height.level": level}).with_camera(session.plan.sketch.camera)
-    return engine.render(hastily(sketch) if session.hasty else sketch, size=SIZE).array
+    return engine.render(as_preview(sketch) if session.is_preview else sketch, size=SIZE).array
 
 
 def test_a_stays_while_b_changes(session: Session, compare: Compare) -> None:
@@ -96,7 +96,7 @@ def test_a_stays_while_b_changes(session: Session, compare: Compare) -> None:
     compare.keep()
     turn(session, compare)
     np.testing.assert_array_equal(first(compare), before)
-    session.set("height.level", 0.9)
+    session.drafts.set("height.level", 0.9)
     after = turn(session, compare)
     assert (after != before).any() and compare.draws == 0
     np.testing.assert_array_equal(first(compare), before)
@@ -109,9 +109,9 @@ def test_a_follows_the_camera_and_the_size(session: Session, compare: Compare, a
     turn(session, compare)
     compare.keep()
     turn(session, compare)
-    session.set("height.level", 0.9)
+    session.drafts.set("height.level", 0.9)
     assert session.sketch is not None
-    session.look(replace(session.sketch.camera, azimuth=77.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=77.0))
     second = turn(session, compare)
     assert compare.draws == 1 and (first(compare) != second).any()
     np.testing.assert_array_equal(first(compare), drawn(any_engine, session, 0.5))
@@ -130,14 +130,14 @@ def test_a_keeps_its_texts_when_the_files_change(
     compare.keep()
     turn(session, compare)
     assert session.sketch is not None
-    session.look(replace(session.sketch.camera, azimuth=200.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
     turn(session, compare)
     old = drawn(any_engine, session, 0.5)
-    session.reset_camera()
+    session.drafts.set_camera(None)
     (folder / "land.glsl").write_text(LAND.replace("0.15", "-0.3"), encoding="utf-8")
-    session.reload()
+    session.drafts.reload()
     turn(session, compare)
-    session.look(replace(session.sketch.camera, azimuth=200.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
     second = turn(session, compare)
     np.testing.assert_array_equal(first(compare), old)
     assert (second != old).any()
@@ -150,12 +150,12 @@ def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
     compare.keep()
     turn(session, compare)
     write_png(folder / "mask.png", np.full((3, 3, 4), 100, np.uint8))
-    session.look_again()
+    session.redraw()
     turn(session, compare)
     assert session.sketch is not None
-    session.look(replace(session.sketch.camera, azimuth=10.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
     turn(session, compare)
-    session.look(replace(session.sketch.camera, azimuth=20.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=20.0))
     turn(session, compare)
     np.testing.assert_array_equal(first(compare), before)
     assert [note for note in session.notes if "mask.png" in note] == [
@@ -167,7 +167,7 @@ def test_swap_and_back(session: Session, compare: Compare) -> None:
     one = turn(session, compare)
     compare.keep()
     turn(session, compare)
-    session.set("height.level", 0.9)
+    session.drafts.set("height.level", 0.9)
     two = turn(session, compare)
     compare.swap()
     np.testing.assert_array_equal(turn(session, compare), one)
@@ -185,9 +185,9 @@ def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: C
     turn(session, compare)
     compare.keep()
     turn(session, compare)
-    session.set("height.level", 0.9)
+    session.drafts.set("height.level", 0.9)
     assert session.sketch is not None
-    session.look(replace(session.sketch.camera, azimuth=50.0, elevation=60.0))
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=50.0, elevation=60.0))
     picture = session.frame(SIZE)
     assert picture is not None
     engine = session.engine
@@ -207,11 +207,11 @@ def test_it_shows_the_same_texture_of_both(session: Session, compare: Compare) -
     turn(session, compare)
     compare.keep()
     turn(session, compare)
-    session.set("height.level", 1.0)
+    session.drafts.set("height.level", 1.0)
     turn(session, compare)
     session.show("height:height")
     for name, value in (("lowest", 0.0), ("highest", 1.0)):
-        session.set_map(name, value)
+        session.view.set_map(name, value)
     second = turn(session, compare).astype(int)
     np.testing.assert_allclose(first(compare).astype(int)[..., :3] * 2, second[..., :3], atol=2)
 
@@ -312,7 +312,7 @@ def test_a_swap_can_be_undone(folder: Path, any_engine: Engine) -> None:
     bare = Bare(any_engine, folder)
     try:
         bare.key(imgui.Key.a)
-        bare.session.set("height.level", 0.9)
+        bare.session.drafts.set("height.level", 0.9)
         bare.turn(3)
         bare.click("Back to A")
         assert bare.session.shown is not None and not bare.session.shown.edits.values

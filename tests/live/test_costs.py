@@ -67,7 +67,7 @@ def test_a_record_keeps_its_rows_in_step() -> None:
 
 
 def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
-    bare.session.set("height.level", 0.25)
+    bare.session.drafts.set("height.level", 0.25)
     bare.turn(3)
     assert (
         not bare.session.engine.profiling and not bare.session.times and not bare.actions.see.record.pictures
@@ -80,7 +80,7 @@ def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
     assert engine.profiling
     before = record.pictures
     for n in range(5):
-        bare.session.set("height.level", 0.1 * n)
+        bare.session.drafts.set("height.level", 0.1 * n)
         bare.turn()
     bare.turn(4)
     assert record.pictures == before + 5  # a turn without a picture is none
@@ -89,7 +89,7 @@ def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
     assert set(record.passes) == {"height", "view"} and record.whole.values[-1] > 0
     assert np.isclose(record.whole.values, sum(ring.values for ring in record.passes.values())).all()
     assert implot.get_current_context() is not None
-    bare.session.set("view.grid", 9)
+    bare.session.drafts.set("view.grid", 9)
     bare.turn(2)
     assert record.texels.values[-1] == 48 * 32  # the land was not computed anew
     assert record.triangles.values[-1] == _triangles(engine, 9)
@@ -133,11 +133,11 @@ def test_the_switch_runs_the_plain_form_and_is_there_only_where_there_is_another
     (tmp_path / "twin.glsl").write_text(LAND, encoding="utf-8")
     (tmp_path / "land.fast.toml").write_text(FAST, encoding="utf-8")
     trust(tmp_path)
-    bare.session.reload()
+    bare.session.drafts.reload()
     bare.turn(4)
     for plain in (True, False):
         bare.click("Plain form")
         bare.turn(3)
-        assert bare.session.plain == plain and bare.session.plan is not None
+        assert bare.session.drafts.plain == plain and bare.session.plan is not None
         assert (bare.session.plan.step("height") is not None) == plain
         assert (bare.session.plan.step("height.fast.height") is None) == plain

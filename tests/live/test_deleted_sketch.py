@@ -58,7 +58,7 @@ def test_every_kind_of_error_without_a_file_is_drawn_with_the_sketch_s(
         raise fault
 
     monkeypatch.setattr(session, "_draw", refuse)
-    session.look_again()
+    session.redraw()
     bare.turn()
     error = session.error
     assert error is not None and "this went wrong" in str(error)
@@ -85,7 +85,7 @@ def test_a_refusal_of_the_trial_s_names_the_sketch(
 ) -> None:
     trial = FakeTrial()
     trial.answer = SandboxReport(False, kind("refused"))
-    session = Session(any_engine, folder, trial=trial)
+    session = Session(any_engine, folder, sandbox=trial)
     session.frame((32, 32))
     if not issubclass(kind, errors.ContextError):  # then the window's own context is asked
         assert session.error is not None and session.error.diagnostics[0].file == str(folder / "sketch.toml")
@@ -97,13 +97,13 @@ def test_a_sketch_that_is_gone_says_so_and_goes_on_when_it_is_back(folder: Path,
     session.frame((32, 32))
     before = session.read()
     path.rename(folder / "aside")
-    session.reload()
+    session.drafts.reload()
     assert session.frame((32, 32)) is not None, "the last good picture stays"
     said = str(session.error)
     assert "the file is gone" in said and str(path) in said and "put it back" in said
     assert "jacksboro" not in said
     (folder / "aside").rename(path)
-    session.reload()
+    session.drafts.reload()
     session.frame((32, 32))
     after = session.read()
     assert session.error is None and before is not None and after is not None
@@ -115,7 +115,7 @@ def test_a_folder_that_was_moved_away_says_so(folder: Path, any_engine: Engine) 
     session = Session(any_engine, folder)
     session.frame((32, 32))
     folder.rename(folder.with_name("elsewhere"))
-    session.reload()
+    session.drafts.reload()
     said = str(session.error)
     assert "the file is gone with its folder" in said and str(folder) in said
     session.release()
@@ -133,11 +133,11 @@ with Engine(open_context()) as engine:
     session = Session(engine, sys.argv[1])
     session.frame((32, 32))
     shutil.rmtree(Path.cwd())
-    session.reload()
+    session.drafts.reload()
     session.frame((32, 32))
     problems = Problems()
     problems.take(session.error, (), session.sketch)
-    print(session.error, session.files and problems.text())
+    print(session.error, session.drafts.files and problems.text())
 """
     home = tmp_path / "here"
     home.mkdir()

@@ -166,13 +166,13 @@ def test_nothing_is_kept_of_land_in_which_a_number_is_not_finite(desk: Desk, tmp
     """The next session must name the pass that made it, and so must run it."""
     assert desk.session is not None
     desk.turn()
-    desk.session.set("low.level", -0.5)
+    desk.session.drafts.set("low.level", -0.5)
     desk.rest()
     assert [found.path for found in desk.watch.found] == ["low"]
     assert desk.storing.patience is None
     desk.storing.close()
     assert kept(tmp_path) == set()
-    desk.session.set("low.level", 0.75)
+    desk.session.drafts.set("low.level", 0.75)
     desk.rest()
     desk.open()
     assert kept(tmp_path) == {"sketch: height"}

@@ -184,7 +184,7 @@ def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
 
 def broken(desk: Desk, folder: Path) -> PlaygroundError:
     (folder / "wave.glsl").write_text(WAVE.replace("sin", "sine"), encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn(4)
     assert desk.session.error is not None
     return desk.session.error
@@ -202,7 +202,7 @@ def test_an_error_is_listed_copied_folded_and_gone_when_mended(desk: Desk, folde
     desk.click(next(label for label in desk.places if label.endswith("##badge")))
     assert desk.actions.problems.open
     (folder / "wave.glsl").write_text(WAVE, encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn(2)
     desk.places.clear()
     desk.turn(2)

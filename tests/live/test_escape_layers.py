@@ -157,12 +157,12 @@ def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) ->
 
 def test_letters_typed_right_behind_the_search_are_no_shortcuts(bare: Bare) -> None:
     io = imgui.get_io()
-    shown, saved = bare.session.map, bare.actions.saved
+    shown, saved = bare.session.view.map, bare.actions.saved
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
         bare.turn()
         io.add_key_event(key, False)
     bare.turn(4)
-    assert bare.session.map is shown and bare.actions.saved is saved and not bare.actions.see.compare.on
+    assert bare.session.view.map is shown and bare.actions.saved is saved and not bare.actions.see.compare.on
     assert bare.panel.memory.filter.search == "msa"

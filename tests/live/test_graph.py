@@ -137,7 +137,7 @@ def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine:
     assert thumbnails.refresh(names, 0.5 * APART) and thumbnails.made == 1  # too soon
     assert not thumbnails.refresh(names, APART) and thumbnails.made == 2
     assert not thumbnails.refresh(names, 9.0) and thumbnails.made == 2
-    session.set("height.level", 0.5)
+    session.drafts.set("height.level", 0.5)
     session.frame((16, 16))
     assert not thumbnails.is_current("height:height") and thumbnails.is_current("colour:colour")
     thumbnails.refresh(names, 10.0)
@@ -175,9 +175,9 @@ def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
     bare.turn(40)
     assert graph.thumbnails.made == 3 and bare.actions.see.patience(0.0) > 1e6
     bare.click("node colour")
-    assert bare.session.map is not None and bare.session.map.ref == "colour:colour"
+    assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
     bare.click("node view")
-    assert bare.session.map is None
+    assert bare.session.view.map is None
     bare.key(imgui.Key.g)
     bare.turn(3)
     assert graph.thumbnails.get("height:height") is None  # all of them are given back

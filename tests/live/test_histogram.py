@@ -163,14 +163,14 @@ def test_it_follows_the_map_and_begins_anew(folder: Path, any_engine: Engine) ->
     assert settle() > 5
     assert counter.latest is not None and counter.fresh and counter.latest.high == 1.0
     assert settle() == 1  # nothing is counted twice
-    session.set("height.level", 0.5)
+    session.drafts.set("height.level", 0.5)
     session.frame((32, 32))
     counter.go_on()
     assert counter.waits and not counter.fresh and counter.latest.high == 1.0  # the old one stays meanwhile
     settle()
     assert counter.fresh and counter.latest.high == 0.5
     draws = session.draws
-    session.set_map("ramp", 2)
+    session.view.set_map("ramp", 2)
     assert settle() == 1 and session.draws == draws + 1  # other colours are no other numbers
     session.show(None)
     session.frame((32, 32))
@@ -185,7 +185,7 @@ def test_the_legend_has_the_colours_of_the_map(folder: Path, any_engine: Engine,
     session.frame((64, 8))
     session.show("height:height")
     for name, value in (("channel", 1), ("ramp", ramp), ("lowest", 0.0), ("highest", 1.0), ("middle", 0.5)):
-        session.set_map(name, value)
+        session.view.set_map(name, value)
     session.frame((64, 8))
     frame = session.read()
     assert frame is not None
@@ -202,11 +202,11 @@ def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Eng
     session.frame((64, 8))
     session.show("height:height")
     for name, value in (("channel", 1), ("ramp", 4), ("middle", middle)):
-        session.set_map(name, value)
+        session.view.set_map(name, value)
     session.frame((64, 8))
     frame = session.read()
-    assert frame is not None and session.map is not None
-    low, high = ends_of(session.map)
+    assert frame is not None and session.view.map is not None
+    low, high = ends_of(session.view.map)
     assert (low + high) / 2 == pytest.approx(middle) and high - low == pytest.approx(
         2 * max(middle, 1 - middle)
     )
@@ -251,14 +251,14 @@ def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
     bare.turn(5)
     assert see.counter.latest is not None and see.counter.latest.high == 1.0
     bare.click("All but outliers")
-    shown = bare.session.map
+    shown = bare.session.view.map
     assert shown is not None
     assert 0.0 < float(str(shown.value("lowest"))) < 0.1 and 0.9 < float(str(shown.value("highest"))) < 1.0
     bare.click("All of it")
-    assert bare.session.map is not None
-    assert (bare.session.map.value("lowest"), bare.session.map.value("highest")) == (0.0, 1.0)
+    assert bare.session.view.map is not None
+    assert (bare.session.view.map.value("lowest"), bare.session.view.map.value("highest")) == (0.0, 1.0)
     bare.click("Around the mean")
-    assert bare.session.map.value("middle") == pytest.approx(0.5)
+    assert bare.session.view.map.value("middle") == pytest.approx(0.5)
     bare.click("Logarithmic")
     assert see.logarithmic
     bare.turn(3)

@@ -140,8 +140,8 @@ def test_every_pass_is_read_exactly_where_the_land_is_met(session: Session, insp
 def test_in_a_map_it_is_the_texel_that_the_pixel_shows(session: Session, inspector: Inspector) -> None:
     session.frame(SIZE)
     session.show("height:other")
-    session.set_map("channel", 2)
-    session.set_map("shrunk", 1)
+    session.view.set_map("channel", 2)
+    session.view.set_map("shrunk", 1)
     for size in (SIZE, (41, 90), (130, 98)):
         picture = session.frame(size)
         assert picture is not None
@@ -183,7 +183,7 @@ def test_it_asks_once_for_a_pixel_of_a_picture(session: Session, inspector: Insp
         inspector.at((40, 10), picture)
     assert inspector.reads == 1
     inspector.at((41, 10), picture)
-    session.look_again()
+    session.redraw()
     again = session.frame(SIZE)
     assert again is not None
     inspector.at((41, 10), again)
@@ -196,7 +196,7 @@ def test_numbers_that_are_none_are_said(folder: Path, session: Session, inspecto
         "other = share;", "other = share; if (texel.x == 30) height = uintBitsToFloat(0x7fc00000u);"
     )
     (folder / "land.glsl").write_text(text, encoding="utf-8")
-    session.reload()
+    session.drafts.reload()
     session.frame((65, 49))
     session.show("height:height")
     picture = session.frame((65, 49))

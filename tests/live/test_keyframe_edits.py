@@ -64,8 +64,8 @@ def turn(actions: Actions) -> np.ndarray:
 
 def add(actions: Actions, time: float, camera: Camera, gain: float) -> np.ndarray:
     actions.session.clock.time = time
-    actions.session.look(camera)
-    actions.session.set("light.gain", gain)
+    actions.session.drafts.set_camera(camera)
+    actions.session.drafts.set("light.gain", gain)
     before = turn(actions)
     assert keying.add_here(actions, keying.changed_paths(actions))
     after = turn(actions)
@@ -136,7 +136,7 @@ def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(actions: Actions) ->
 
 def test_a_second_at_the_same_time_goes_into_the_first(actions: Actions, path: Path) -> None:
     add(actions, 1.0, Camera(200.0, 30.0, 1500.0), 2.0)
-    actions.session.set("light.ambient", 0.25)
+    actions.session.drafts.set("light.ambient", 0.25)
     turn(actions)
     assert keying.add_here(actions, ["light.ambient"], camera=False)
     (found,) = load(path).keyframes
@@ -184,7 +184,7 @@ def test_the_panel_s_list(any_engine: Engine, path: Path) -> None:
         bare._watch(imgui, "radio_button")
         for time in (0.0, 2.0):
             bare.session.clock.time = time
-            bare.session.set("light.gain", 1.0 + time)
+            bare.session.drafts.set("light.gain", 1.0 + time)
             bare.turn(2)
             bare.click("Add keyframe here")
         assert [k.time for k in load(path).keyframes] == [0.0, 2.0]

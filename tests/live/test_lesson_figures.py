@@ -25,6 +25,7 @@ from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
 from playground.workbench.lesson.links import play_on
 from playground.workbench.lesson.reader import BOTH
 from playground.workbench.open_source import open_source
+from playground.workbench.resume import StoredEdits
 
 from .lesson_desk import RAW, Desk, shelved
 
@@ -107,9 +108,9 @@ def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_pi
     session = desk.actions.session
     scene = read_lesson("halving").named["land"].scene
     desk.reading.stage.show(replace(scene, pixels=(300, 300)), ("land", 0))
-    assert session.framed_for == (300, 300)
+    assert session.view.framed_for == (300, 300)
     desk.reading.stage.go_back()
-    assert session.framed_for == (1280, 720)
+    assert session.view.framed_for == (1280, 720)
 
 
 def test_every_picture_in_the_view_is_that_of_the_lesson(desk):
@@ -134,7 +135,7 @@ def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_a
     desk.reading.turn_page(1)
     desk.turn(4)
     assert desk.session.path == find("diamond_square_steps")
-    assert desk.session.steps == {"height.raw": 0, "phase": 0}
+    assert desk.session.view.steps == {"height.raw": 0, "phase": 0}
 
 
 def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(desk):
@@ -149,7 +150,7 @@ def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_
 
 def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
     own = desk.session.path
-    desk.session.set("height.seed", 5)
+    desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     seen = as_seen(desk)
     desk.open(show=False)
@@ -168,7 +169,7 @@ def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
 
 def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_does(desk):
     own = desk.session.path
-    desk.session.set("height.seed", 5)
+    desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     desk.open(show=False)
     desk.reading.turn_page(1)
@@ -182,7 +183,7 @@ def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_doe
 
 def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(desk):
     desk.open()
-    desk.session.set("height.seed", 77)
+    desk.session.drafts.set("height.seed", 77)
     desk.turn(60)
     desk.reading.go(1)  # another sketch
     desk.turn(4)
@@ -202,10 +203,10 @@ def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(de
 
 def test_what_is_compared_with_comes_back_with_what_was_open(desk):
     compare = desk.actions.see.compare
-    desk.session.set("height.seed", 5)
+    desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     compare.keep()
-    desk.session.set("height.seed", 6)
+    desk.session.drafts.set("height.seed", 6)
     desk.turn(2)
     desk.open(show=False)
     desk.reading.show(block(desk, "seeds"))
@@ -220,9 +221,9 @@ def test_what_is_compared_with_comes_back_with_what_was_open(desk):
 def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(desk):
     own = desk.session.path
     own.write_text(OWN.replace("white_noise", "white_noyse"), encoding="utf-8")
-    desk.session.open(own, edits=Edits((("height.seed", 5),)))
+    desk.session.open(own, start=StoredEdits(Edits((("height.seed", 5),))))
     desk.turn(2)
-    assert desk.session.error is not None and desk.session.leaves
+    assert desk.session.error is not None and desk.session.drafts.opening
     desk.open(show=False)
     desk.reading.show(block(desk, "land"))
     desk.turn(3)
@@ -230,7 +231,7 @@ def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(de
     desk.reading.go_back()
     desk.turn(3)
     own.write_text(OWN, encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn(3)
     assert desk.session.error is None and value(desk, "height.seed") == 5
 
@@ -238,9 +239,9 @@ def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(de
 def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_hand(desk):
     own = desk.session.path
     own.write_text(OWN.replace("[view]", "set = { seed = 2 }\n[view]"), encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn(2)
-    desk.session.set("height.seed", 5)
+    desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     desk.open(show=False)
     desk.reading.show(block(desk, "land"))
@@ -272,8 +273,8 @@ def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
     desk.open(3, show=False)
     desk.reading.faults.edit(block(desk, "mean"))
     desk.turn(3)
-    assert desk.session.texts and desk.reading.stage.own is None
-    desk.session.set("height.seed", 7)
+    assert desk.session.drafts.texts and desk.reading.stage.own is None
+    desk.session.drafts.set("height.seed", 7)
     desk.turn(3)
     assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
     desk.reading.show(block(desk, "seeds"))
@@ -284,12 +285,12 @@ def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
 
 
 def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
-    desk.session.set("height.seed", 5)
+    desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     desk.open(show=False)
     desk.reading.show(block(desk, "land"))
     desk.turn(60)
-    desk.session.set("height.seed", 8)
+    desk.session.drafts.set("height.seed", 8)
     desk.turn(60)
     desk.rememberer.close()
     kept = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
@@ -301,7 +302,7 @@ def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
 def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(desk):
     desk.session.open(find("white_noise"))
     desk.turn(2)
-    desk.session.set("height.seed", 41)
+    desk.session.drafts.set("height.seed", 41)
     desk.turn(2)
     desk.rememberer.look((800, 600))
     desk.rememberer.write()
@@ -320,14 +321,14 @@ def test_turns_are_stopped_at_and_played_to_the_last(desk):
     turns = block(desk, "turns")
     desk.reading.move(turns, 2)
     desk.turn(2)
-    assert desk.session.steps == {"height.raw": 2, "phase": 2}
+    assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, turns.scenes[2]))
     desk.reading.play_or_rest(turns)
     assert desk.reading.playing == "turns" and 0 < desk.reading.patience(desk.actions.now()) <= 0.8
     desk.turn(60)
     assert not desk.reading.playing and desk.reading.at["turns"] == 3
     assert steps_of(turns.scenes[3]) == {"height.raw": 4, "phase": 4}
-    assert desk.session.steps == {"height.raw": 4, "phase": 4}
+    assert desk.session.view.steps == {"height.raw": 4, "phase": 4}
 
 
 def test_a_sweep_plays_from_the_first_value_to_the_last(desk):
@@ -387,7 +388,7 @@ def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
     desk.reading.faults.mend_it(fault)
     desk.turn(4)
     assert desk.reading.faults.state["quarter"] == TOLD and not desk.actions.editing
-    assert not desk.session.texts
+    assert not desk.session.drafts.texts
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
     assert FILE.read_bytes() == before
 
@@ -404,7 +405,7 @@ def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_pag
     assert desk.reading.faults.state["quarter"] == BROKEN
     desk.reading.turn_page(1)
     desk.turn(4)
-    assert desk.session.error is None and not desk.session.texts and not desk.actions.editing
+    assert desk.session.error is None and not desk.session.drafts.texts and not desk.actions.editing
     desk.reading.turn_page(-1)
     desk.reading.faults.break_it(fault)
     assert "totals /" in desk.actions.editing[0].text.base, "what was typed is there again"
@@ -423,10 +424,10 @@ def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     editing.text.save(before.replace("float(2 * r)", "float(3 * r)"))
     desk.turn(3)
     assert "float(3 * r)" in faults.excerpt(code).text and faults.is_edited(code)
-    assert desk.session.texts == {str(FILE): editing.text.base}
+    assert desk.session.drafts.texts == {str(FILE): editing.text.base}
     faults.put_back(code)
     desk.turn(3)
-    assert not faults.is_edited(code) and not desk.session.texts and not desk.actions.editing
+    assert not faults.is_edited(code) and not desk.session.drafts.texts and not desk.actions.editing
     assert FILE.read_text(encoding="utf-8") == before
 
 
@@ -494,7 +495,7 @@ def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
     assert number.value == tops and 50 < tops < 200
     assert desk.reading.numbers.fill("{{peaks}} tops", desk.reading.lesson) == f"{tops} tops"
     assert runs, "what the panel counts is that of the picture"
-    desk.session.look_again()
+    desk.session.redraw()
     desk.turn(2)
     np.testing.assert_array_equal(as_seen(desk), seen)
 
@@ -539,12 +540,12 @@ def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(desk):
     desk.reading.show(block(desk, "land"))
     desk.turn(3)
     seen = as_seen(desk)
-    desk.session._trial = Silent()
+    desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=Silent())
     desk.reading.go(1)
     desk.turn(3)
-    assert desk.reading.stage.busy and desk.session.steps == {}
+    assert desk.reading.stage.busy and desk.session.view.steps == {}
     np.testing.assert_array_equal(as_seen(desk), seen)
-    desk.session._trial = None
+    desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=None)
     desk.reading.show(block(desk, "turns"))
     desk.turn(3)
-    assert not desk.reading.stage.busy and desk.session.steps == {"height.raw": 0, "phase": 0}
+    assert not desk.reading.stage.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}

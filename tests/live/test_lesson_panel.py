@@ -72,9 +72,9 @@ def test_sliders_of_a_figure_act_on_the_session(desk):
 def test_a_slider_over_turns_stops_the_kernels(desk):
     desk.open(1)
     desk.drag("##turns", 0.05, 0.95)
-    assert desk.reading.at["turns"] == 3 and desk.session.steps == {"height.raw": 4, "phase": 4}
+    assert desk.reading.at["turns"] == 3 and desk.session.view.steps == {"height.raw": 4, "phase": 4}
     desk.click("<")
-    assert desk.session.steps == {"height.raw": 2, "phase": 2}
+    assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
 
 
 def test_an_answer_waits_for_a_choice_and_a_solution_for_its_button(desk):

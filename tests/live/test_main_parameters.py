@@ -122,7 +122,7 @@ def test_a_main_parameter_is_typed_where_it_was_clicked_on(bare: Bare) -> None:
 
 
 def test_the_menu_of_a_main_parameter_resets_it(bare: Bare) -> None:
-    bare.session.set("height.seed", 5.0)
+    bare.session.drafts.set("height.seed", 5.0)
     bare.click("##main height.seed", 0.2, button=1)
     bare.click("Reset")
     assert value(bare, "height.seed") == 3.0

@@ -94,16 +94,16 @@ def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(desk:
     for number in range(1, 3):
         desk.turn(REST if number == 1 else 0.0)
         assert desk.watch.looks == number
-    desk.session.set("first.root", 0.25)
+    desk.session.drafts.set("first.root", 0.25)
     desk.turn()
     assert desk.watch.looks == 2, "another picture: what was under way is of no use"
 
 
 def test_it_goes_when_it_is_mended(desk: Desk) -> None:
     assert desk.rest()
-    desk.session.set("first.root", 0.25)
+    desk.session.drafts.set("first.root", 0.25)
     assert desk.rest() == []
-    desk.session.set("first.root", -0.25)
+    desk.session.drafts.set("first.root", -0.25)
     assert desk.rest() == ["first", "second"]
 
 
@@ -118,7 +118,7 @@ def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) 
     assert 0 < magenta.sum() <= 16
     x, y = place_in(first, (0.0, 0.0, 40.0, 40.0))
     assert magenta[int(y), int(x)]
-    desk.session.set("first.root", 0.25)
+    desk.session.drafts.set("first.root", 0.25)
     assert desk.rest() == []
 
 
@@ -140,7 +140,7 @@ def test_time_that_runs_is_looked_at_now_and_then(desk: Desk, monkeypatch: pytes
     seen = desk.watch.looks
     assert desk.watch.found and seen > 0
     for _ in range(10):
-        desk.session.look_again()
+        desk.session.redraw()
         desk.turn(0.05)
     assert desk.watch.looks == seen
     desk.turn(3.0)
@@ -174,9 +174,9 @@ def test_the_words_lead_to_the_texture_and_back(
         monkeypatch.setattr(bare, "draw", both)
         bare.turn(120)
         bare.click("Show it")
-        assert bare.session.map is not None and bare.session.map.ref == "first:first"
+        assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
         bare.click("Back to the picture")
-        assert bare.session.map is None
+        assert bare.session.view.map is None
     finally:
         bare.close()
 
@@ -245,10 +245,10 @@ def test_a_hole_that_the_view_makes_is_shown_too(
         (tmp_path / name).write_text(text, encoding="utf-8")
     desk = Desk(any_engine, tmp_path)
     (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn()
     if by_hand:
-        desk.session.set("view.root", -1.0)
+        desk.session.drafts.set("view.root", -1.0)
     desk.rest()
     (found,) = desk.watch.found
     assert (found.path, found.texel, found.size, found.value) == ("view.lit", (7, 5), (40, 40), "NaN")
@@ -256,7 +256,7 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     assert ref == "view.lit:frame" and desk.session.can_show(ref)
     desk.actions.show(ref)
     desk.turn()
-    assert desk.session.map is not None and desk.session.error is None and not desk.session.notes
+    assert desk.session.view.map is not None and desk.session.error is None and not desk.session.notes
     frame = desk.session.read()
     assert frame is not None
     magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))

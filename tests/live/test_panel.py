@@ -118,7 +118,7 @@ def test_what_cannot_be_typed_is_said_and_escape_leaves_it(bare: Bare) -> None:
 
 def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
     def change() -> None:
-        bare.session.set_all({"height.level": 0.75, "height.count": 5, "height.rough": 2.0})
+        bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.rough": 2.0})
         bare.turn(2)
 
     change()
@@ -163,7 +163,7 @@ def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
     bare.key(imgui.Key.escape)
     bare.turn(2)
     assert bare.panel.memory.filter.search == ""
-    bare.session.set("height.count", 5)
+    bare.session.drafts.set("height.count", 5)
     bare.click("Changed##only")
     bare.places.clear()
     bare.turn(2)
@@ -171,7 +171,7 @@ def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
 
 
 def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare, folder: Path) -> None:
-    bare.session.set("height.level", 1 / 3)
+    bare.session.drafts.set("height.level", 1 / 3)
     bare.turn(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     bare.turn(5)
@@ -208,7 +208,7 @@ def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, f
 
 def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
     for number in (0.1, 0.2, 0.3):
-        bare.session.set("height.level", number)
+        bare.session.drafts.set("height.level", number)
         bare.turn(90)
     bare.click("History")
     bare.click("Level: the file's to 0.1##1")
@@ -218,7 +218,7 @@ def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
 
 
 def test_what_is_set_is_copied(bare: Bare) -> None:
-    bare.session.set_all({"height.level": 0.25, "height.kind": 1})
+    bare.session.drafts.set_all({"height.level": 0.25, "height.kind": 1})
     bare.click("Copy")
     bare.click("As --set words")
     assert bare.clipboard == "--set height.level=0.25 --set height.kind=sharp"
@@ -229,7 +229,7 @@ def test_what_is_set_is_copied(bare: Bare) -> None:
 
 
 def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
-    bare.session.set("height.level", 0.25)
+    bare.session.drafts.set("height.level", 0.25)
     bare.turn(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
@@ -241,7 +241,7 @@ def test_nothing_reaches_beyond_the_panel(
     folder: Path, any_engine: Engine, size: tuple[int, int], scale: float
 ) -> None:
     bare = Bare(any_engine, folder, size, scale)
-    bare.session.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
+    bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
     bare.places.clear()
     bare.turn(3)
     right = PANEL_WIDTH * scale
@@ -320,7 +320,7 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     other.mkdir()
     for name in ("land.glsl", "sketch.toml"):
         (other / name).write_bytes((folder / name).read_bytes())
-    bare.session.set("height.level", 0.25)
+    bare.session.drafts.set("height.level", 0.25)
     take_dropped(bare.actions, [other])
     bare.turn(3)
     assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
@@ -345,7 +345,7 @@ def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Pa
 def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
     bare = Bare(any_engine, SKETCHES / "white_noise.toml")
     bare.actions.folder = tmp_path
-    bare.session.set("height.seed", 4)
+    bare.session.drafts.set("height.seed", 4)
     bare.turn(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     bare.turn(3)
@@ -361,7 +361,7 @@ def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_
 
 
 def test_keys_that_come_up_within_the_turn_are_heard(bare: Bare) -> None:
-    bare.session.set("height.level", 0.25)
+    bare.session.drafts.set("height.level", 0.25)
     bare.turn(2)
     events = imgui.get_io()
     events.add_key_event(imgui.Key.mod_ctrl, True)

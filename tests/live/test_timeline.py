@@ -65,9 +65,9 @@ def test_a_loop_goes_round_and_keeps_what_is_over() -> None:
     clock.time = 7.0  # beyond it time goes on, as after a scrub
     clock.advance(0.5)
     assert clock.time == 7.5
-    clock.go_round(5.0, 2.0)
+    clock.set_loop(5.0, 2.0)
     assert clock.loop == (2.0, 5.0)
-    clock.go_round(2.0, 2.01)
+    clock.set_loop(2.0, 2.01)
     assert clock.loop is None
 
 

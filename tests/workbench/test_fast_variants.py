@@ -68,7 +68,7 @@ def picture(session: Session) -> np.ndarray:
 
 def saved(session: Session) -> np.ndarray:
     session.notes.clear()
-    session.reload()
+    session.drafts.reload()
     return picture(session)
 
 
@@ -111,18 +111,18 @@ def test_a_record_that_is_renewed_is_taken_up(session, folder):
     trust(folder)
     saved(session)
     assert runs_fast(session)
-    assert folder / NAME in session.files, "so that the window follows it"
+    assert folder / NAME in session.drafts.files, "so that the window follows it"
 
 
 def test_the_switch_runs_the_plain_form_and_outlives_a_save(session, folder):
     before = picture(session)
-    session.run_plain(True)
+    session.drafts.run_plain(True)
     assert np.abs(picture(session).astype(int) - before).max() <= 1
     assert not runs_fast(session) and not session.notes
     change(folder / "sketch.toml", "size = 33", "size = 65")
     saved(session)
     assert not runs_fast(session) and session.plan is not None and session.plan.land.size == (65, 65)
-    session.run_plain(False)
+    session.drafts.run_plain(False)
     picture(session)
     assert runs_fast(session)
 
@@ -138,9 +138,9 @@ def test_plain_from_the_beginning(ctx, folder):
 def test_a_text_that_stands_in_for_a_file_shows_as_well(session, folder):
     before = picture(session)
     path = folder / "diamond_square/raw.glsl"
-    session.read_as({str(path): path.read_text(encoding="utf-8").replace(BEFORE, AFTER)})
+    session.drafts.read_as({str(path): path.read_text(encoding="utf-8").replace(BEFORE, AFTER)})
     assert (picture(session) != before).any() and not runs_fast(session)
     assert len(session.notes) == 1
-    session.read_as({})
+    session.drafts.read_as({})
     np.testing.assert_array_equal(picture(session), before)
     assert runs_fast(session)

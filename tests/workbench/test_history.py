@@ -85,11 +85,11 @@ def test_everything_is_undone_and_done_again(desk: Desk) -> None:
     session, actions = desk.session, desk.actions
     pictures = [desk.turn()]
     for act in (
-        lambda: session.set("height.level", 0.5),
+        lambda: session.drafts.set("height.level", 0.5),
         lambda: actions.apply_preset("high"),
-        lambda: session.choose("height", "./other"),
-        lambda: session.look(Camera(azimuth=3.0)),
-        lambda: session.lock("height.other", True),
+        lambda: session.drafts.choose("height", "./other"),
+        lambda: session.drafts.set_camera(Camera(azimuth=3.0)),
+        lambda: session.drafts.lock("height.other", True),
         lambda: actions.reset_values(),
         lambda: actions.seek(2.5),
         lambda: actions.set_all("Random, seed 1", {"height.level": 0.125}),
@@ -117,15 +117,15 @@ def test_everything_is_undone_and_done_again(desk: Desk) -> None:
 
 
 def test_undo_goes_on_after_a_reload_and_a_broken_one(desk: Desk) -> None:
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     land = desk.folder / "land.glsl"
     for text in ("broken", KERNEL.replace("+ other", "- other")):
         land.write_text(text, encoding="utf-8")
-        desk.session.reload()
+        desk.session.drafts.reload()
         desk.session.frame(SIZE)
         desk.actions.look_back(False)
-    desk.session.set("height.other", 0.75)
+    desk.session.drafts.set("height.other", 0.75)
     desk.turn()
     assert (desk.value("level"), desk.value("other")) == (0.5, 0.75)
     desk.actions.undo()
@@ -135,7 +135,7 @@ def test_undo_goes_on_after_a_reload_and_a_broken_one(desk: Desk) -> None:
 
 
 def test_a_locked_parameter_is_left_by_presets(desk: Desk) -> None:
-    desk.session.lock("height.level", True)
+    desk.session.drafts.lock("height.level", True)
     desk.actions.apply_preset("high")
     desk.turn()
     assert (desk.value("level"), desk.value("other")) == (0.25, 0.5)
@@ -143,9 +143,9 @@ def test_a_locked_parameter_is_left_by_presets(desk: Desk) -> None:
 
 
 def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> None:
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     desk.turn()
-    desk.session.look(Camera(azimuth=12.3456, elevation=30.0))
+    desk.session.drafts.set_camera(Camera(azimuth=12.3456, elevation=30.0))
     before = desk.turn()
     save_values(desk.actions)
     assert 'use = "./land"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
@@ -170,7 +170,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
 
 
 def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
-    desk.session.choose("height", "./other")
+    desk.session.drafts.choose("height", "./other")
     desk.turn()
     save_values(desk.actions)
     desk.turn()
@@ -185,7 +185,7 @@ def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
 def test_values_by_hand_become_a_preset(desk: Desk) -> None:
     save_as_preset(desk.actions, "low")
     assert "would be empty" in desk.said and "low" not in desk.text
-    desk.session.set("height.level", 0.125)
+    desk.session.drafts.set("height.level", 0.125)
     save_as_preset(desk.actions, " low ")
     desk.turn()
     assert desk.session.sketch is not None
@@ -196,7 +196,7 @@ def test_values_by_hand_become_a_preset(desk: Desk) -> None:
 
 
 def test_a_file_changed_meanwhile_is_said(desk: Desk) -> None:
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     text = SKETCH.replace("size = 33", "size = 17")
     (desk.folder / "sketch.toml").write_text(text, encoding="utf-8")
     save_values(desk.actions)
@@ -206,7 +206,7 @@ def test_a_file_changed_meanwhile_is_said(desk: Desk) -> None:
 def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
     desk = Desk(any_engine, tmp_path, SKETCHES / "white_noise.toml")
     before = (SKETCHES / "white_noise.toml").read_bytes()
-    desk.session.set("height.seed", 4)
+    desk.session.drafts.set("height.seed", 4)
     picture = desk.turn()
     save_values(desk.actions)
     assert desk.actions.offer == "This sketch belongs to the playground itself."
@@ -221,7 +221,7 @@ def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engin
 
 
 def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     other = tmp_path / "two" / "sketch.toml"
     other.parent.mkdir()
     for name in ("land.glsl", "sketch.toml"):
@@ -262,7 +262,7 @@ class Brush:
 
 
 def test_with_the_brush_in_the_hand_strokes_are_undone_and_redone_and_no_values(desk: Desk) -> None:
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     brush = Brush(1)
     desk.actions.painting = brush  # type: ignore[assignment]

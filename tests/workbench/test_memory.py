@@ -15,10 +15,12 @@ from playground.folders import cache_folder, state_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.autosave import QUIET, TIME, Rememberer
-from playground.workbench.edit_merge import Said
+from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
 from playground.workbench.memory import Compared, Memory, Remembered
 from playground.workbench.session import Session
+
+from ..cases import each
 
 SIZE = (64, 48)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
@@ -43,7 +45,7 @@ FULL = Remembered(
         (("height", "./other"),),
         Camera(azimuth=10.5, elevation=20.0, distance=900.0, target=(1.0, 2.0, 3.0)),
     ),
-    (("height.level", Said(0.25, True)), ("height.slope", Said((1.0, 2.0), False))),
+    (("height.level", FileValue(0.25, True)), ("height.slope", FileValue((1.0, 2.0), False))),
     12.5,
     False,
     2.0,
@@ -77,7 +79,7 @@ class Place:
     def start(self, **more: object) -> tuple[Session, Rememberer]:
         memory = Memory(self.sketch / "sketch.toml", self.state)
         found, complaint = memory.read()
-        more |= {"edits": found.edits, "in_file": dict(found.in_file), "camera_in_file": found.camera_in_file}
+        more |= {"start": found.start}
         session = Session(self.engine, self.sketch, **more)  # type: ignore[arg-type]
         session.notes.extend(filter(None, [complaint]))
         made = session, Rememberer(session, memory, found, lambda: self.now)
@@ -106,9 +108,9 @@ def picture(session: Session) -> np.ndarray:
 
 
 def change_everything(session: Session) -> None:
-    session.set("height.level", 0.75)
-    session.set("height.slope", (0.5, 0.25))
-    session.look(Camera(azimuth=70.0, elevation=50.0, distance=15000.0))
+    session.drafts.set("height.level", 0.75)
+    session.drafts.set("height.slope", (0.5, 0.25))
+    session.drafts.set_camera(Camera(azimuth=70.0, elevation=50.0, distance=15000.0))
     session.clock.time, session.clock.playing = 0.3, False
     session.stop_at("height", 3)
 
@@ -136,7 +138,7 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
 
 def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
     session, rememberer = place.start()
-    session.clock.go_round(0.5, 2.0)
+    session.clock.set_loop(0.5, 2.0)
     rememberer.look((900, 600))
     rememberer.close()
     again, rememberer = place.start()
@@ -151,7 +153,7 @@ def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
 def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
     session, rememberer = place.start()
     by_hand = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
-    session.look(by_hand)
+    session.drafts.set_camera(by_hand)
     rememberer.look((900, 600))
     rememberer.close()
     other = SKETCH + ("camera = { azimuth = 12.0 }\n" if moved else "# the same camera\n")
@@ -172,7 +174,7 @@ def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
     rememberer.look((900, 600))
     rememberer.close()
     again, _ = place.start()
-    assert again.shown.edits == edits and again.steps == {"height": 3}
+    assert again.shown.edits == edits and again.view.steps == {"height": 3}
     assert again.clock.time == 0.3 and not again.clock.playing
     np.testing.assert_array_equal(picture(again), before)
     assert not again.notes and again.error is None
@@ -181,7 +183,7 @@ def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
 def test_a_map_comes_back_too(place: Place) -> None:
     session, rememberer = place.start()
     session.show("height:height")
-    session.set_map("highest", 3.0)
+    session.view.set_map("highest", 3.0)
     before = picture(session)
     rememberer.look((900, 600))
     rememberer.close()
@@ -192,7 +194,7 @@ def test_a_map_comes_back_too(place: Place) -> None:
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
     session, rememberer = place.start()
     for value in (0.5, 0.6, 0.7):
-        session.set("height.level", value)
+        session.drafts.set("height.level", value)
         place.now += QUIET / 2
         rememberer.look((900, 600))
         assert place.files() == [] and rememberer.waits
@@ -266,12 +268,12 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
     own, default, then, later = SAYS[what]
     save(own, default)
     session, rememberer = place.start()
-    session.set("height.level", 0.75)
-    session.lock("height.level", locked)
+    session.drafts.set("height.level", 0.75)
+    session.drafts.lock("height.level", locked)
     rememberer.look((900, 600))
     rememberer.close()
     save(then, later)
-    session.reload()
+    session.drafts.reload()
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
@@ -284,12 +286,12 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
 @pytest.mark.parametrize("locked", [False, True])
 def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> None:
     session, rememberer = place.start()
-    session.set("relief", 500.0)
-    session.lock("relief", locked)
+    session.drafts.set("relief", 500.0)
+    session.drafts.lock("relief", locked)
     rememberer.look((900, 600))
     rememberer.close()
     (place.sketch / "sketch.toml").write_text(SKETCH.replace("size = 33", "size = 33\nrelief = 700.0"))
-    session.reload()
+    session.drafts.reload()
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
@@ -312,7 +314,7 @@ def test_when_all_is_reset_nothing_is_remembered_but_the_window(place: Place) ->
     rememberer.close()
     again, second = place.start()
     again.reset_values()
-    again.reset_camera()
+    again.drafts.set_camera(None)
     again.clock.time, again.clock.playing = 0.0, True
     again.frame(SIZE)
     second.look((900, 600))
@@ -342,15 +344,15 @@ def test_a_broken_file_is_set_aside_and_one_is_told(place: Place, name: str) -> 
     assert session.shown is not None and session.error is None
     assert "cannot be read" in session.notes[0] and ".unread.json" in session.notes[0]
     assert memory.path.with_suffix(".unread.json").read_bytes() == data, "nothing is lost"
-    session.set("height.level", 0.5)
+    session.drafts.set("height.level", 0.5)
     rememberer.look((900, 600))
     rememberer.close()
     found, complaint = memory.read()
     assert complaint == "" and dict(found.edits.values) == {"height.level": 0.5}
 
 
-@pytest.mark.parametrize("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
-@pytest.mark.parametrize("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
+@each("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
+@each("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
 def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, wrong: object) -> None:
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)
@@ -364,7 +366,7 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     first, one = place.start()
     second, two = place.start()
     for session, rememberer, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
-        session.set("height.level", value)
+        session.drafts.set("height.level", value)
         rememberer.look((900, 600))
         place.now += QUIET
         rememberer.look((900, 600))
@@ -372,7 +374,7 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
     assert dict(found.edits.values) == {"height.level": 0.625}
     one.close()
-    second.set("height.level", 0.875)
+    second.drafts.set("height.level", 0.875)
     two.look((900, 600))
     two.close()
     found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
@@ -381,13 +383,13 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
 
 def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
     session, rememberer = place.start()
-    session.set("height.level", 0.5)
+    session.drafts.set("height.level", 0.5)
     rememberer.look((900, 600))
     other = place.sketch / "other.toml"
     other.write_text(SKETCH, encoding="utf-8")
-    session.path = other
-    session.reload()
-    session.set("height.level", 0.75)
+    session.drafts.path = other
+    session.drafts.reload()
+    session.drafts.set("height.level", 0.75)
     session.frame(SIZE)
     rememberer.look((900, 600))
     rememberer.close()
@@ -409,7 +411,7 @@ def test_where_the_folder_is_a_file_one_is_told_once(place: Place) -> None:
 def check_told_once(place: Place) -> None:
     session, rememberer = place.start()
     for value in (0.5, 0.75):
-        session.set("height.level", value)
+        session.drafts.set("height.level", value)
         rememberer.look((900, 600))
         place.now += QUIET
         rememberer.look((900, 600))

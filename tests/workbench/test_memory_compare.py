@@ -59,7 +59,7 @@ class Desk:
         assert complaint == ""
         self.found = found.compared
         self.trial = SlowTrial()
-        self.session = Session(self.engine, self.folder, edits=found.edits, trial=self.trial)
+        self.session = Session(self.engine, self.folder, start=found.start, sandbox=self.trial)
         self.compare = Compare(self.session)
         self.rememberer = Rememberer(self.session, memory, found, compare=self.compare)
         self.session.frame(SIZE)
@@ -93,11 +93,11 @@ def desk(tmp_path: Path, any_engine: Engine):
 
 
 def compare_something(desk: Desk) -> None:
-    desk.session.set("height.level", 0.75)
+    desk.session.drafts.set("height.level", 0.75)
     desk.turn()
     desk.compare.keep()
     desk.compare.mode, desk.compare.split, desk.compare.gain = Mode.DIFFERENCE, 0.25, 16.0
-    desk.session.set("height.level", 0.5)
+    desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     desk.close()
 
@@ -115,7 +115,7 @@ def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
     assert (compare.mode, compare.split, compare.gain) == (Mode.DIFFERENCE, 0.25, 16.0)
     assert desk.session.sketch is not None
     alone = desk.session.sketch.with_values({"height.level": 0.75})
-    if desk.session.hasty:
+    if desk.session.is_preview:
         desk.session.read()
         desk.turn()
     expected = desk.engine.render(framed(alone, 0.0, DEFAULT_PICTURE, SIZE), size=SIZE).array
@@ -152,11 +152,11 @@ def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:
     desk.turn()
     asked = len(desk.trial.asked)
     (desk.folder / "land.glsl").write_text(LAND.replace("float(texel.x)", "float(texel.y)"), encoding="utf-8")
-    desk.session.reload()
+    desk.session.drafts.reload()
     desk.turn()
-    assert len(desk.trial.asked) == asked + 1 and desk.session.testing
+    assert len(desk.trial.asked) == asked + 1 and desk.session.drafts.testing
     desk.answer(SandboxReport(True))
-    assert not desk.session.testing and not desk.compare.on
+    assert not desk.session.drafts.testing and not desk.compare.on
     desk.turn()
     desk.answer(SandboxReport(True))
     desk.turn()
@@ -164,7 +164,7 @@ def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:
 
 
 def test_nothing_compared_is_nothing_remembered(desk: Desk) -> None:
-    desk.session.set("height.level", 0.75)
+    desk.session.drafts.set("height.level", 0.75)
     desk.compare.keep()
     desk.compare.end()
     desk.turn()

@@ -254,7 +254,7 @@ def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tm
     assert canvas is not None and canvas.path.parent == tmp_path and painting.files == {canvas.path}
     assert dict(session.shown.edits.values)["painted.image"] == str(canvas.path)
     assert any("painting on" in note for note in session.notes)
-    session.unset("painted.image")
+    session.drafts.unset("painted.image")
     assert painting.canvas is None, "the sketch names its own file again"
     painting.press((0.5, 0.5))
     assert painting.canvas is not None and painting.canvas.path != canvas.path
@@ -327,7 +327,7 @@ def test_without_its_mask_the_brush_is_not_in_the_hand(session: Session, tmp_pat
         'set = { image = "none.png" }', ""
     )
     (tmp_path / "sketch" / "sketch.toml").write_text(text)
-    session.reload()
+    session.drafts.reload()
     session.frame((160, 120))
     assert session.error is None and not painting.on
 
@@ -395,7 +395,7 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255
     write_png(canvas.path, theirs)
-    session.look_again()
+    session.redraw()
     np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
     painting.press((0.45, 0.5))
     painting.release()

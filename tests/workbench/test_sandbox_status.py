@@ -39,24 +39,25 @@ def folder(tmp_path: Path) -> Path:
 
 def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> None:
     clock, trial, told = [0.0], FakeTrial(), Told()
-    session = Session(any_engine, folder, trial=trial, now=lambda: clock[0])
+    session = Session(any_engine, folder, sandbox=trial, now=lambda: clock[0])
     follower = Follower(session, told)  # type: ignore[arg-type]
     try:
         clock[0] = 0.5
-        assert session.trying == ("sketch.toml", 0.5)
+        assert session.drafts.checking == ("sketch.toml", 0.5)
         trial.answer = SandboxReport(True)
         session.frame((32, 32))
-        assert session.trying is None
+        assert session.drafts.checking is None
 
         (folder / "land.glsl").write_text(KERNEL.replace("0.25", "0.5"), encoding="utf-8")
         told.changed = {folder / "land.glsl"}
         assert follower.take()
         clock[0] += 2.0
-        assert session.trying == ("land.glsl", 2.0)
+        assert session.drafts.checking == ("land.glsl", 2.0)
         (folder / "inc/tilt.glsl").write_text(TILT.replace("x)", "y)"), encoding="utf-8")
         told.changed = {folder / "land.glsl", folder / "inc" / "tilt.glsl", folder / "sketch.toml"}
         assert follower.take()
-        assert session.trying == ("land.glsl, sketch.toml and 1 more", 0.0), "a newer save begins anew"
+        subject = "land.glsl, sketch.toml and 1 more"
+        assert session.drafts.checking == (subject, 0.0), "a newer save begins anew"
     finally:
         session.release()
 

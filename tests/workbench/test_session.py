@@ -16,7 +16,8 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.workbench.dependencies import files_of
 from playground.workbench.framing import framed
-from playground.workbench.session import Session, Stage
+from playground.workbench.reload_stages import ReloadStage
+from playground.workbench.session import Session
 
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope
@@ -64,7 +65,7 @@ class Bench:
         self.write("land.glsl", KERNEL)
         self.write("inc/tilt.glsl", TILT)
         self.write("sketch.toml", SKETCH)
-        self.session = Session(engine, folder, trial=trial)
+        self.session = Session(engine, folder, sandbox=trial)
 
     def write(self, name: str, text: str) -> None:
         (self.folder / name).write_text(text, encoding="utf-8")
@@ -73,7 +74,7 @@ class Bench:
         text = (self.folder / name).read_text(encoding="utf-8")
         assert old in text
         self.write(name, text.replace(old, new))
-        self.session.reload()
+        self.session.drafts.reload()
 
     def picture(self) -> np.ndarray:
         self.session.frame(SIZE)
@@ -164,7 +165,7 @@ def test_what_is_broken_is_said_and_the_last_good_picture_stays_until_it_is_mend
     bench.change(name, old, new)
     np.testing.assert_array_equal(bench.picture(), before)
     assert place in str(bench.session.error)
-    assert bench.folder / name in bench.session.files
+    assert bench.folder / name in bench.session.drafts.files
     bench.change(name, new, old)
     assert bench.session.error is None
     np.testing.assert_array_equal(bench.picture(), before)
@@ -174,7 +175,7 @@ def test_the_last_good_sketch_can_still_be_changed_by_hand(bench: Bench) -> None
     before = bench.picture()
     bench.change("land.glsl", "level * tilt", "levle * tilt")
     bench.picture()
-    bench.session.set("height.level", 0.75)
+    bench.session.drafts.set("height.level", 0.75)
     assert not np.array_equal(bench.picture(), before)
     assert bench.session.error is not None
     bench.change("land.glsl", "levle * tilt", "level * tilt")
@@ -192,7 +193,7 @@ def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_mended(
     (tmp_path / "inc").mkdir()
     (tmp_path / "inc" / "tilt.glsl").write_text(TILT, encoding="utf-8")
     (tmp_path / "land.glsl").write_text(KERNEL, encoding="utf-8")
-    session.reload()
+    session.drafts.reload()
     assert session.frame(SIZE) is not None and session.error is None
     session.release()
 
@@ -208,7 +209,7 @@ def test_nothing_is_drawn_while_nothing_changes(bench: Bench) -> None:
     bench.session.clock.advance(1.0)
     bench.picture()
     assert bench.session.draws == draws, "nothing in it names time"
-    bench.session.set("height.level", 0.5)
+    bench.session.drafts.set("height.level", 0.5)
     bench.picture()
     assert bench.session.draws == draws + 1
 
@@ -222,18 +223,18 @@ def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_re
     (tmp_path / "land.toml").write_text(SKETCH_3D, encoding="utf-8")
     session = Session(any_engine, tmp_path / "land.toml", now=lambda: now[0])
     session.frame(SIZE)
-    assert session.hasty and session.draws == 1
+    assert session.is_preview and session.draws == 1
     session.frame(SIZE)
     assert session.draws == 1, "it has not rested yet"
     now[0] += 1.0
     session.frame(SIZE)
-    assert not session.hasty and session.draws == 2
+    assert not session.is_preview and session.draws == 2
     now[0] += 1.0
     session.frame(SIZE)
     assert session.draws == 2
-    session.set("height.smoothing", 0.5)
+    session.drafts.set("height.smoothing", 0.5)
     session.frame(SIZE)
-    assert session.hasty
+    assert session.is_preview
     saved = session.read()
     assert saved is not None and session.sketch is not None
     seen = framed(session.sketch, 0.0, DEFAULT_PICTURE, SIZE)
@@ -259,7 +260,7 @@ def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
 
 def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
     bench.picture()
-    bench.session.set("height.level", 0.75)
+    bench.session.drafts.set("height.level", 0.75)
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] == 0.75
@@ -277,26 +278,27 @@ def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> No
 
 def test_a_value_that_does_not_fit_becomes_a_note(bench: Bench) -> None:
     bench.picture()
-    bench.session.set("height.level", 7.0)
-    bench.session.set("height.levle", 0.5)
+    bench.session.drafts.set("height.level", 7.0)
+    bench.session.drafts.set("height.levle", 0.5)
     assert values_of(bench.session.sketch)["height.level"] == 0.25
     assert "outside its range" in bench.session.notes[0] and "did you mean" in bench.session.notes[1]
 
 
 def test_presets_and_resets(bench: Bench) -> None:
     before = bench.picture()
-    bench.session.apply_preset("high")
+    high = next(preset for preset in bench.session.sketch.presets if preset.name == "high")
+    bench.session.drafts.set_all(dict(high.values))
     assert not np.array_equal(bench.picture(), before)
     bench.session.reset_values()
     np.testing.assert_array_equal(bench.picture(), before)
-    bench.session.set("height.level", 0.5)
-    bench.session.unset("height.level")
+    bench.session.drafts.set("height.level", 0.5)
+    bench.session.drafts.unset("height.level")
     np.testing.assert_array_equal(bench.picture(), before)
 
 
 def test_another_technique_and_back(bench: Bench) -> None:
     before = bench.picture()
-    bench.session.choose("height", "generation/diamond_square")
+    bench.session.drafts.choose("height", "generation/diamond_square")
     assert not np.array_equal(bench.picture(), before)
     assert bench.session.sketch.graph.find("height").use == "generation/diamond_square"
     bench.session.reset_values()
@@ -306,12 +308,12 @@ def test_another_technique_and_back(bench: Bench) -> None:
 def test_a_technique_that_does_not_draw_leaves_the_one_there_was(bench: Bench) -> None:
     bench.change("sketch.toml", "size = 33", "size = 32")
     before = bench.picture()
-    bench.session.choose("height", "generation/diamond_square")
+    bench.session.drafts.choose("height", "generation/diamond_square")
     np.testing.assert_array_equal(bench.picture(), before)
     assert "33 x 33" in str(bench.session.error)
-    bench.session.choose("height", "./land")
+    bench.session.drafts.choose("height", "./land")
     np.testing.assert_array_equal(bench.picture(), before)
-    assert bench.session.error is None and bench.session.stage is Stage.NONE
+    assert bench.session.error is None and bench.session.drafts.stage is ReloadStage.NONE
 
 
 def test_any_texture_is_shown_as_a_map_fitted_to_its_values(bench: Bench) -> None:
@@ -329,17 +331,17 @@ def test_what_one_looks_at_survives_saves_mistakes_and_their_mending(bench: Benc
     session = bench.session
     bench.picture()
     session.show("height:height")
-    session.set_map("highest", 0.5)
-    session.look(Camera(azimuth=77.0))
+    session.view.set_map("highest", 0.5)
+    session.drafts.set_camera(Camera(azimuth=77.0))
     session.clock.time = 3.0
     session.clock.toggle()
-    session.set("height.level", 0.75)
-    looked_at = session.map, session.clock.time, session.clock.playing, session.shown.edits
+    session.drafts.set("height.level", 0.75)
+    looked_at = session.view.map, session.clock.time, session.clock.playing, session.shown.edits
     for old, new in [("level * tilt", "1.0 - level * tilt"), ("1.0 -", "1.0 - x"), ("1.0 - x", "")]:
         bench.change("land.glsl", old, new)
         bench.picture()
-        assert (session.map, session.clock.time, session.clock.playing, session.shown.edits) == looked_at
-    expected = session.engine.render(session.map.of(session.sketch), size=SIZE, time=3.0)
+        assert (session.view.map, session.clock.time, session.clock.playing, session.shown.edits) == looked_at
+    expected = session.engine.render(session.view.map.of(session.sketch), size=SIZE, time=3.0)
     np.testing.assert_array_equal(bench.picture()[..., :3], expected.array[..., :3])
 
 
@@ -349,23 +351,23 @@ def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
     bench.picture()
     text = SKETCH.replace('"height"', '"land"').replace("height.level", "land.level")
     bench.write("sketch.toml", text)
-    bench.session.reload()
+    bench.session.drafts.reload()
     bench.picture()
     assert "height:height is gone" in bench.session.notes[0]
-    assert bench.session.map is None and bench.session.error is None
+    assert bench.session.view.map is None and bench.session.error is None
 
 
 def test_the_trial_comes_first(tried: tuple[Bench, FakeTrial]) -> None:
     bench, trial = tried
-    assert bench.session.frame(SIZE) is None and bench.session.testing
+    assert bench.session.frame(SIZE) is None and bench.session.drafts.testing
     trial.answer = SandboxReport(True, seconds=0.01)
     before = bench.picture()
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
     np.testing.assert_array_equal(bench.picture(), before)
-    assert bench.session.testing and len(trial.requests) == 2
+    assert bench.session.drafts.testing and len(trial.requests) == 2
     trial.answer = SandboxReport(True)
     assert not np.array_equal(bench.picture(), before)
-    assert not bench.session.testing
+    assert not bench.session.drafts.testing
 
 
 def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_engine: Engine) -> None:
@@ -374,13 +376,13 @@ def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_
     (tmp_path / "sketch.toml").write_text(text.replace("[view]", 'set = { elevation = "none.npy" }\n[view]'))
     np.save(tmp_path / "none.npy", np.zeros((3, 3), np.float32))
     trial = FakeTrial()
-    session = Session(any_engine, tmp_path / "sketch.toml", trial=trial)
+    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=trial)
     try:
         (tmp_path / "none.npy").unlink()
         trial.answer = SandboxReport(False, ContextError("no context"))
         for _ in range(3):
             assert session.frame(SIZE) is None
-        assert "none.npy" in str(session.error) and not session.hasty
+        assert "none.npy" in str(session.error) and not session.is_preview
     finally:
         session.release()
 
@@ -393,7 +395,7 @@ def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -
     trial.answer = SandboxReport(False, SandboxTimeout("the trial took longer than 10 s"))
     np.testing.assert_array_equal(bench.picture(), before)
     assert "longer than 10 s" in str(bench.session.error)
-    bench.session.set("height.level", 0.5)
+    bench.session.drafts.set("height.level", 0.5)
     assert not np.array_equal(bench.picture(), before), "the last good sketch goes on"
     bench.change("land.glsl", "1.0 - level * tilt", "level * tilt")
     assert bench.session.error is None, "it is the sketch that is shown already"
@@ -419,10 +421,11 @@ def test_what_the_driver_has_drawn_already_needs_no_trial(
     trial.answer = SandboxReport(True)
     before = bench.picture()
     bench.change(name, old, new)
-    assert bench.session.testing == is_tried and len(trial.requests) == (2 if is_tried else 1)
+    assert bench.session.drafts.testing == is_tried and len(trial.requests) == (2 if is_tried else 1)
     trial.answer = SandboxReport(True)
     assert np.array_equal(bench.picture(), before) == (not is_tried)
-    assert bench.session.error is None and bench.session.coming is None, "the new text is the one shown"
+    assert bench.session.error is None
+    assert bench.session.drafts.coming is None, "the new text is the one shown"
 
 
 def test_a_fault_of_the_playground_itself_does_not_end_the_session(
@@ -435,11 +438,11 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
 
     with monkeypatch.context() as patch:
         patch.setattr(bench.session.engine, "draw", fails)
-        bench.session.set("height.level", 0.5)
+        bench.session.drafts.set("height.level", 0.5)
         np.testing.assert_array_equal(bench.picture(), before)
         assert "a bug of the playground itself, ZeroDivisionError: oh" in str(bench.session.error)
     assert "the playground itself failed" in caplog.text
-    bench.session.set("height.level", 0.6)
+    bench.session.drafts.set("height.level", 0.6)
     bench.picture()
     assert bench.session.error is None
 
@@ -452,7 +455,7 @@ def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
         'uniform sampler2D grass; //! file("grass.png")\nuniform float level',
     )
     bench.picture()
-    names = {path.name for path in bench.session.files}
+    names = {path.name for path in bench.session.drafts.files}
     assert {"sketch.toml", "land.glsl", "tilt.glsl", "map.glsl"} <= names
     assert "grass.png" in names, "it is missing, and its coming would mend that"
     assert bench.session.sketch is not None
@@ -465,16 +468,17 @@ def test_places_where_a_file_may_come_are_watched_too(bench: Bench) -> None:
     bench.change("land.glsl", "inc/tilt", "new/place/tilt")
     bench.picture()
     assert "new/place/tilt" in str(bench.session.error)
-    assert bench.folder / "new" / "place" / "tilt.glsl" in bench.session.files
+    assert bench.folder / "new" / "place" / "tilt.glsl" in bench.session.drafts.files
     bench.change("land.glsl", "new/place/tilt", "noise/hash")
     bench.picture()
-    assert bench.folder / "noise" / "hash.glsl" in bench.session.files, "it would stand before the library's"
-    assert not any(path.parent == Path("/") for path in bench.session.files)
+    missing = bench.folder / "noise" / "hash.glsl"
+    assert missing in bench.session.drafts.files, "it would stand before the library's"
+    assert not any(path.parent == Path("/") for path in bench.session.drafts.files)
 
 
 def stepped(bench: Bench) -> Session:
     bench.write("sketch.toml", SKETCH.replace("./land", "generation/diamond_square").split("[[preset]]")[0])
-    bench.session.reload()
+    bench.session.drafts.reload()
     bench.session.frame(SIZE)
     assert bench.session.error is None
     return bench.session
@@ -489,7 +493,7 @@ def test_a_repeat_is_shown_at_the_step_that_is_asked_for(bench: Bench) -> None:
     np.testing.assert_array_equal(bench.picture()[..., :3], expected.array[..., :3])
     assert not np.array_equal(bench.picture(), whole)
     session.stop_at("height.raw", 11)
-    assert session.steps == {}
+    assert session.view.steps == {}
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
@@ -518,7 +522,8 @@ def test_an_eye_under_the_terrain_is_told_of_once(tmp_path: Path, any_engine: En
         session.frame(SIZE)
         assert not any("under the terrain" in note for note in session.notes)
         for azimuth in (20.0, 30.0, 40.0):
-            session.look(Camera(azimuth=azimuth, elevation=-40, distance=3000, target=(5120, 5120, 0)))
+            camera = Camera(azimuth=azimuth, elevation=-40, distance=3000, target=(5120, 5120, 0))
+            session.drafts.set_camera(camera)
             session.frame(SIZE)
         assert sum("under the terrain" in note for note in session.notes) == 1
         assert session.plan is not None and session.plan.eye.position[2] > 0
@@ -539,8 +544,8 @@ def test_the_image_of_a_plain_shader_is_watched_and_its_change_shows(any_engine:
         if level == 50:
             (tmp_path / "look.frag").write_text(PLAIN)
             session = Session(any_engine, tmp_path / "look.frag")
-            assert tmp_path / "x.png" in session.files
-        session.reload()
+            assert tmp_path / "x.png" in session.drafts.files
+        session.drafts.reload()
         session.frame(SIZE)
         frame = session.read()
         assert frame is not None and frame.array[0, 0, 0] == level

@@ -15,7 +15,11 @@ from playground.errors import SandboxCrash
 from playground.images.files import write_png
 from playground.sketch.model import Camera
 from playground.terrain import elevation, sources
-from playground.workbench.session import Session, Stage
+from playground.workbench.inspect.compare import Compare
+from playground.workbench.inspect.inspector import Inspector
+from playground.workbench.inspect.thumbnails import Thumbnails
+from playground.workbench.reload_stages import ReloadStage
+from playground.workbench.session import Session
 
 from .test_session import FakeTrial
 
@@ -57,13 +61,13 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def session(folder: Path, any_engine: Engine, read: list[str]) -> Iterator[Session]:
-    made = Session(any_engine, folder, trial=FakeTrial())
+    made = Session(any_engine, folder, sandbox=FakeTrial())
     yield made
     made.release()
 
 
 def answer(session: Session, report: SandboxReport) -> None:
-    trial = session._trial
+    trial = session.drafts._checks.sandbox
     assert isinstance(trial, FakeTrial)
     trial.answer = report
     session.frame(SIZE)
@@ -71,7 +75,7 @@ def answer(session: Session, report: SandboxReport) -> None:
 
 def test_the_first_picture_s_file_is_read_by_the_trial_first(session: Session, read: list[str]) -> None:
     session.frame(SIZE)
-    assert session.testing and read == []
+    assert session.drafts.testing and read == []
     answer(session, SandboxReport(True))
     assert session.sketch is not None and set(read) == {"land.npy"}
 
@@ -82,19 +86,19 @@ def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
     answer(session, SandboxReport(True))
     read.clear()
     np.save(folder / "land.npy", np.eye(11, dtype=np.float32))
-    session.reload()
-    assert session.testing and read == []
+    session.drafts.reload()
+    assert session.drafts.testing and read == []
     answer(session, SandboxReport(False, SandboxCrash("ran out of memory")))
-    session.look(Camera(azimuth=12.0))
+    session.drafts.set_camera(Camera(azimuth=12.0))
     assert session.frame(SIZE) is not None, "the last good picture stays"
-    assert session.stage is Stage.FAILED and "ran out of memory" in str(session.error)
+    assert session.drafts.stage is ReloadStage.FAILED and "ran out of memory" in str(session.error)
     assert read == []
-    session.reload()
-    assert session.testing, "it is tried again, not believed"
+    session.drafts.reload()
+    assert session.drafts.testing, "it is tried again, not believed"
     answer(session, SandboxReport(True))
     assert session.error is None and read == ["land.npy"]
-    session.reload()
-    assert not session.testing, "nothing of it is new by now"
+    session.drafts.reload()
+    assert not session.drafts.testing, "nothing of it is new by now"
 
 
 @pytest.mark.parametrize("name", ["other.npy", "gone.npy"])
@@ -103,15 +107,15 @@ def test_a_file_chosen_by_hand_is_tried_first(
 ) -> None:
     answer(session, SandboxReport(True))
     read.clear()
-    session.set("height.elevation", str(folder / name))
-    assert session.testing and read == []
+    session.drafts.set("height.elevation", str(folder / name))
+    assert session.drafts.testing and read == []
     answer(session, SandboxReport(False, SandboxCrash("the decoder crashed")))
     assert "the decoder crashed" in str(session.error) and read == []
     session.frame(SIZE)
     assert read == [], "what is shown stays as it was"
-    session.set("height.elevation", str(folder / "land.npy"))
+    session.drafts.set("height.elevation", str(folder / "land.npy"))
     session.frame(SIZE)
-    assert session.error is None and not session.testing and session.stage is Stage.NONE
+    assert session.error is None and not session.drafts.testing and session.drafts.stage is ReloadStage.NONE
 
 
 def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
@@ -119,8 +123,8 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
 ) -> None:
     answer(session, SandboxReport(True))
     before = session.draws
-    session.set("height.elevation", str(folder / "other.npy"))
-    session.set("view.channel", "red")
+    session.drafts.set("height.elevation", str(folder / "other.npy"))
+    session.drafts.set("view.channel", "red")
     answer(session, SandboxReport(True))
     assert session.error is None and session.draws > before and "other.npy" in read
     assert session.shown is not None
@@ -132,14 +136,14 @@ def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Se
     answer(session, SandboxReport(True))
     other = str(folder / "other.npy")
     for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
-        session.set("height.elevation", str(folder / "land.npy"))
+        session.drafts.set("height.elevation", str(folder / "land.npy"))
         session.frame(SIZE)
         np.save(folder / "other.npy", np.random.default_rng(seed).random((9, 9), np.float32))
-        session.set("height.elevation", other)
-        assert session.testing
+        session.drafts.set("height.elevation", other)
+        assert session.drafts.testing
         (folder / "sketch.toml").write_text(text, encoding="utf-8")
-        session.reload()
-        assert session.testing, "it is tried with what was saved"
+        session.drafts.reload()
+        assert session.drafts.testing, "it is tried with what was saved"
         answer(session, SandboxReport(True))
         assert session.error is None and session.shown is not None
         assert dict(session.shown.edits.values)["height.elevation"] == other
@@ -150,13 +154,13 @@ def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Se
 def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path, when: str) -> None:
     answer(session, SandboxReport(True))
     bad = SandboxReport(False, SandboxCrash("the decoder crashed"))
-    session.set("height.elevation", str(folder / "other.npy"))
+    session.drafts.set("height.elevation", str(folder / "other.npy"))
     if when == "after it":
         answer(session, bad)
-        assert session.stage is Stage.FAILED
-    session.unset("height.elevation")
+        assert session.drafts.stage is ReloadStage.FAILED
+    session.drafts.unset("height.elevation")
     answer(session, bad)  # of a sketch that nobody wants any more
-    assert session.error is None and session.stage is Stage.NONE
+    assert session.error is None and session.drafts.stage is ReloadStage.NONE
     assert session.shown is not None and not session.shown.edits.values
 
 
@@ -168,17 +172,17 @@ def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path
     path.unlink()
     path.write_bytes(data)
     os.utime(path, ns=(10**18, 10**18))
-    session.look(Camera(azimuth=12.0))
+    session.drafts.set_camera(Camera(azimuth=12.0))
     session.frame(SIZE)
     assert session.draws > before, "the picture does not wait for a trial that nobody asks for"
-    session.reload()
-    assert not session.testing
+    session.drafts.reload()
+    assert not session.drafts.testing
 
 
 def test_other_values_wait_for_nothing(session: Session) -> None:
     answer(session, SandboxReport(True))
-    session.set("view.channel", "red")
-    assert not session.testing
+    session.drafts.set("view.channel", "red")
+    assert not session.drafts.testing
 
 
 def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
@@ -198,3 +202,27 @@ def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engi
         write_png(folder / "fine.png", np.zeros((4, 4, 3), np.uint8))
         np.save(folder / "land.npy", np.eye(9, dtype=np.float32))
         assert trial.run(TrySketch(load(folder))).ok, "the same child goes on"
+
+
+def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
+    answer(session, SandboxReport(True))
+    picture = session.frame(SIZE)
+    assert picture is not None and session.rests
+    inspector, thumbnails, compare = Inspector(session), Thumbnails(session), Compare(session)
+    assert inspector.at((5, 5), picture) is not None
+    assert not thumbnails.refresh(["height:height"], 1.0) and thumbnails.made == 1
+    compare.keep()
+    compare.follow(picture)
+    np.save(folder / "land.npy", np.full((9, 9), 0.25, np.float32))
+    assert session.awaits_data and not session.rests
+    assert inspector.at((6, 6), picture) is None
+    made, draws = thumbnails.made, compare.draws
+    thumbnails.refresh(["view:view"], 2.0)
+    session.view.framed_for = (64, 32)
+    compare.follow(picture)
+    assert (thumbnails.made, compare.draws) == (made, draws)
+    session.drafts.reload()
+    answer(session, SandboxReport(True))
+    assert session.rests and inspector.at((6, 6), picture) is not None
+    for made_there in (inspector, thumbnails, compare):
+        made_there.release()

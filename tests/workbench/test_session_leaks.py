@@ -52,10 +52,10 @@ def test_memory_is_flat_over_five_hundred_reloads(
             if session is None:
                 session = Session(engine, tmp_path)
             else:
-                session.reload()
+                session.drafts.reload()
             session.frame(SIZE)
             assert (session.error is not None) == (edit == "wrong")
-            session.set("height.level", number % 7 / 7)
+            session.drafts.set("height.level", number % 7 / 7)
             session.frame(SIZE)
             if number in (199, 499):
                 gc.collect()

@@ -13,7 +13,8 @@ from playground.engine.engine import Engine
 from playground.gpu.context import abandon, open_context
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.workbench.session import Session, Stage
+from playground.workbench.reload_stages import ReloadStage
+from playground.workbench.session import Session
 
 SIZE = (64, 48)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
@@ -61,7 +62,7 @@ class Machine:
     def save(self, old: str, new: str) -> None:
         assert old in LAND
         (self.folder / "land.glsl").write_text(LAND.replace(old, new), encoding="utf-8")
-        self.session.reload()
+        self.session.drafts.reload()
 
 
 @pytest.fixture
@@ -76,19 +77,20 @@ def test_everything_is_there_again_the_picture_to_the_bit(machine: Machine) -> N
     session = machine.session
     session.clock.time = 0.4
     machine.picture()
-    session.set("height.level", 0.75)
-    session.look(Camera(azimuth=70.0, elevation=40.0, distance=9000.0))
+    session.drafts.set("height.level", 0.75)
+    session.drafts.set_camera(Camera(azimuth=70.0, elevation=40.0, distance=9000.0))
     session.stop_at("height", 3)
     before, edits = machine.picture(), session.shown.edits
     for _ in range(2):
         machine.lose()
         np.testing.assert_array_equal(machine.picture(), before)
         gc.collect()  # what was made in the old context goes: it must not take its namesakes with it
-        session.look(Camera(azimuth=71.0, elevation=40.0, distance=9000.0))
+        session.drafts.set_camera(Camera(azimuth=71.0, elevation=40.0, distance=9000.0))
         machine.picture()
-        session.look(edits.camera)
+        session.drafts.set_camera(edits.camera)
         np.testing.assert_array_equal(machine.picture(), before)
-        assert session.shown.edits == edits and session.clock.time == 0.4 and session.steps == {"height": 3}
+        assert session.shown.edits == edits and session.clock.time == 0.4
+        assert session.view.steps == {"height": 3}
     assert session.error is None and any("was reset" in note for note in session.notes)
 
 
@@ -113,7 +115,7 @@ def test_what_costs_the_context_is_not_drawn_again(machine: Machine) -> None:
     machine.save("* 0.5", "* 0.25")
     machine.is_lost = True
     machine.session.frame(SIZE)
-    assert machine.session.stage is Stage.FAILED and "reset itself" in str(machine.session.error)
+    assert machine.session.drafts.stage is ReloadStage.FAILED and "reset itself" in str(machine.session.error)
     machine.lose()
     np.testing.assert_array_equal(machine.picture(), before)
     assert "reset itself" in str(machine.session.error)
@@ -123,13 +125,13 @@ def test_what_costs_the_context_is_not_drawn_again(machine: Machine) -> None:
 
 def test_a_value_that_costs_two_contexts_waits_for_another(machine: Machine) -> None:
     machine.picture()
-    machine.session.set("height.level", 0.75)
+    machine.session.drafts.set("height.level", 0.75)
     machine.picture()
     machine.lose()
     machine.picture()
     machine.lose()
     assert machine.session.frame(SIZE) is None
     assert "reset itself twice" in str(machine.session.error)
-    machine.session.set("height.level", 0.5)
+    machine.session.drafts.set("height.level", 0.5)
     machine.picture()
     assert machine.session.error is None and values_of(machine.session.sketch)["height.level"] == 0.5

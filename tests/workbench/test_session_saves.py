@@ -29,8 +29,8 @@ from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.reload import Follower
-from playground.workbench.reload_stages import explained, gone
-from playground.workbench.session import Session, Stage
+from playground.workbench.reload_stages import ReloadStage, explained, missing_file_error
+from playground.workbench.session import Session
 from playground.workbench.watcher import Watcher
 
 SIZE = (24, 16)
@@ -239,7 +239,7 @@ class Truth:
             frame = self.engine.render(found, size=SIZE, time=seconds)
         except PlaygroundError as error:
             sketch = path / "sketch.toml"
-            return str(gone(sketch) or explained(error, sketch)), b""
+            return str(missing_file_error(sketch) or explained(error, sketch)), b""
         return "", frame.array[..., :3].tobytes()
 
 
@@ -252,7 +252,7 @@ class Run:
         self.woken = threading.Event()
         self.levels: list[float | None] = [None]
         folder.fill()
-        self.session = Session(engine, folder.path, trial=trial)
+        self.session = Session(engine, folder.path, sandbox=trial)
         self.watcher = Watcher(self.woken.set, also=(".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
         self.follower.follow()
@@ -289,8 +289,8 @@ class Run:
         """Set something by hand, as a person does while files are being saved."""
         if self.session.sketch is not None and LEVEL in values_of(self.session.sketch):
             self.levels.append(round(self.dice.random(), 2))
-            self.session.set(LEVEL, self.levels[-1])
-        self.session.look(Camera(azimuth=self.dice.uniform(0, 360)))
+            self.session.drafts.set(LEVEL, self.levels[-1])
+        self.session.drafts.set_camera(Camera(azimuth=self.dice.uniform(0, 360)))
         self.session.clock.time += 0.5
 
     def picture(self) -> bytes:
@@ -298,7 +298,7 @@ class Run:
         return frame.array[..., :3].tobytes() if frame is not None else b""
 
     def is_at_rest(self) -> bool:
-        return self.session.stage in (Stage.NONE, Stage.FAILED)
+        return self.session.drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
 
     def shows(self, wrong: str, picture: bytes) -> bool:
         """Say whether this mistake is said, or this picture shown."""

@@ -29,7 +29,7 @@ def change(path: Path, before: str, after: str) -> None:
 
 def saved(session: Session) -> tuple[np.ndarray, list[str]]:
     session.notes.clear()
-    session.reload()
+    session.drafts.reload()
     session.frame(SIZE)
     frame = session.read()
     assert frame is not None and session.error is None
@@ -69,7 +69,7 @@ def test_a_set_of_the_sketch_is_named_with_its_line(any_engine: Engine, folder: 
 def test_what_the_panel_sets_is_named_too(any_engine: Engine, folder: Path):
     session = Session(any_engine, folder)
     saved(session)
-    session.set("height.frequency", 3.0)
+    session.drafts.set("height.frequency", 3.0)
     change(folder / "my_land.glsl", "frequency = 5.0", "frequency = 9.0")
     assert saved(session)[1] == ["height.frequency: the default is 9; the panel sets 3"]
     session.release()

@@ -52,7 +52,7 @@ def test_a_drag_turns_every_sun_and_runs_the_light_alone(path: Path, any_engine:
     session = Session(any_engine, path)
     try:
         session.frame((64, 48))
-        session.turn_suns(0.1, 0.1)
+        session.drafts.move_suns(0.1, 0.1)
         session.frame((64, 48))
         assert session.sketch is not None
         assert suns_of(session.sketch) == {"light.sun": (8.0, 29.0), "second.sun": (108.0, 90.0)}

@@ -100,7 +100,7 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
     hovered = imgui.is_item_hovered()
     if hovered:
         imgui.set_tooltip(_told(node, actions))
-    shown = session.map.ref == ref if session.map is not None else node == "view"
+    shown = session.view.map.ref == ref if session.view.map is not None else node == "view"
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, far, theme.packed(theme.RAISED if hovered else theme.FIELD), 6 * scale)
     if shown:

@@ -25,10 +25,10 @@ _SHARE = 0.02
 def draw_spread(actions: Actions, look: Theme) -> None:
     """Draw it where a map is shown."""
     session = actions.session
-    if session.map is None:
+    if session.view.map is None:
         return
-    if session.map.value("channel") != 0:
-        _legend(session.map, actions, look)
+    if session.view.map.value("channel") != 0:
+        _legend(session.view.map, actions, look)
     if not imgui.tree_node_ex("Histogram###histogram"):
         return
     actions.see.spread_shown = True
@@ -42,14 +42,14 @@ def draw_spread(actions: Actions, look: Theme) -> None:
             imgui.text_disabled(fitting(f"of {found.read:,} texels, whole rows of it", 300 * look.scale))
         if not actions.see.counter.fresh:
             imgui.text_disabled("of a moment ago; counting anew …")
-        _ranges(found, session.map, actions)
+        _ranges(found, session.view.map, actions)
     imgui.tree_pop()
 
 
 def metres_of(actions: Actions) -> float | None:
     """Return how many metres the map's number 1 is, where it shows heights; None elsewhere."""
     session = actions.session
-    if session.map is None or session.plan is None or session.map.ref.partition(":")[2] != "height":
+    if session.view.map is None or session.plan is None or session.view.map.ref.partition(":")[2] != "height":
         return None
     return session.plan.land.relief
 
@@ -89,7 +89,7 @@ def _legend(shown: Map, actions: Actions, look: Theme) -> None:
 
 def _plot(found: Histogram, actions: Actions, look: Theme) -> None:
     plots.begin()
-    shown = actions.session.map
+    shown = actions.session.view.map
     assert shown is not None
     _, logarithmic = imgui.checkbox("Logarithmic", actions.see.logarithmic)
     actions.see.logarithmic = logarithmic
@@ -159,8 +159,8 @@ def _ranges(found: Histogram, shown: Map, actions: Actions) -> None:
     imgui.set_item_tooltip("Without the least and the greatest 2 in 100")
     imgui.same_line()
     if imgui.button("Around the mean"):
-        actions.session.set_map("middle", mine.mean)
+        actions.session.view.set_map("middle", mine.mean)
     imgui.set_item_tooltip('The middle of "cool and warm" is the mean')
     if wanted is not None and wanted[0] < wanted[1]:
         for name, value in zip(("lowest", "highest"), wanted, strict=True):
-            actions.session.set_map(name, value)
+            actions.session.view.set_map(name, value)

@@ -92,7 +92,7 @@ def _bar(sketch: Sketch, actions: Actions, look: Theme) -> None:
         time = time_at(mouse - corner.x)
         if imgui.get_io().key_shift:
             start = mouse - imgui.get_mouse_drag_delta(0, 0.0).x
-            clock.go_round(time_at(start - corner.x), time)
+            clock.set_loop(time_at(start - corner.x), time)
         else:
             actions.seek(time)
     elif imgui.is_item_hovered():

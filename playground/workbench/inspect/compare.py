@@ -19,14 +19,14 @@ from playground.engine.plan import Plan
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
-from playground.workbench.clock import is_animated
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.blend import Beside
 from playground.workbench.last_frame import Painter, Picture
 from playground.workbench.memory import Compared
-from playground.workbench.preview import hastily
-from playground.workbench.resume import first_draft
+from playground.workbench.preview import as_preview
+from playground.workbench.resume import StoredEdits, first_draft
 from playground.workbench.session import Session
+from playground.workbench.traits import is_animated
 
 if TYPE_CHECKING:
     import moderngl
@@ -148,9 +148,9 @@ class Compare:
         if session.shown is None or session.plan is None:
             return False
         if self._recalled is None:
-            self._recalled, _ = first_draft(session.shown.file, compared.edits, {})
+            self._recalled, _ = first_draft(session.shown.file, StoredEdits(compared.edits))
         draft = self._recalled
-        report = session.tried(draft.sketch)
+        report = session.drafts.check_aside(draft.sketch)
         if report is None:
             return False
         self._recalled = None
@@ -177,23 +177,23 @@ class Compare:
         if session.shown is None or session.plan is None:
             return None
         files = {path: _stamp(path) for path in _files_of(session.plan)}
-        return Kept(session.path, session.shown, dict(session.steps), files)
+        return Kept(session.path, session.shown, dict(session.view.steps), files)
 
     def _take(self, kept: Kept) -> None:
         session = self.session
         if session.shown is not None and kept.draft.file is not session.shown.file:
             session.notes.append("A is of the files as they were; the next save brings those of now")
-        session.shown = kept.draft
-        session.steps.clear()
-        session.steps.update(kept.steps)
-        session.look_again()
+        session.drafts.shown = kept.draft
+        session.view.steps.clear()
+        session.view.steps.update(kept.steps)
+        session.redraw()
 
     # ── A's picture ──────────────────────────────────────────────────────────
 
     def follow(self, picture: moderngl.Texture) -> None:
         """Bring A's picture to the size, camera and time of B's, which the session has just drawn."""
         kept, session = self._kept, self.session
-        if kept is None:
+        if kept is None or session.awaits_data:
             return
         if kept.path != session.path:
             self.end()  # another sketch was opened
@@ -207,14 +207,14 @@ class Compare:
             self._painter = Painter(session.engine.ctx)
             self._picture = Picture(self._painter)
         wanted = self._wanted(kept, plan)
-        if self._drawn is None and kept.draft is session.shown and kept.steps == session.steps:
+        if self._drawn is None and kept.draft is session.shown and kept.steps == session.view.steps:
             with session.engine.borrowed():
-                self._picture.keep(picture)
-            self._drawn, self._hasty = wanted, session.hasty
+                self._picture.copy(picture)
+            self._drawn, self._hasty = wanted, session.is_preview
         elif wanted != self._drawn:
             self._draw(kept, plan, hasty=session.engine.info.software)
             self._drawn = wanted
-        elif self._hasty and not session.hasty:
+        elif self._hasty and not session.is_preview:
             self._draw(kept, plan, hasty=False)
 
     def release(self) -> None:
@@ -225,7 +225,7 @@ class Compare:
         self._picture = self._painter = self.beside = self._drawn = None
 
     def _wanted(self, kept: Kept, plan: Plan) -> object:
-        shown = self.session.map
+        shown = self.session.view.map
         time = plan.time if is_animated(kept.draft.sketch) else 0.0
         seen = plan.frame_size, plan.sketch.camera, plan.interpolated
         return kept.draft, seen, time, shown, self.session.engine
@@ -234,7 +234,7 @@ class Compare:
         assert self._picture is not None
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(kept.draft.sketch, plan)
-        chosen = hastily(sketch) if hasty else sketch
+        chosen = as_preview(sketch) if hasty else sketch
         changed = [path for path, stamp in kept.files.items() if _stamp(path) != stamp]
         try:
             if changed:
@@ -244,7 +244,7 @@ class Compare:
                 # A save may have left fewer steps than it stopped at.
                 steps = {path: step for path, step in kept.steps.items() if step < repeats.get(path, 0)}
                 texture = _drawn(engine, chosen, plan, steps)
-                self._picture.keep(texture)
+                self._picture.copy(texture)
         except Exception as error:
             if not self._told:
                 session.notes.append(f"A stays as it was drawn last: {error}")
@@ -255,7 +255,7 @@ class Compare:
 
     def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
         """Return a sketch as B is seen: by its camera, and the same texture if one is shown."""
-        shown = self.session.map
+        shown = self.session.view.map
         seen = sketch.with_camera(plan.sketch.camera)
         return shown.of(seen) if shown is not None else seen
 

@@ -200,13 +200,13 @@ class Counter:
     def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
         session = self.session
         plan, engine = session.plan, session.engine
-        if session.map is None or plan is None:
+        if session.view.map is None or plan is None:
             return None
-        path, _, output = session.map.ref.partition(":")
+        path, _, output = session.view.map.ref.partition(":")
         ref = plan.flat.outputs.get(path, {}).get(output)
         result = engine.results.get(ref.path) if ref is not None else None
         if result is None or ref is None:
             return None
         texture = result.textures[ref.output]
         # The same texture's numbers change only when its pass runs again.
-        return texture, (session.map.ref, id(engine), result.number, engine.runs[ref.path])
+        return texture, (session.view.map.ref, id(engine), result.number, engine.runs[ref.path])

@@ -15,7 +15,7 @@ import numpy as np
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import height_seen
 from playground.gpu.textures import read_texels
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.workbench.inspect.surface_point import Ground
 from playground.workbench.session import Session
 
@@ -77,12 +77,14 @@ class Inspector:
         self.on = not self.on
 
     def at(self, pixel: Pixel, picture: moderngl.Texture) -> Found | None:
-        """Return what lies under a pixel of the picture; None outside it.
+        """Return what lies under a pixel of the picture; None outside it, and while new data is checked.
 
         ``picture`` is what the session's last ``frame`` returned.
         """
         width, height = picture.size
         if not (0 <= pixel[0] < width and 0 <= pixel[1] < height):
+            return None
+        if self.session.awaits_data:
             return None
         asked = pixel, self.session.draws, self.inner, id(self.session.engine)
         if asked != self._asked:
@@ -104,7 +106,7 @@ class Inspector:
         bytes_ = tuple(round(float(c) * 255) for c in colour[:3])
         if plan is None:
             return Found(pixel, bytes_, None, ())
-        if session.map is not None:
+        if session.view.map is not None:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
         ref = height_seen(plan)
         heights = self._texture(plan, ref)
@@ -121,8 +123,8 @@ class Inspector:
         return Found(pixel, bytes_, spot_of(plan, heights, hit), readings, None, missing)
 
     def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
-        assert self.session.map is not None
-        ref = self.session.map.ref
+        assert self.session.view.map is not None
+        ref = self.session.view.map.ref
         shown = self._texture(plan, ref)
         texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
         if shown is None or texel is None:

@@ -61,7 +61,7 @@ class Thumbnails:
         for name in [name for name in self._kept if name not in wanted]:
             self._kept.pop(name)[1].release()
         stale = [n for n in wanted if self._source(n) is not None and not self.is_current(n)]
-        if stale and now - self._last >= APART:
+        if stale and now - self._last >= APART and not self.session.awaits_data:
             self._last = now
             self._draw(stale.pop(0))
         return bool(stale)
@@ -98,7 +98,7 @@ class Thumbnails:
         if plan is None:
             return None
         path, _, output = name.partition(":")
-        if path.partition(".")[0] == "view" and self.session.map is not None:
+        if path.partition(".")[0] == "view" and self.session.view.map is not None:
             return None  # that is the map
         ref = plan.flat.outputs.get(path, {}).get(output)
         result = engine.results.get(ref.path) if ref is not None else None

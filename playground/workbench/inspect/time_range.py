@@ -40,4 +40,4 @@ def toggle_loop(sketch: Sketch, clock: Clock) -> None:
         clock.loop = None
     else:
         marks = marks_of(sketch)
-        clock.go_round(*((marks[0], marks[-1]) if len(marks) > 1 else (0.0, span_of(sketch, clock))))
+        clock.set_loop(*((marks[0], marks[-1]) if len(marks) > 1 else (0.0, span_of(sketch, clock))))

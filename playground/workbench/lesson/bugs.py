@@ -15,7 +15,7 @@ import numpy as np
 
 from playground.errors import PlaygroundError
 from playground.lessons.excerpt import Excerpt, excerpt
-from playground.lessons.figure_renders import Picture, draw, faulty
+from playground.lessons.figure_renders import Picture, draw, with_bug
 from playground.lessons.model import Break, Code, Scene
 from playground.paths import GLSL, shown
 from playground.sketch.model import kernels_of
@@ -25,7 +25,6 @@ from playground.workbench.actions import Actions
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import Stage
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
-from playground.workbench.reload_stages import Stage as Coming
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
 _SAME = 0.25
@@ -70,7 +69,7 @@ class Faults:
         self.leave()
         path = file_of(block)
         try:
-            text = self.typed.get(block.name) or faulty(block)
+            text = self.typed.get(block.name) or with_bug(block)
         except PlaygroundError as error:
             self.actions.say(str(error))
             return
@@ -79,7 +78,7 @@ class Faults:
         self._open(block, path, text, line)
         self._on, self.state[block.name] = block, BROKEN
         self.stage.show(block.scene, (block.name, 1), self.texts)
-        self._to_check = text != faulty(block)
+        self._to_check = text != with_bug(block)
 
     def focus(self, block: Break) -> None:
         """Bring the copy of a fault to the front, also where its window was closed."""
@@ -101,7 +100,7 @@ class Faults:
         if not self._to_check or block is None or block.scene is None or self.stage.busy:
             return False
         self._to_check = False
-        if session.error is not None or session.plan is None or session.stage is not Coming.NONE:
+        if session.error is not None or session.plan is None or not session.rests:
             return True
         path = file_of(block)
         text = self.copies.text_of(path)
@@ -178,7 +177,7 @@ class Faults:
         self.leave()
         if self.copies.open:
             self.copies.close()
-        if drawn and self.actions.session.texts:
+        if drawn and self.actions.session.drafts.texts:
             self._draw()
 
     def forget(self) -> None:

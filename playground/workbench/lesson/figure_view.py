@@ -16,15 +16,15 @@ from playground.errors import PlaygroundError
 from playground.lessons.model import Scene
 from playground.sketch.load import load
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import DEFAULT_PICTURE, Camera
+from playground.sketch.model import DEFAULT_PICTURE
 from playground.workbench.actions import Actions
 from playground.workbench.clock import Clock
-from playground.workbench.edit_merge import Said
 from playground.workbench.edits import Edits
 from playground.workbench.history import History, state_of
 from playground.workbench.inspect.compare import Kept, Mode
 from playground.workbench.lesson.figure_state import edits_of, map_of, path_of, steps_of
-from playground.workbench.reload_stages import Stage as Coming
+from playground.workbench.reload_stages import ReloadStage
+from playground.workbench.resume import StoredEdits
 
 Key = tuple[str, int]
 """A picture of a lesson: the name of its block, and which of the block's."""
@@ -35,9 +35,7 @@ class Own:
     """What the reader had open."""
 
     path: Path
-    edits: Edits
-    in_file: Mapping[str, Said]  # what its files said of each value set by hand
-    camera_in_file: Camera | None
+    edits: StoredEdits
     steps: Mapping[str, int]
     map: Map | None
     clock: Clock
@@ -64,7 +62,7 @@ class Stage:
     @property
     def busy(self) -> bool:
         """Whether a picture is still to come."""
-        return self.actions.session.stage in (Coming.TRIAL, Coming.DRAW)
+        return self.actions.session.drafts.stage in (ReloadStage.SANDBOX, ReloadStage.DRAW)
 
     @property
     def changed(self) -> bool:
@@ -75,14 +73,14 @@ class Stage:
         edits = session.shown.edits
         if self.own is None or self.scene is None:
             return bool(edits.values or edits.techniques)
-        return not self.busy and (edits, dict(session.steps)) != self._set
+        return not self.busy and (edits, dict(session.view.steps)) != self._set
 
     def show(self, scene: Scene, key: Key, texts: Mapping[str, str] | None = None) -> None:
         """Show a picture of a lesson; ``texts``, by absolute path, stand in for shaders' files."""
         actions, session = self.actions, self.actions.session
         path, texts = path_of(scene), texts or {}
         try:
-            known = session.shown if session.path == path and not session.leaves else None
+            known = session.shown if session.path == path and not session.drafts.opening else None
             file = known.file if known is not None else load(path)
             edits, steps = edits_of(scene, file), steps_of(scene)
         except PlaygroundError as error:
@@ -95,29 +93,29 @@ class Stage:
             self._leave()
             history, before = self._histories.get(path, (History(), edits))
             _note(history, before, edits, actions.now())
-            session.open(path, edits=edits, texts=texts)
+            session.open(path, start=StoredEdits(edits), texts=texts)
             actions.history = history
         else:
             actions.look_back(False)
             actions.history.call(f"Lesson: {key[0]}")
-            session.read_as(texts)
-            session.restore(edits)
-        session.view(steps, map_of(scene))
-        session.framed_for = scene.pixels
+            session.drafts.read_as(texts)
+            session.drafts.restore(edits)
+        session.restore_view(steps, map_of(scene))
+        session.view.framed_for = scene.pixels
         session.clock.time, session.clock.playing = scene.time, False
         self.scene, self.key, self._path, self._waits = scene, key, session.path, True
         self._set = edits, steps
 
     def set_texts(self, texts: Mapping[str, str]) -> None:
         """Have texts stand in for shaders' files in what is shown now; the reader's own stays that."""
-        self.actions.session.read_as(texts)
+        self.actions.session.drafts.read_as(texts)
 
     def stop_at(self, steps: Mapping[str, int], key: Key) -> None:
         """Stop repeats of the picture that is shown after other turns."""
         session = self.actions.session
         for path, turn in steps.items():
             session.stop_at(path, turn)
-        self.key, self._set = key, (self._set[0], dict(session.steps))
+        self.key, self._set = key, (self._set[0], dict(session.view.steps))
 
     def compare(self, first: Scene, second: Scene, name: str) -> None:
         """Show two pictures as A and B where they are ``comparable``; else the second."""
@@ -128,15 +126,15 @@ class Stage:
     def turn(self) -> None:
         """Take in what has become of the picture that was asked for; once a turn."""
         session = self.actions.session
-        if self._compared is not None and not session.leaves:
+        if self._compared is not None and not session.drafts.opening:
             self.actions.see.compare.take_up(self._compared)
             self._compared = None
         if self.own is not None and session.path != self._path:
             self.let_go()  # the reader opened a sketch
             return
-        if self._waits and session.stage is Coming.NONE and session.shown is not None:
+        if self._waits and session.drafts.stage is ReloadStage.NONE and session.shown is not None:
             self._waits = False
-            self._set = session.shown.edits, dict(session.steps)
+            self._set = session.shown.edits, dict(session.view.steps)
             self._compare()
 
     def go_back(self) -> None:
@@ -145,15 +143,15 @@ class Stage:
         if own is None:
             return
         try:
-            session.open(own.path, edits=own.edits, in_file=own.in_file, camera_in_file=own.camera_in_file)
+            session.open(own.path, start=own.edits)
         except PlaygroundError as error:
             self.actions.say(str(error))
             return
         self.actions.see.compare.end()
         self._compared, self._first = own.compared, None
         self.actions.history = own.history
-        session.view(own.steps, own.map)
-        session.framed_for = DEFAULT_PICTURE
+        session.restore_view(own.steps, own.map)
+        session.view.framed_for = DEFAULT_PICTURE
         clock = session.clock
         clock.time, clock.playing, clock.loop = own.clock.time, own.clock.playing, own.clock.loop
         self._waits = False
@@ -168,16 +166,16 @@ class Stage:
         self._begins()
         actions, session = self.actions, self.actions.session
         actions.look_back(False)
-        by_hand, (steps, shown) = session.set_by_hand(), session.seen_next()
+        edits, (steps, shown) = session.drafts.stored, session.view.state
         clock, compared = replace(session.clock), self._compared or actions.see.compare.kept
         self._compared = None
-        self.own = Own(session.path, *by_hand, steps, shown, clock, actions.history, compared)
+        self.own = Own(session.path, edits, steps, shown, clock, actions.history, compared)
         self._path = session.path
 
     def _leave(self) -> None:
         """Keep what was set by hand in the sketch that is left, for when a lesson shows it again."""
         session = self.actions.session
-        if session.shown is not None and not session.leaves:
+        if session.shown is not None and not session.drafts.opening:
             self.actions.look_back(False)
             self._histories[session.path] = self.actions.history, session.shown.edits
 
@@ -194,7 +192,7 @@ class Stage:
         """Let the stage go: what it shows is the reader's own from here on."""
         self.own = self.scene = self.key = self._first = None
         self._waits = False
-        self.actions.session.framed_for = DEFAULT_PICTURE
+        self.actions.session.view.framed_for = DEFAULT_PICTURE
 
 
 def comparable(first: Scene, second: Scene) -> bool:

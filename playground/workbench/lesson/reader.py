@@ -201,7 +201,7 @@ class Reading:
         elif isinstance(block, Steps):
             self.stage.stop_at(steps_of(scene), (block.name, index))
         else:
-            self.actions.session.set(block.parameter, block.values[index])
+            self.actions.session.drafts.set(block.parameter, block.values[index])
         self.at[block.name] = index
 
     def choose(self, block: Compare, index: int) -> None:
