@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import CACHE_BYTES, Engine, opened
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import warn
 from playground.errors import Diagnostic, PlaygroundWarning
@@ -20,18 +20,19 @@ def headless(
     software: bool = False,
     device: int | None = None,
     driver: str = "auto",
+    cache_bytes: int = CACHE_BYTES,
     notice: Callable[[str], None] = warn,
 ) -> Engine:
     """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
 
-    ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". What is drawn though something is wrong with
-    it is told by Python's warnings, as ``PlaygroundWarning``, once. Where a fast variant does not
-    run, ``notice`` is told why: a ``PlainFormWarning``, unless told otherwise, and then the other
-    warnings are left out as well. Raises ``ContextError`` in a sentence.
+    ``software`` chooses the software renderer, ``device`` an EGL device by number, ``driver``
+    is "auto", "fragment" or "compute"; at most ``cache_bytes`` of textures are cached. What is
+    drawn although something is wrong with it gives a ``PlaygroundWarning``, once. ``notice``
+    receives why a fast variant does not run; by default it gives a ``PlainFormWarning``, and
+    another ``notice`` leaves out the other warnings as well. Raises ``ContextError`` in a sentence.
     """
     context = open_context(software=software, device=device)
-    engine = Engine(context, driver=driver, owns_context=True, notice=notice)
+    engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
         engine.warnings.tell = _warn
     return engine

@@ -1,4 +1,4 @@
-// lighting/sun_sweep.glsl -- the horizon towards the sun, by a sweep over the land along parallel lines.
+// lighting/sun_sweep.glsl -- the horizon towards the sun, by a sweep along parallel lines.
 //
 //   gives    horizon: tangents of the horizon's elevation, one a texel of the land
 //   needs    lighting/daylight_reading.glsl, lighting/sun_sweep/band.glsl, maths/land.glsl
@@ -23,10 +23,8 @@
 #pragma kernel(output = "horizon:r32f")
 
 uniform sampler2D height;              //! input
-uniform sampler2D daylight;            //! input("black")
-uniform vec2 sun = vec2(135.0, 25.0);  //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform int shape = 0;                 //! menu("point", "cone", "disc") group("Sweep") What stands for the sun
-uniform float spread = 0.0;            //! slider(0, 20) step(0.01) group("Sweep") Of a cone, its radius over its length; of a disc, its diameter in degrees
+#include "lighting/parameters/sun.glsl"
+#include "lighting/parameters/sun_shape.glsl"
 
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);

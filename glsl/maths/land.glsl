@@ -29,7 +29,8 @@ vec2 spacing_of(ivec2 grid, vec2 metres) {
     return metres / vec2(max(grid - 1, ivec2(1)));
 }
 
-// Between four corners (south-west, south-east, north-west, north-east), `part` of the way east and north.
+// Between four corners (south-west, south-east, north-west, north-east), `part` of the way east
+// and north.
 float bilinear(vec4 corner, vec2 part) {
     // a + (b - a) t, not a (1 - t) + b t: between equal heights it is exactly that height.
     vec2 row = corner.xz + (corner.yw - corner.xz) * part.x;

@@ -16,7 +16,8 @@
 #define TERRAIN_PARTS
 
 // anchor: node
-// The node of a texel, where a texture holds one part with so many texels of its neighbours on each side.
+// The node of a texel, where a texture holds one part with so many texels of its neighbours on
+// each side.
 ivec2 node_of(ivec2 texel, ivec2 part, int apron, ivec2 size) {
     return part * max(size - 1 - 2 * apron, ivec2(1)) + texel - apron;
 }

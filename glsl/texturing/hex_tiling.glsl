@@ -1,4 +1,4 @@
-// texturing/hex_tiling.glsl -- which three copies of an image meet at a place, and with what weights.
+// texturing/hex_tiling.glsl -- the three copies of an image that meet at a place.
 //
 //   gives    HexCopies, hex_copies, hex_sharpened
 //   needs    noise/hash.glsl

@@ -16,8 +16,12 @@
 #include "maths/land.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg", "linear", "repeat", "mipmap") PNG, JPEG or WebP, north on top
-uniform int fit = 0;      //! menu("tile", "land") Whether its texels divide the image evenly, as a tile's, or the outermost stand on the land's edges
+uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg",
+                          //! "linear", "repeat", "mipmap")
+                          //! PNG, JPEG or WebP, north on top
+uniform int fit = 0;      //! menu("tile", "land")
+                          //! Whether its texels divide the image evenly, as a tile's, or the
+                          //! outermost stand on the land's edges
 
 vec4 kernel(ivec2 texel) {
     vec2 texels = vec2(textureSize(image, 0));

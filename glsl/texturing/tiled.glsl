@@ -23,9 +23,14 @@
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
-uniform float repeats = 24.0;      //! slider(1, 256) step(1) How often the images stand side by side from west to east
-uniform float variety = 0.5;       //! slider(0, 1) step(0.01) How much of each image is read a second time, larger and turned, so that its repeats do not show
-uniform float detail = 1.0;        //! slider(0, 1) step(0.01) How much of each image's contrast is left. 0: its mean colour
+uniform float repeats = 24.0;      //! slider(1, 256) step(1)
+                                   //! How often the images stand side by side from west to east
+uniform float variety = 0.5;       //! slider(0, 1) step(0.01)
+                                   //! How much of each image is read a second time, larger and
+                                   //! turned, so that its repeats do not show
+uniform float detail = 1.0;        //! slider(0, 1) step(0.01)
+                                   //! How much of each image's contrast is left. 0: its mean
+                                   //! colour
 
 // 31 degrees: no whole turns bring it back onto the tiles.
 const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
@@ -38,7 +43,8 @@ vec4 kernel(ivec2 texel) {
     float level = log2(float(textureSize(colour, 0).x) / texels);
     // A whole level: a blend of two would cost twice the reads and only blur.
     vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
-    vec3 again = textureLod(colour, TURNED * tile * LARGER, max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
+    vec3 again = textureLod(colour, TURNED * tile * LARGER,
+                            max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
     vec3 shown = mix(once, again, 0.5 * variety);
     // The level after the last is the last: one texel, the mean.
     if (detail < 1.0) shown = mix(textureLod(colour, vec2(0.5), 99.0).rgb, shown, detail);

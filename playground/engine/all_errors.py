@@ -30,7 +30,7 @@ def all_mistakes(
         if step.kernel.kind == "source" or len(found) >= MOST:
             continue
         try:
-            kernel, driver = engine.form_of(step)
+            kernel, driver = step.kernel, engine.driver_for(step)
             if (id(kernel), driver) in tried:
                 continue
             tried.add((id(kernel), driver))

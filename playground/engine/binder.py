@@ -16,6 +16,7 @@ import numpy as np
 from playground.engine.files import content_hash
 from playground.engine.plan import Step
 from playground.engine.programs import Program
+from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
 from playground.gpu.textures import check_size, drain
@@ -77,16 +78,17 @@ class Binder:
         for parameter in kernel.parameters:
             if parameter.widget.kind != "file":
                 program.set(parameter.name, step.values[parameter.name])
-                if (name := f"{TOWARDS}{parameter.name}") in program:
-                    program.set(name, unit_vector(step.values[parameter.name]))  # type: ignore[arg-type]
+                if parameter.widget.kind == "direction":
+                    towards = unit_vector(step.values[parameter.name])  # type: ignore[arg-type]
+                    program.set(f"{TOWARDS}{parameter.name}", towards)
             elif parameter.name in program:
                 unit = self.file(program, parameter, step.values[parameter.name], unit)
         program.set(UNWIRED, has_unwired(kernel, inputs))
         for declared in kernel.inputs:
-            result, texture, output = inputs.get(declared.name, Wired())
+            result, texture, output = inputs.get(declared.name, NOT_WIRED)
             program.set(f"{WIRED}{declared.name}", texture is not None)
             program.set(f"{MATCHES}{declared.name}", texture is not None and texture.size == step.size)
-            if declared.name not in program:
+            if declared.name not in program.uniforms:
                 continue
             if texture is None:
                 texture = self.constant(declared.fallback or "black")
@@ -148,7 +150,8 @@ class Binder:
         return self._constants[name]
 
     def _sampler(self, sampling: Sampling) -> moderngl.Sampler:
-        if sampling not in self._samplers:
+        sampler = self._samplers.get(sampling)
+        if sampler is None:
             linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
             shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
             if sampling.mipmap:
@@ -158,7 +161,7 @@ class Binder:
             if linear and sampling.mipmap and self._anisotropy > 1:
                 sampler.anisotropy = self._anisotropy
             self._samplers[sampling] = sampler
-        return self._samplers[sampling]
+        return sampler
 
     def _read(self, path: Path, *, encoded: bool) -> moderngl.Texture:
         """Make a texture of an image file, row 0 south: in linear light, or as it is encoded."""
@@ -185,4 +188,5 @@ class Binder:
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
     """Say whether nothing is wired to some input that may stay so."""
-    return any(i.fallback and inputs.get(i.name, Wired()).texture is None for i in kernel.inputs)
+    fallbacks = [i.name for i in kernel.inputs if i.fallback]
+    return None in [inputs.get(name, NOT_WIRED).texture for name in fallbacks]

@@ -22,7 +22,7 @@ class Kept:
     @property
     def bytes(self) -> int:
         """Bytes held."""
-        return sum(result.bytes for result in self.results.values())
+        return sum([result.bytes for result in self.results.values()])
 
     def let_go(self, pool: Pool) -> None:
         """Give the textures to a pool."""
@@ -39,6 +39,7 @@ class Cache:
         self._pool = pool
         self._kept: OrderedDict[str, Kept] = OrderedDict()
         self._in_use: set[str] = set()
+        self._may_grow: set[str] = set()  # used since they were weighed
         self._sizes: dict[str, int] = {}  # [bytes] of what is kept, as it was when last looked at
         self._total = 0  # their sum
         self._latest: dict[str, tuple[str, str, int]] = {}
@@ -46,10 +47,7 @@ class Cache:
     @property
     def bytes(self) -> int:
         """Bytes held."""
-        # Only what this frame uses may have grown: mipmaps, a loop's next turn. To add up all of
-        # it at every turn would cost more than small passes do.
-        for key in self._in_use:
-            self._weigh(key)
+        self._weigh_used()
         return self._total
 
     def __len__(self) -> int:
@@ -65,9 +63,13 @@ class Cache:
 
     def begin(self) -> None:
         """Begin a frame: nothing is in use yet."""
-        for key in self._in_use:
-            self._weigh(key)
+        self._weigh_used()
         self._in_use.clear()
+
+    def end(self) -> None:
+        """End a frame: what it used is weighed, and what is over the bounds goes."""
+        self._weigh_used()
+        self.trim()
 
     def get(self, key: str) -> Kept | None:
         """Return what is kept and mark it as used; None if there is nothing."""
@@ -75,7 +77,7 @@ class Cache:
         if kept is None:
             return None
         self._kept.move_to_end(key)
-        self._in_use.add(key)
+        self._use(key)
         return kept
 
     def peek(self, key: str) -> Kept | None:
@@ -86,7 +88,12 @@ class Cache:
         """Keep something, used by the current frame; what is over the bound goes."""
         self.drop(key)
         self._kept[key] = kept
-        self._in_use.add(key)
+        self._use(key)
+        self.grew(key)
+
+    def grew(self, key: str) -> None:
+        """Weigh what has grown; what is over the bounds goes."""
+        self._weigh(key)
         self.trim()
 
     def note_turn(self, path: str, unfinished: str, key: str, turn: int) -> None:
@@ -117,13 +124,12 @@ class Cache:
 
     def trim(self) -> None:
         """Drop what was used least recently until the bounds hold or all that is left is in use."""
-        total = self.bytes
-        for key in list(self._kept):
-            if total <= self.limit and len(self._kept) <= MOST:
+        if self._total <= self.limit and len(self._kept) <= MOST:
+            return
+        for key in [key for key in self._kept if key not in self._in_use]:
+            self.drop(key)
+            if self._total <= self.limit and len(self._kept) <= MOST:
                 return
-            if key not in self._in_use:
-                self.drop(key)
-                total = self._total
 
     def clear(self) -> None:
         """Drop everything."""
@@ -131,9 +137,20 @@ class Cache:
             kept.let_go(self._pool)
         self._kept.clear()
         self._in_use.clear()
+        self._may_grow.clear()
         self._sizes.clear()
         self._total = 0
         self._latest.clear()
+
+    def _use(self, key: str) -> None:
+        self._in_use.add(key)
+        self._may_grow.add(key)
+
+    def _weigh_used(self) -> None:
+        """Weigh what was used since the last time: mipmaps may have been made."""
+        for key in self._may_grow:
+            self._weigh(key)
+        self._may_grow.clear()
 
     def _weigh(self, key: str) -> None:
         """Take in what one key holds now."""

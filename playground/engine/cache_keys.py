@@ -15,16 +15,15 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from playground.engine.files import content_hash
 from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
-from playground.sketch.flatten import Fed, Source
+from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
-Form = tuple[Kernel, str]  # which form of a kernel runs, and by which driver
 _MAX_TEXTS = 512
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 
@@ -59,22 +58,24 @@ class KeyMaker:
         self._text = text
         self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
+        self._known: dict[str, _Known] = {}  # of the last plan, by the step's path
 
     def keys_of(
         self,
         plan: Plan,
-        form: Callable[[Step], Form],
-        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        driver: Callable[[Step], str],
+        given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
     ) -> Keys:
         """Return the keys of a plan.
 
-        ``form`` chooses what runs, ``given`` says what the engine gives a kernel beside its
+        ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it beside its
         parameters, ``continued`` are the paths of draws that a later draw goes on from.
         """
-        made = _Made(self.text_of, self._content, form, given, continued)
+        made = _Made(self.text_of, self._content, driver, given, continued, self._known)
         for node in plan.nodes:
             made.add(node, "", {}, {})
+        self._known = made.known
         return made.keys
 
     def text_of(self, kernel: Kernel) -> _Text:
@@ -123,24 +124,48 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     return _Text(_digest([header, text]), frozenset(used))
 
 
+class _Reads(NamedTuple):
+    """What a step's textures depend on besides the step itself."""
+
+    driver: str
+    files: list[str]  # contents
+    sources: list[tuple[str, str]]  # input → key of what it reads
+    given: Mapping[str, Any]
+    is_continued: bool  # by a later draw
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """The keys that a step had in the last plan; they stay while the step and what it reads do."""
+
+    step: Step
+    reads: str
+    unfinished: str
+    raw: str
+    shown: str
+
+
 class _Made:
-    """The keys of one plan, being made."""
+    """The keys of one plan, being made; ``before`` are those of the last one."""
 
     def __init__(
         self,
         text_of: Callable[[Kernel], _Text],
         content: Callable[[Path], str],
-        form: Callable[[Step], Form],
-        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        driver: Callable[[Step], str],
+        given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
+        before: Mapping[str, _Known],
     ) -> None:
         self.keys = Keys()
+        self.before = before
+        self.known: dict[str, _Known] = {}
         self.varies: dict[
             str, frozenset[str]
         ] = {}  # loops that a step changes with, as its next reader sees it
         self.text_of = text_of
         self.content = content
-        self.form = form
+        self.driver = driver
         self.given = given
         self.continued = continued
 
@@ -151,30 +176,44 @@ class _Made:
         if isinstance(node, Turns):
             self._loop(node, fed, varying)
             return
-        kernel, driver = self.form(node)
-        text = self.text_of(kernel)
-        parts: list[Any] = [text.digest, driver, node.size, node.window]
-        for parameter in kernel.parameters:
-            value = node.values[parameter.name]
-            if parameter.widget.kind == "file":
-                path = Path(str(value))
-                parts.append((parameter.name, parameter.sampling, path.suffix, self.content(path)))
-            elif parameter.name in text.used:
-                parts.append((parameter.name, value))
-        parts += [(name, self._source(source, fed)) for name, source in node.inputs]
-        parts += list(self.given(kernel, node).items())
-        if "iterations" in text.used:
-            parts.append(node.whole)
-        if node.path in self.continued:
-            parts.append("continued")
-        self.keys.unfinished[node.path] = _digest([node.path, parts])
-        self.keys.raw[node.path] = self.keys.steps[node.path] = _digest([node.repeat, parts])
-        if node.between is not None:
-            self.keys.steps[node.path] = _digest([self.keys.raw[node.path], *node.between])
-        varies = frozenset[str]().union(*(self._varies(source, varying) for _, source in node.inputs))
+        kernel, path = node.kernel, node.path
+        sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
+        files = [self.content(Path(str(node.values[p.name]))) for p in kernel.file_parameters]
+        reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
+        known, written = self.before.get(path), repr(reads)
+        if known is None or known.step is not node or known.reads != written:
+            known = self._keys_of(node, reads, written)
+        self.known[path] = known
+        self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
+        self.keys.steps[path] = known.shown
+        varies = frozenset[str]()
+        for _, source in node.inputs:
+            varies |= self._varies(source, varying) if source else varies
         if loop and kernel.repeat == "1" and kernel.reads("iteration"):
             varies |= {loop}
-        self.varies[node.path] = self.keys.step_loops[node.path] = varies
+        self.varies[path] = self.keys.step_loops[path] = varies
+
+    def _keys_of(self, step: Step, reads: _Reads, written: str) -> _Known:
+        """Return the keys of a step that reads so."""
+        kernel, text = step.kernel, self.text_of(step.kernel)
+        parts: list[Any] = [text.digest, reads.driver, step.size, step.window]
+        contents = iter(reads.files)
+        for parameter in kernel.parameters:
+            value = step.values[parameter.name]
+            if parameter.widget.kind == "file":
+                suffix = Path(str(value)).suffix
+                parts.append((parameter.name, parameter.sampling, suffix, next(contents)))
+            elif parameter.name in text.used:
+                parts.append((parameter.name, value))
+        parts += [*reads.sources, *reads.given.items()]
+        if "iterations" in text.used:
+            parts.append(step.whole)
+        if reads.is_continued:
+            parts.append("continued")
+        raw = shown = _digest([step.repeat, parts])
+        if step.between is not None:
+            shown = _digest([raw, *step.between])
+        return _Known(step, written, _digest([step.path, parts]), raw, shown)
 
     def _loop(self, loop: Turns, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
@@ -192,7 +231,7 @@ class _Made:
             self.add(node, loop.path, names, changes)
         parts: list[Any] = [loop.path, *(self.keys.steps[path] for path in inside)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
-        if any("iterations" in self.text_of(self.form(step)[0]).used for step in walk(loop.body)):
+        if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
             parts.append(loop.whole)
         key = self.keys.loops[loop.path] = _digest(parts)
         self.keys.loop_loops[loop.path] = outer

@@ -17,18 +17,26 @@ from pathlib import Path
 
 from playground.engine.cache import Kept
 from playground.engine.cache_keys import Keys
-from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node, needed, sources_of, walk
+from playground.engine.plan import (
+    Plan,
+    PlanNode,
+    Step,
+    Turns,
+    continued,
+    every_node,
+    needed,
+    sources_of,
+    walk,
+)
 from playground.engine.results import Result
 from playground.gpu.textures import bytes_of
 from playground.sketch.expressions import names_in
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 
 
-def passing(
-    plan: Plan, continued: frozenset[str] = frozenset(), painted: Collection[Path] = ()
-) -> frozenset[str]:
+def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     """Return the paths of the steps and loops of a plan that are never kept.
 
     What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
@@ -36,11 +44,12 @@ def passing(
     ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
     """
     found: set[str] = set()
+    goes_on = continued(plan)
     for node in plan.nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, Turns)]
-        own = any(_passes(step, plan, continued) or _reads_one(step, painted) for step in steps)
+        own = any(_passes(step, plan, goes_on) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
     return frozenset(found)
@@ -56,9 +65,9 @@ def _stops(loop: Turns) -> bool:
     return by_time or loop.repeat != loop.whole
 
 
-def _passes(step: Step, plan: Plan, continued: frozenset[str]) -> bool:
+def _passes(step: Step, plan: Plan, goes_on: frozenset[str]) -> bool:
     kernel = step.kernel
-    if kernel.kind.startswith("plain") or step.path in continued or step.window is not None:
+    if kernel.kind.startswith("plain") or step.path in goes_on or step.window is not None:
         return True
     if step.size == plan.frame_size or step.repeat != step.whole:
         return True

@@ -10,22 +10,25 @@ from __future__ import annotations
 
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from playground.engine.cache import Cache
 from playground.engine.cache import Kept as InMemory
 from playground.engine.cache_keys import Keys
 from playground.engine.disk_cache import Kept, Store
 from playground.engine.disk_cache_choice import choose, passing, worth_keeping
 from playground.engine.execution import Execution
-from playground.engine.plan import Plan, PlanNode, Step, continued, needed
+from playground.engine.frame_record import FrameSource
+from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.engine.results import Result
 from playground.gpu.textures import bytes_of, make_framebuffer
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
-    from playground.engine.engine import Engine
+    import moderngl
 
 FLOOR = 20.0  # [ms] that reading must save: less is not seen
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
@@ -39,8 +42,8 @@ def reading(size: int) -> float:
     return size / RATE
 
 
-class Keeping:
-    """What an engine has to do with a store; ``now`` is a clock in seconds."""
+class DiskCaching:
+    """Reads and writes an engine's textures in a disk cache; ``now`` is a clock in seconds."""
 
     def __init__(
         self,
@@ -69,61 +72,53 @@ class Keeping:
 
     # ── while a frame is made ────────────────────────────────────────────────
 
-    def begin(
-        self, engine: Engine, execution: Execution, plan: Plan, ref: Ref, goes_on: frozenset[str]
-    ) -> list[PlanNode]:
-        """Read what the store keeps of a texture, have the rest measured, and return what is to be run.
-
-        ``goes_on``: the steps that a later draw goes on from.
-        """
-        passes, keys = passing(plan, goes_on, engine.painted), execution.keys
+    def begin(self, execution: Execution, plan: Plan, ref: Ref) -> list[PlanNode]:
+        """Read what the store keeps of a texture, have the rest measured, and return what is to be run."""
+        runner, keys = execution.runner, execution.keys
+        passes = passing(plan, runner.painted)
 
         def read(step: Step) -> bool:
-            return step.path not in passes and self._take(engine, step, keys.steps[step.path])
+            return step.path not in passes and self._take(execution, step, keys.steps[step.path])
 
         def timed(path: str, key: str) -> AbstractContextManager[None]:
-            return nullcontext() if path in passes else self._timed(engine, key)
+            return nullcontext() if path in passes else self._timed(runner.ctx.finish, key)
 
-        found = choose(keys, needed(plan.nodes, ref), ref, engine.cache.get, read, skips=self.skips)
+        found = choose(keys, needed(plan.nodes, ref), ref, execution.cache.get, read, skips=self.skips)
         self.skipped = found.skipped
         execution.results, execution.timed = found.taken, timed
         return found.nodes
 
     def would_run(
-        self, engine: Engine, plan: Plan, keys: Keys, ref: Ref, goes_on: frozenset[str]
+        self, cache: Cache, plan: Plan, keys: Keys, ref: Ref, painted: Collection[Path]
     ) -> list[PlanNode]:
-        """Return what ``begin`` would; nothing is read."""
-        passes = passing(plan, goes_on, engine.painted)
+        """Return what ``begin`` would; nothing is read. ``painted`` are files as ``passing`` takes them."""
+        passes = passing(plan, painted)
 
         def read(step: Step) -> bool:
             return step.path not in passes and keys.steps[step.path] in self.store
 
-        peek, nodes = engine.cache.peek, needed(plan.nodes, ref)
-        return choose(keys, nodes, ref, peek, read, skips=self.skips).nodes
+        return choose(keys, needed(plan.nodes, ref), ref, cache.peek, read, skips=self.skips).nodes
 
     @contextmanager
-    def _timed(self, engine: Engine, key: str) -> Iterator[None]:
-        """Measure what a step or a loop takes; both ends wait for the driver."""
-        engine.ctx.finish()
+    def _timed(self, wait: Callable[[], None], key: str) -> Iterator[None]:
+        """Measure what a step or a loop takes; both ends ``wait`` for the driver."""
+        wait()
         start = self._now()
         yield
-        engine.ctx.finish()
+        wait()
         self._costed_at, self._is_new = self._now(), True
         self._note(key, (self._costed_at - start) * 1e3)
 
-    def _take(self, engine: Engine, step: Step, key: str) -> bool:
-        """Put what the store keeps of a step into the engine's cache."""
-        kept = self.store.read(key)
-        outputs = engine.form_of(step)[0].outputs
-        if kept is None or (kept.size, kept.outputs) != (
-            step.size,
-            tuple((o.name, o.format) for o in outputs),
-        ):
+    def _take(self, execution: Execution, step: Step, key: str) -> bool:
+        """Put what the store keeps of a step into the cache in memory."""
+        kept, outputs = self.store.read(key), step.kernel.outputs
+        wanted = step.size, tuple((o.name, o.format) for o in outputs)
+        if kept is None or (kept.size, kept.outputs) != wanted:
             return False
-        result = engine.pool.take(step.size, outputs)
+        result = execution.runner.pool.take(step.size, outputs)
         for output, data in zip(outputs, kept.data, strict=True):
             result.textures[output.name].write(data, alignment=1)
-        engine.cache.put(key, InMemory({step.path: result}))
+        execution.cache.put(key, InMemory({step.path: result}))
         self._note(key, kept.cost)
         self.reads += 1
         return True
@@ -136,13 +131,13 @@ class Keeping:
 
     # ── at rest ──────────────────────────────────────────────────────────────
 
-    def look(self, engine: Engine, plan: Plan) -> float | None:
+    def look(self, source: FrameSource, plan: Plan) -> float | None:
         """Do a piece of what is to be done for the frame of a plan; say in how many seconds to come again.
 
         None: not before another frame has run something.
         """
         if self._work is not None:
-            with engine.borrowed():
+            with source.borrowed():
                 ended = next(self._work, self) is self
             if not ended:
                 return 0.0
@@ -153,15 +148,15 @@ class Keeping:
         if left > 0:
             return left
         self._is_new = False
-        if engine.plan is not plan:  # a texture was read since
-            engine.recall(plan)
-        self._work = self._keep_all(engine, plan)
+        if source.record.plan is not plan:  # a texture was read since
+            source.recall(plan)
+        self._work = self._keep_all(source, plan)
         return 0.0
 
-    def finish(self, engine: Engine, plan: Plan) -> None:
+    def finish(self, source: FrameSource, plan: Plan) -> None:
         """Do all that is to be done for the frame of a plan, rested or not, and wait until it is written."""
         self._costed_at -= self.rest
-        while self.look(engine, plan) is not None:
+        while self.look(source, plan) is not None:
             pass
         self.close()
 
@@ -170,11 +165,11 @@ class Keeping:
         self._work = None
         self.store.close()
 
-    def _keep_all(self, engine: Engine, plan: Plan) -> Iterator[None]:
+    def _keep_all(self, source: FrameSource, plan: Plan) -> Iterator[None]:
         """Keep what is worth it, a piece at a time; ends early where a texture is gone."""
-        keys, results = engine.keys_of(plan), engine.results
+        keys, results = source.record.keys, source.record.results
         ref = next(iter(plan.flat.outputs["view"].values()))
-        passes = passing(plan, continued(plan), engine.painted)
+        passes = passing(plan, source.runner.painted)
         for worth in worth_keeping(plan, keys, ref, passes, self._costs, reading, self.floor):
             result = results.get(worth.path)
             if result is None or worth.key in self.store:
@@ -188,11 +183,13 @@ class Keeping:
                 row = len(whole) // result.size[1]
                 rows = max(PIECE // row, 1)
                 for south in range(0, result.size[1], rows):
-                    if engine.results is not results and engine.results.get(worth.path) is not result:
+                    if source.record.results.get(worth.path) is not result:
                         self._is_new = True  # another frame was made, and the texture may be another's by now
                         return
                     north = min(south + rows, result.size[1])
-                    whole[south * row : north * row] = _read_rows(engine, result, output.name, south, north)
+                    whole[south * row : north * row] = _read_rows(
+                        source.runner.ctx, result, output.name, south, north
+                    )
                     yield
                 parts.append(memoryview(whole).toreadonly())
             outputs = tuple((o.name, o.format) for o in result.outputs)
@@ -200,10 +197,10 @@ class Keeping:
             self.store.keep(worth.key, Kept(result.size, outputs, worth.cost, made_for, tuple(parts)))
 
 
-def _read_rows(engine: Engine, result: Result, output: str, south: int, north: int) -> bytes:
+def _read_rows(ctx: moderngl.Context, result: Result, output: str, south: int, north: int) -> bytes:
     """Return rows of a texture in its own kind of number."""
     texture = result.textures[output]
-    framebuffer = make_framebuffer(engine.ctx, [texture])
+    framebuffer = make_framebuffer(ctx, [texture])
     try:
         viewport = (0, south, result.size[0], north - south)
         return framebuffer.read(viewport, texture.components, alignment=1, dtype=texture.dtype)

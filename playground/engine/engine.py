@@ -18,38 +18,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.cache import Cache
-from playground.engine.cache_keys import Form, KeyMaker, Keys
+from playground.engine.cache_keys import KeyMaker, Keys
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.execution import Execution, would_run
-from playground.engine.eye_height import Ground, PlanOf
+from playground.engine.eye_height import EyeHeight
 from playground.engine.frame import Frame
+from playground.engine.frame_record import FrameRecord, Recorded
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import Drawn
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import Plan, Step, Window, continued, make_plan, needed, repeated_in
+from playground.engine.plan import Plan, Step, Window, continued, needed
 from playground.engine.plan_warnings import PlanWarnings
+from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.window import windowed
-from playground.errors import ContextError, OpenGLFault
+from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture, read_texture
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
-from playground.sketch.flatten import Ref
+from playground.paths import shown
+from playground.sketch.flat import Ref
 from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Kernel, Sketch
+from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Sketch
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.engine.disk_caching import Keeping
 
 CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
 
-class Engine:
+class Engine(Recorded):
     """Runs sketches on one context; keeps textures between frames.
 
     The context is the caller's, unless ``owns_context``. ``driver`` is "fragment",
@@ -75,18 +77,16 @@ class Engine:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
         self.driver = driver
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
-        self.ran: list[str] = []  # what ran for the last frame, in order
-        self.texels = 0  # computed for the last frame
+        super().__init__()
         self.profiling = False
-        self.times: dict[str, float] = {}  # [ms] of each pass that ran in the last frame, while profiling
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.planner = Planner()
         self.warnings = PlanWarnings()
-        self.results: Mapping[str, Result] = {}  # of the last frame, by path; good until the next
-        self.keeping: Keeping | None = None  # what is kept on disk: nothing, unless whoever made this says so
-        self.ground = Ground()  # under the last frame's eye
+        self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
+        self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
         self._keys = KeyMaker(content=self.painted.content)
         self._drawn = Drawn()
@@ -94,23 +94,12 @@ class Engine:
         self._timer: Timer | None = None
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
-        self._plan: Plan | None = None
         self._released = False
 
     @property
     def clock(self) -> str:
         """Which clock the times come from."""
         return self._timer_of().clock
-
-    @property
-    def triangles(self) -> int:
-        """How many triangles were drawn for the last frame; of what is kept, none."""
-        return self.runner.draws.drawn
-
-    @property
-    def plan(self) -> Plan | None:
-        """The plan of the last frame."""
-        return self._plan
 
     def __enter__(self) -> Engine:
         self._refuse_released()
@@ -128,7 +117,7 @@ class Engine:
             return
         self._make_current()
         self._released = self._owns_context
-        self.results = {}
+        self.record = FrameRecord()
         self.cache.clear()
         self.pool.clear()
         self.runner.release()
@@ -148,7 +137,7 @@ class Engine:
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
         self._refuse_released()
-        return make_plan(
+        return self.planner.plan(
             opened(sketch),
             frame_size=size,
             time=time,
@@ -189,8 +178,8 @@ class Engine:
         interpolated: bool = True,
     ) -> moderngl.Texture:
         """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
-        return self._over_ground(
-            sketch, lambda seen: self.plan_for(seen, size, time, steps, interpolated=interpolated)
+        return self._draw_above_terrain(
+            opened(sketch), lambda seen: self.plan_for(seen, size, time, steps, interpolated=interpolated)
         )
 
     def draw_window(
@@ -206,10 +195,31 @@ class Engine:
         The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
-        return self._over_ground(sketch, lambda seen: self.plan_for_window(seen, window, time, steps))
+        return self._draw_above_terrain(
+            opened(sketch), lambda seen: self.plan_for_window(seen, window, time, steps)
+        )
 
-    def _over_ground(self, sketch: Sketch | str | Path, plan_of: PlanOf) -> moderngl.Texture:
-        return self.ground.draw(self, self._texture, opened(sketch), plan_of)
+    def _draw_above_terrain(self, sketch: Sketch, plan_of: Callable[[Sketch], Plan]) -> moderngl.Texture:
+        """Draw a sketch; where the eye stood under the terrain, draw it again from just above it.
+
+        That is told among the warnings, once for a sketch.
+        """
+        plan, before = plan_of(sketch), None
+        camera = self.eye_height.raised_as_before(plan, self.keys_of)
+        if camera is None:
+            texture = self._texture(plan, _shown(plan))
+            with self.borrowed():
+                camera = self.eye_height.raised(plan, self.record.keys, self.record.results, self.ctx)
+            if camera is None:
+                return texture
+            before = self.record
+        warning = Diagnostic(self.eye_height.message, shown(sketch.file), severity="warning")
+        self.warnings.once(warning, "the eye's height")
+        raised = plan_of(sketch.with_camera(camera))
+        texture = self._texture(raised, _shown(raised))
+        if before is not None:
+            self.record = self.record.plus(before)
+        return texture
 
     def plan_for_window(
         self,
@@ -284,7 +294,7 @@ class Engine:
 
         The same on every machine: see ``engine.picture_hash``.
         """
-        return "" if self._plan is None else self._hash_of(self._plan)
+        return "" if self.plan is None else self._hash_of(self.plan)
 
     def not_finite(self) -> NotFinite | None:
         """Return the first number that is not finite among what the last frame was made from, if any.
@@ -306,9 +316,9 @@ class Engine:
 
         What ran for the last frame, and what it took, stays as it was.
         """
-        ran, texels, times = self.ran, self.texels, self.times
-        self._texture(plan, next(iter(plan.flat.outputs["view"].values())))
-        self.ran, self.texels, self.times = ran, texels, times
+        before = self.record
+        self._texture(plan, _shown(plan))
+        self.record = self.record.counted_as(before)
 
     def fingerprint(
         self,
@@ -328,8 +338,9 @@ class Engine:
         return blake2b(made.encode(), digest_size=16).hexdigest()
 
     def _hash_of(self, plan: Plan) -> str:
-        shown = next(iter(plan.flat.outputs["view"].values()))
-        return self._drawn.hash_of(plan, shown, self.form_of, self._given_for, continued(plan))
+        return self._drawn.hash_of(
+            plan, _shown(plan), self.driver_for, self.runner.given_for_key, continued(plan)
+        )
 
     def forget_unused(self) -> None:
         """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
@@ -346,29 +357,25 @@ class Engine:
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
         plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
-        keys, shown = self.keys_of(plan), next(iter(plan.flat.outputs["view"].values()))
-        nodes = needed(plan.nodes, shown)
-        if self.keeping is not None:
-            nodes = self.keeping.would_run(self, plan, keys, shown, continued(plan))
+        keys, nodes = self.keys_of(plan), needed(plan.nodes, _shown(plan))
+        if self.disk_caching is not None:
+            nodes = self.disk_caching.would_run(self.cache, plan, keys, _shown(plan), self.painted)
         return would_run(keys, self.cache, nodes, plan)
 
     def keys_of(self, plan: Plan) -> Keys:
         """Return what each pass's textures depend on: see ``keys``."""
         with self._supposing(plan):
-            return self._keys.keys_of(plan, self.form_of, self._given_for, continued(plan))
+            return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key, continued(plan))
 
     @contextmanager
     def _supposing(self, plan: Plan) -> Iterator[None]:
         """Suppose that a plan were being drawn; afterwards the last frame's is the last frame's again."""
-        before = self._plan
-        self._plan = plan
         self.runner.look_at(plan)
         try:
             yield
         finally:
-            self._plan = before
-            if before is not None:
-                self.runner.look_at(before)
+            if self.plan is not None:
+                self.runner.look_at(self.plan)
 
     # ── running ──────────────────────────────────────────────────────────────
 
@@ -376,13 +383,11 @@ class Engine:
         """Run what a texture needs and return it, with the context left as it was found."""
         self._make_current()
         self.plain_forms.tell(plan.sketch, plan.lacking)
-        self._plan = plan
-        self.ran, self.texels, self.times, self.results = [], 0, {}, {}
-        self.runner.draws.drawn = 0
+        self.record = record = FrameRecord(plan)
         self.cache.begin()
         self.runner.begin(plan)
         goes_on = continued(plan)
-        keys = self._keys.keys_of(plan, self.form_of, self._given_for, goes_on)
+        keys = record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key, goes_on)
 
         def make(
             step: Step,
@@ -394,12 +399,12 @@ class Engine:
 
         execution = Execution(keys, self.cache, self.runner, make, plan.steps)
         nodes = needed(plan.nodes, ref)
-        if self.keeping is not None:
-            nodes = self.keeping.begin(self, execution, plan, ref, goes_on)
+        if self.disk_caching is not None:
+            nodes = self.disk_caching.begin(execution, plan, ref)
         with self.borrowed():
             execution.run(nodes)
-        self.cache.trim()
-        self.results = execution.results
+        self.cache.end()
+        record.results = execution.results
         self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
 
@@ -423,13 +428,12 @@ class Engine:
         start: Result | None,
         keeps_surface: bool,
     ) -> Result:
-        _, driver = self.form_of(step)
-        first = start.turn if start else 0
-        fresh = self._objects()
-        timed = self._timer_of().measure(self.times, step.path) if self.profiling else nullcontext()
+        record, first = self.record, start.turn if start else 0
+        fresh, drawn = self._objects(), self.runner.draws.drawn
+        timed = self._timer_of().measure(record.times, step.path) if self.profiling else nullcontext()
         with timed:
             result = self.runner.run(
-                step, driver, inputs, turn=turn, start=start, keeps_surface=keeps_surface
+                step, self.driver_for(step), inputs, turn=turn, start=start, keeps_surface=keeps_surface
             )
         if fresh != self._objects():
             # What has run without a fault before will do so again, and asking waits for the driver.
@@ -437,33 +441,26 @@ class Engine:
             if fault != "GL_NO_ERROR":
                 raise OpenGLFault(f"pass '{step.path}': OpenGL reports {fault}")
         self.runs[step.path] += 1
-        self.ran.append(step.path)
-        self.texels += step.size[0] * step.size[1] * max(step.repeat - first, 1)
+        record.ran.append(step.path)
+        record.texels += step.size[0] * step.size[1] * max(step.repeat - first, 1)
+        record.triangles += self.runner.draws.drawn - drawn
         return result
 
     def _objects(self) -> tuple[int, int]:
         """Return how many textures and programs were ever made."""
         return self.pool.made, self.runner.programs.compiled
 
-    def form_of(self, step: Step) -> Form:
-        """Return the kernel of a step, and choose by which driver it runs."""
+    def driver_for(self, step: Step) -> str:
+        """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
         if kernel.kind in ("compute", "plain_compute"):
             if not self.info.compute:
                 message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
-            return kernel, COMPUTE
+            return COMPUTE
         if kernel.kind != "kernel" or not self.info.compute or self.driver == FRAGMENT:
-            return kernel, FRAGMENT
-        if self.driver == COMPUTE or kernel.visits:
-            return kernel, COMPUTE
-        return kernel, FRAGMENT
-
-    def _given_for(self, kernel: Kernel, step: Step) -> dict[str, object]:
-        given = self.runner.given_for(kernel, step)
-        if kernel.kind == "draw" and self._plan is not None:
-            given["samples"] = self.runner.samples_for(self._plan, kernel)
-        return given
+            return FRAGMENT
+        return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 
     def _make_current(self) -> None:
         """Make this engine's context the one that OpenGL speaks to: there may be others in the process.
@@ -488,6 +485,11 @@ class Engine:
 def opened(sketch: Sketch | str | Path) -> Sketch:
     """Return the sketch itself, or the one of that name or path."""
     return sketch if isinstance(sketch, Sketch) else load(sketch)
+
+
+def _shown(plan: Plan) -> Ref:
+    """Return the texture that is the picture."""
+    return next(iter(plan.flat.outputs["view"].values()))
 
 
 def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:

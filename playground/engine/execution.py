@@ -12,10 +12,10 @@ from contextlib import AbstractContextManager, nullcontext
 from playground.engine.cache import Cache, Kept
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
-from playground.engine.results import Result, Wired
+from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
-from playground.sketch.flatten import Fed, Ref, Source
+from playground.sketch.flat import Fed, Ref, Source
 
 Turn = tuple[int, int]
 """A turn of a loop, and its turns in all."""
@@ -119,7 +119,7 @@ class Execution:
 
     def _read(self, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
         if source is None:
-            return Wired()
+            return UNWIRED
         if isinstance(source, Fed):
             return fed[source]
         result = self.results[source.path]
@@ -136,7 +136,8 @@ class Execution:
             self.cache.put(key, state)
         with self.timed(loop.path, key) if state.turn < loop.repeat else nullcontext():
             self._loop(loop, state, {}, {})
-        self.cache.trim()
+        self.cache.grew(key)
+        self.cache.grew(key)
 
     def _loop(self, loop: Turns, state: Kept, around: Mapping[Fed, Wired], owned: dict[str, Result]) -> None:
         """Run a loop's turns after ``state``, which each replaces; what stays over the turns is ``owned``."""

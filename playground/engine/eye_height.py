@@ -14,98 +14,74 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan, Step
 from playground.engine.results import Result
-from playground.errors import Diagnostic
-from playground.paths import shown
-from playground.sketch.flatten import Ref
-from playground.sketch.model import Camera, Sketch
+from playground.sketch.flat import Ref
+from playground.sketch.model import Camera
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.engine.engine import Engine
-
-PlanOf = Callable[[Sketch], Plan]
 
 CLEARANCE = 0.002  # over the ground, as a share of the eye's distance from its target: see ``terrain.camera``
 _TURNED = 89.0  # [degrees] of elevation, at most
 
 
-class Ground:
-    """What stands under the eye of the last frame."""
+class EyeHeight:
+    """Reads the height under the eye of the last frame, and raises the eye over it."""
 
     def __init__(self) -> None:
-        self.raised = 0.0  # [m] by which the last frame's eye was raised; 0: it stood over the terrain
+        self.raised_by = 0.0  # [m] by which the last frame's eye was raised; 0: it stood over the terrain
         self._read: tuple[tuple[int, float, float], float] | None = None  # texture and place → height there
-        self._stays: str = ""  # what the texture under a raised eye depends on
+        self._terrain_key = ""  # of the texture under the eye
 
     @property
     def message(self) -> str:
         """What there is to say of the last frame's eye; "" if it was left where it stood."""
-        if not self.raised:
+        if not self.raised_by:
             return ""
-        return f"the eye stood under the terrain and was raised by {self.raised:.0f} m, to just above it"
+        return f"the eye stood under the terrain and was raised by {self.raised_by:.0f} m, to just above it"
 
-    def draw(
-        self,
-        engine: Engine,
-        texture_of: Callable[[Plan, Ref], moderngl.Texture],
-        sketch: Sketch,
-        plan_of: PlanOf,
-    ) -> moderngl.Texture:
-        """Draw a sketch's picture; where the eye stood under the terrain, again from just above it.
+    def raised_as_before(self, plan: Plan, keys_of: Callable[[Plan], Keys]) -> Camera | None:
+        """Return a camera over the terrain where the last frame's eye was raised over the same terrain.
 
-        That is told among the engine's warnings, once for a sketch.
+        ``keys_of`` gives the keys of a plan. None: the terrain is to be drawn and looked at first.
         """
-        plan = plan_of(sketch)
-        view = next(iter(plan.flat.outputs["view"].values()))
         source = _terrain_of(plan)
-        camera, before = None, None
-        if source and self.raised and self._read and self._stays == engine.keys_of(plan).steps[source.path]:
-            camera = self._over(plan, self._read[0][1:], self._read[1])  # as the last frame's
-        if camera is None:
-            texture = texture_of(plan, view)
-            with engine.borrowed():
-                camera = self._look(plan, source, engine.results, engine.ctx)
-            if source is None or camera is None:
-                return texture
-            self._stays = engine.keys_of(plan).steps[source.path]
-            before = engine.ran, engine.texels, engine.times, engine.triangles
-        warning = Diagnostic(self.message, shown(sketch.file), severity="warning")
-        engine.warnings.once(warning, "the eye's height")
-        texture = texture_of(plan_of(sketch.with_camera(camera)), view)
-        if before is not None:
-            _add(engine, *before)
-        return texture
+        if source is None or not self.raised_by or self._read is None:
+            return None
+        if self._terrain_key != keys_of(plan).steps[source.path]:
+            return None
+        return self._over(plan, self._read[0][1:], self._read[1])
 
-    def _look(
-        self, plan: Plan, source: Ref | None, results: Mapping[str, Result], ctx: moderngl.Context
+    def raised(
+        self, plan: Plan, keys: Keys, results: Mapping[str, Result], ctx: moderngl.Context
     ) -> Camera | None:
         """Return a camera whose eye is over the terrain, or None where the plan's own is.
 
-        ``results`` are what was made for the plan.
+        ``keys`` and ``results`` are those of the plan, which was drawn.
         """
-        self.raised = 0.0
+        self.raised_by = 0.0
+        source, place = _terrain_of(plan), _place_of(plan)
         result = results.get(source.path) if source else None
-        place = _place_of(plan)
         if source is None or result is None or place is None:
             return None
         key = (result.number, *place)
         if self._read is None or self._read[0] != key:
             self._read = key, _height_at(place, result, source.output, ctx)
+        self._terrain_key = keys.steps[source.path]
         return self._over(plan, place, self._read[1])
 
     def _over(self, plan: Plan, place: tuple[float, float], height: float) -> Camera | None:
         """Return a camera over a height that is known at a place; None where the plan's own eye may stay."""
-        self.raised = 0.0
+        self.raised_by = 0.0
         if plan.land.relief is None or _place_of(plan) != place:
             return None
         x, y, z = plan.eye.position
         lowest = height * plan.land.relief + CLEARANCE * plan.eye.distance
         if not z < lowest:  # or no number
             return None
-        self.raised = lowest - z
+        self.raised_by = lowest - z
         return _seen_from((x, y, lowest), plan)
 
 
@@ -115,14 +91,6 @@ def _place_of(plan: Plan) -> tuple[float, float] | None:
         return None
     x, y = (at / side for at, side in zip(plan.eye.position, plan.land.extent, strict=False))
     return (x, y) if 0 <= x <= 1 and 0 <= y <= 1 else None
-
-
-def _add(engine: Engine, ran: list[str], texels: int, times: dict[str, float], triangles: int) -> None:
-    """Add what an earlier drawing of the same frame ran and took to what the engine tells of it."""
-    engine.ran = [*ran, *(path for path in engine.ran if path not in ran)]
-    engine.texels += texels
-    engine.times = {path: times.get(path, 0.0) + engine.times.get(path, 0.0) for path in times | engine.times}
-    engine.runner.draws.drawn += triangles
 
 
 def _terrain_of(plan: Plan) -> Ref | None:

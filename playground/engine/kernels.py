@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from playground.engine.binder import Binder, has_unwired
 from playground.engine.plan import Step
 from playground.engine.programs import Program, Programs
+from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -118,7 +119,7 @@ class Kernels:
             if p.type == "bool" or p.widget.kind == "menu"
         ]
         for name in (i.name for i in kernel.inputs):
-            texture = job.inputs.get(name, Wired()).texture
+            texture = job.inputs.get(name, NOT_WIRED).texture
             if kernel.reads(f"{WIRED}{name}"):
                 choices.append((f"{WIRED}{name}", int(texture is not None)))
             if kernel.reads(f"{MATCHES}{name}"):
@@ -295,7 +296,7 @@ class Kernels:
         step = job.step
         found: dict[str, moderngl.Texture] = {}
         for name, output in initial_names(step.kernel).items():
-            texture = job.inputs.get(name, Wired()).texture
+            texture = job.inputs.get(name, NOT_WIRED).texture
             if texture is None:
                 continue
             if texture.size != step.size:

@@ -18,21 +18,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, Step, Turns, every_node
 from playground.engine.results import Result, Wired
 from playground.gpu.textures import read_raw, split_format
 from playground.gpu.wrap import FRAGMENT
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.sketch.model import Kernel
-
-if TYPE_CHECKING:
-    from playground.engine.engine import Engine
 
 # All bits of the exponent are set in NaN and infinity, and in nothing else (IEEE 754).
 _EXPONENTS: dict[np.dtype[Any], tuple[str, int]] = {
@@ -67,36 +65,36 @@ class NotFinite:
 
 
 class FiniteCheck:
-    """Looks at the textures of an engine's frames; remembers which it has seen."""
+    """Checks the textures of a source's frames; remembers which it has checked."""
 
-    def __init__(self, engine: Engine) -> None:
-        self.engine = engine
+    def __init__(self, source: FrameSource) -> None:
+        self.source = source
         self.looked_at = 0  # textures read for the last frame
         # What was found of each result, and after how many turns: some go on in place.
         self._seen: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
         self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
 
     def first(self) -> NotFinite | None:
-        """Return what is not finite in the first such texture of the engine's last frame; None if all is."""
+        """Return what is not finite in the first such texture of the last frame; None if all is."""
         return next((found for found in self.looks() if found is not None), None)
 
     def looks(self) -> Iterator[NotFinite | None]:
-        """Look at the engine's last frame, a pass at a time: yield after each what is not finite in it.
+        """Look at the last frame, a pass at a time: yield after each what is not finite in it.
 
         Of a pass with several such outputs, the first. It ends early if another frame is drawn meanwhile.
         """
         self.looked_at = 0
-        engine, plan = self.engine, self.engine.plan
-        results = engine.results
-        for step, within in _steps(plan):
-            if engine.plan is not plan or engine.results is not results:
+        record = self.source.record
+        for step, within in _steps(record.plan):
+            now = self.source.record
+            if now.plan is not record.plan or now.results is not record.results:
                 return
-            result = results.get(step.path)
+            result = record.results.get(step.path)
             if result is None:
                 continue
             turn, found = self._seen.get(result, (-1, None))
             if turn != result.turn:
-                with engine.borrowed():
+                with self.source.borrowed():
                     found = self._look(step, result, within)
                 self._seen[result] = result.turn, found
             # Another sketch may have the same result under another name.
@@ -118,9 +116,10 @@ class FiniteCheck:
         again = self._again(step)
         if again is None:
             return None
-        wide, driver, inputs = again
-        engine = self.engine
-        made = engine.runner.run(wide, driver, inputs)
+        wide, inputs = again
+        runner = self.source.runner
+        # Of a kernel the fragment driver has the same text for any format, so nothing is compiled.
+        made = runner.run(wide, FRAGMENT, inputs)
         try:
             for output in result.outputs:
                 if not output.format.endswith("f"):
@@ -129,12 +128,12 @@ class FiniteCheck:
                     if found is not None:
                         return replace(found, path=step.path, output=output.name)
         finally:
-            engine.pool.give(made)
+            runner.pool.give(made)
         return None
 
-    def _again(self, step: Step) -> tuple[Step, str, Mapping[str, Wired]] | None:
-        """Return a step that writes floats, how to run it, and what it reads; None if it is left as it is."""
-        kernel, driver = self.engine.form_of(step)
+    def _again(self, step: Step) -> tuple[Step, Mapping[str, Wired]] | None:
+        """Return a step that writes floats, and what it reads; None if it is left as it is."""
+        kernel = step.kernel
         if kernel.kind not in ("kernel", "draw", "plain_fragment") or kernel.repeat != "1":
             return None
         inputs: dict[str, Wired] = {}
@@ -142,13 +141,11 @@ class FiniteCheck:
             if not isinstance(source, Ref):
                 inputs[name] = Wired()
                 continue
-            found = self.engine.results.get(source.path)
+            found = self.source.record.results.get(source.path)
             if found is None or (kernel.kind == "draw" and name == "initial" and found.surface is not None):
                 return None
             inputs[name] = Wired(found, found.textures[source.output], source.output)
-        # Of a kernel the fragment driver has the same text for any format, so nothing is compiled.
-        driver = driver if kernel.kind == "draw" else FRAGMENT
-        return replace(step, kernel=self._widened(kernel)), driver, inputs
+        return replace(step, kernel=self._widened(kernel)), inputs
 
     def _widened(self, kernel: Kernel) -> Kernel:
         known = self._wide.get(id(kernel))

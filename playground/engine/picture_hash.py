@@ -16,11 +16,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from playground.engine.cache_keys import Form, KeyMaker
+from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
 from playground.sketch.canonical import compiled_text
-from playground.sketch.flatten import Ref
-from playground.sketch.model import Kernel
+from playground.sketch.flat import Ref
 
 _DIGITS = 9
 
@@ -35,16 +34,16 @@ class Drawn:
         self,
         plan: Plan,
         ref: Ref,
-        form: Callable[[Step], Form],
-        given: Callable[[Kernel, Step], Mapping[str, Any]],
+        driver: Callable[[Step], str],
+        given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
     ) -> str:
         """Return the hash of what a texture of a plan is made from; arguments as ``KeyMaker`` takes them."""
 
-        def smoothed(kernel: Kernel, step: Step) -> dict[str, Any]:
-            return {name: rounded(value) for name, value in given(kernel, step).items()}
+        def smoothed(step: Step) -> dict[str, Any]:
+            return {name: rounded(value) for name, value in given(step).items()}
 
-        return self._keys.keys_of(plan, form, smoothed, continued).steps[ref.path]
+        return self._keys.keys_of(plan, driver, smoothed, continued).steps[ref.path]
 
 
 def rounded(value: Any) -> Any:

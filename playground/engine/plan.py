@@ -1,41 +1,15 @@
-"""Make a sketch concrete: sizes, counts, files, the land's metres. Still no OpenGL."""
+"""What to run for one frame: a sketch made concrete, its passes in order. ``planner`` makes it."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from numbers import Integral, Real
 
-from playground.engine.between import Between, between_of
-from playground.engine.error_place import placed
-from playground.engine.files import find_file
-from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
-from playground.paths import shown
-from playground.sketch import expressions
-from playground.sketch.assign import resolve
-from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import (
-    Fed,
-    Flat,
-    Leaf,
-    Loop,
-    Node,
-    Ref,
-    Source,
-    flatten,
-    leaves_of,
-)
-from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
-from playground.sketch.repeats import repeated_path, repeated_paths
-from playground.sketch.wiring import inner, output_names, target_of
-from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Land, source_kind
-
-DEFAULT_LAND = (513, 513)
-DEFAULT_EXTENT = 10_240.0
-DEFAULT_RELIEF = 1_800.0
-MAX_REPEAT = 1_000_000
+from playground.engine.between import Between
+from playground.sketch.flat import Flat, Ref, Source
+from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.terrain.camera import Eye
+from playground.terrain.sources import Land
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +72,8 @@ class Plan:
     interpolated: bool = False  # what stopped passes have not reached is filled
     lacking: tuple[str, ...] = ()  # a sentence for each technique that does without compute shaders
 
-    def walk(self) -> Iterator[Step]:
-        """Yield every step, those inside loops included."""
+    def walk(self) -> list[Step]:
+        """Return every step, those inside loops included."""
         return walk(self.nodes)
 
     def step(self, path: str) -> Step | None:
@@ -111,21 +85,25 @@ class Plan:
         return next((node for node in every_node(self.nodes) if node.path == path), None)
 
 
-def walk(nodes: tuple[PlanNode, ...]) -> Iterator[Step]:
-    """Yield every step of some nodes, those inside loops included."""
+def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
+    """Return every step of some nodes, those inside loops included."""
+    found: list[Step] = []
     for node in nodes:
         if isinstance(node, Turns):
-            yield from walk(node.body)
+            found += walk(node.body)
         else:
-            yield node
+            found.append(node)
+    return found
 
 
-def every_node(nodes: tuple[PlanNode, ...]) -> Iterator[PlanNode]:
-    """Yield every step and loop of some nodes, a loop before what is inside it."""
+def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
+    """Return every step and loop of some nodes, a loop before what is inside it."""
+    found: list[PlanNode] = []
     for node in nodes:
-        yield node
+        found.append(node)
         if isinstance(node, Turns):
-            yield from every_node(node.body)
+            found += every_node(node.body)
+    return found
 
 
 def continued(plan: Plan) -> frozenset[str]:
@@ -142,7 +120,11 @@ def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     wanted = {ref.path}
     kept: list[PlanNode] = []
     for node in reversed(nodes):
-        if wanted & {step.path for step in walk((node,))}:
+        if isinstance(node, Step):
+            if node.path in wanted:
+                kept.append(node)
+                wanted |= {source.path for _, source in node.inputs if isinstance(source, Ref)}
+        elif not wanted.isdisjoint([step.path for step in walk(node.body)]):
             kept.append(node)
             wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
     return kept[::-1]
@@ -156,326 +138,3 @@ def sources_of(node: PlanNode) -> list[Source]:
     for inside in node.body:
         found += sources_of(inside)
     return found
-
-
-def make_plan(
-    sketch: Sketch,
-    *,
-    frame_size: tuple[int, int],
-    time: float = 0.0,
-    variants: Collection[str] = (),
-    steps: Mapping[str, int] | None = None,
-    wanted: str = "",
-    interpolated: bool | None = None,
-    largest: int = LARGEST_SIDE,
-) -> Plan:
-    """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
-
-    ``variants`` are the kinds of fast variants that may stand in for techniques, but not for
-    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-    path (that of a technique will do where one pass inside it repeats), and no later than they
-    end unless their number changes with time or keyframes. What a stopped pass has not reached is
-    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
-    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
-    kernel's header.
-    """
-    size, seconds = _pixels(frame_size, largest), _seconds(time)
-    varies = any(keyframe.values for keyframe in sketch.keyframes)
-    sketch = sketch.at(seconds)
-    stopped = {repeated_in(sketch, path): _turns(path, count) for path, count in (steps or {}).items()}
-    opened = (wanted,) if wanted else ()
-    flat = flatten(sketch, variants=variants, opened=opened, stopped=tuple(stopped))
-    fills = not wanted if interpolated is None else interpolated
-    compute = "compute" in variants
-    return _Planner(sketch, flat, size, seconds, stopped, fills=fills, compute=compute, varies=varies).plan()
-
-
-def repeated_in(sketch: Sketch, path: str) -> str:
-    """Return the path of the repeated pass that a path stands for, or raise ``SketchError``.
-
-    It is the path itself, or that of the only pass that repeats inside a technique.
-    """
-    nodes = flatten(sketch).nodes
-    found = repeated_path(str(path), nodes)
-    if found is None:
-        hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
-        raise SketchError(f"steps: no repeated pass '{path}' in sketch {sketch.name}{hint}")
-    return found
-
-
-def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
-    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
-    found: dict[str, int] = {}
-    for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
-        if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
-            found.setdefault(node.path, node.whole)
-    return found
-
-
-def _pixels(size: object, largest: int) -> tuple[int, int]:
-    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
-        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
-    width, height = int(found[0]), int(found[1])
-    if not (1 <= width <= largest and 1 <= height <= largest):
-        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
-    return width, height
-
-
-def _seconds(time: object) -> float:
-    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
-        raise ParameterError(f"time {time!r}: expected a number of seconds")
-    return float(time)
-
-
-def _turns(path: str, count: object) -> int:
-    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
-        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
-    return int(count)
-
-
-def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
-    flat = flatten(sketch)
-    return _accepted_by(flat, (least, least))
-
-
-def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
-    for leaf in leaves_of(flat.nodes):
-        at_land_size = leaf.spec.size is None and leaf.path.partition(".")[0] != "view"
-        if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
-            size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
-    return size
-
-
-class _Planner:
-    def __init__(
-        self,
-        sketch: Sketch,
-        flat: Flat,
-        frame_size: tuple[int, int],
-        time: float,
-        steps: dict[str, int],
-        *,
-        fills: bool,
-        compute: bool,
-        varies: bool,
-    ) -> None:
-        self.sketch = sketch
-        self.flat = flat
-        self.frame_size = frame_size
-        self.time = time
-        self.steps = steps
-        self.fills = fills
-        self.compute = compute
-        self.varies = varies  # whether keyframes set parameters, and so perhaps counts of steps
-        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
-        self._sizes: dict[str, tuple[int, int]] = {}
-        self._open: list[str] = []
-        self._values = {leaf.path: self._with_files(leaf) for leaf in leaves_of(flat.nodes)}
-        self.land = self._land()
-
-    def plan(self) -> Plan:
-        nodes = tuple(self._node(node) for node in self.flat.nodes)
-        extent, relief = self.land.extent, self.land.relief
-        assert extent is not None and relief is not None
-        eye = look(self.sketch.camera, extent, relief, self.frame_size)
-        seen = self.frame_size, self.time, self.steps, self.fills
-        lacking = tuple(
-            f"{path or 'the sketch'} does without compute shaders, which are not here: "
-            f"see {shown(self.flat.graphs[path].path)}"
-            for path in self.lacking
-        )
-        return Plan(self.sketch, nodes, self.flat, self.land, eye, *seen, lacking)
-
-    def _node(self, node: Node) -> PlanNode:
-        if isinstance(node, Loop):
-            prefix = node.path.rpartition(".")[0]
-            whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
-            count = self._stopped(node.path, whole, node.repeat)
-            return Turns(
-                node.path, count, whole, tuple(self._node(n) for n in node.body), node.feedback, node.spec
-            )
-        kernel = node.kernel
-        size = self._size_of_leaf(node)
-        values = self._values[node.path]
-        if kernel.accepts and not expressions.is_accepted(kernel.accepts, size):
-            raise self._refused(node, size)
-        names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
-        names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
-        whole = self._count(kernel.repeat, node.path, kernel, names)
-        # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
-        repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
-        between = between_of(node, repeat, whole, names) if self.fills else None
-        return Step(node.path, kernel, values, node.inputs, size, repeat, whole, node.spec, between=between)
-
-    def _stopped(self, path: str, whole: int, repeat: str) -> int:
-        """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
-        asked = self.steps.get(path, whole)
-        if asked > whole and not self.varies and "time" not in expressions.names_in(repeat):
-            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
-        return min(asked, whole)
-
-    def _count(
-        self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
-    ) -> int:
-        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
-        if text == "1":
-            return 1
-        try:
-            count = expressions.evaluate(text, names)
-        except ExpressionError as error:
-            raise owner.error(f"pass '{name}': repeat {error}") from None
-        if not 0 <= count <= MAX_REPEAT:
-            raise owner.error(
-                f"pass '{name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
-            )
-        return count
-
-    def _refused(self, leaf: Leaf, size: tuple[int, int]) -> SketchError:
-        near = expressions.nearest_accepted(leaf.kernel.accepts, size)
-        listed = " or ".join(f"{x} x {y}" for x, y in near)
-        return leaf.spec.error(
-            f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
-            f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
-        )
-
-    def _land(self) -> Land:
-        known = Land()
-        for leaf in leaves_of(self.flat.nodes):
-            if leaf.kernel.kind == "source":
-                self._check_source(leaf)
-                try:
-                    known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if known != Land():
-                    break
-        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
-        extent = self.sketch.extent or known.extent
-        if extent is None:
-            shape = known.size or size
-            ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
-            extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
-        relief = self.sketch.relief if self.sketch.relief is not None else known.relief
-        base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
-        return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
-
-    def _check_source(self, leaf: Leaf) -> None:
-        try:
-            kind = source_kind(leaf.kernel.registry)
-        except PlaygroundError as error:
-            raise leaf.spec.error(str(error)) from None
-        missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
-        if missing:
-            raise leaf.spec.error(
-                f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}"
-            )
-
-    def _with_files(self, leaf: Leaf) -> dict[str, Value]:
-        values = dict(leaf.values)
-        for parameter in leaf.kernel.parameters:
-            if parameter.widget.kind == "file":
-                text = str(values[parameter.name])
-                try:
-                    path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                values[parameter.name] = str(path)
-        return values
-
-    def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
-        path = leaf.path
-        technique: Technique = self.flat.graphs.get(path, leaf.kernel)
-        while isinstance(technique, Graph):
-            where = target_of(technique, output_names(technique)[0]).partition(":")[0]
-            path, found = f"{path}.{where}", inner(technique, where)
-            if found is None:
-                break
-            technique = found
-        return self.size_of(path)
-
-    def size_of(self, path: str) -> tuple[int, int]:
-        """Return the size in texels of a pass at any level."""
-        if path in self._sizes:
-            return self._sizes[path]
-        spec = self.flat.specs[path]
-        prefix = path.rpartition(".")[0]
-        if path in self._open:
-            raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
-        self._open.append(path)
-        base = self._base(path, prefix)
-        size = base
-        if spec.size is not None:
-            try:
-                names = self._names(prefix, spec)
-                size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
-            except ExpressionError as error:
-                raise spec.error(f"pass '{spec.name}': size {error}") from None
-            if not all(1 <= side <= LARGEST_SIDE for side in size):
-                raise spec.error(
-                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
-                    f"1 to {LARGEST_SIDE} a side were expected"
-                )
-        self._open.pop()
-        self._sizes[path] = size
-        return size
-
-    def _base(self, path: str, prefix: str) -> tuple[int, int]:
-        if prefix:
-            return self.size_of(prefix)
-        assert self.land.size is not None
-        return self.frame_size if path == "view" else self.land.size
-
-    def _names(self, prefix: str, spec: PassSpec) -> Names:
-        return Names(self, prefix, spec)
-
-
-class Names:
-    """What names stand for in an expression of a pass: sizes, and the parameters around it."""
-
-    def __init__(self, planner: _Planner, prefix: str, spec: PassSpec) -> None:
-        self.planner = planner
-        self.prefix = prefix
-        self.spec = spec
-
-    def __call__(self, name: str) -> Number:
-        """Return the number of a name, or raise ``KeyError``."""
-        planner = self.planner
-        if name == "time":
-            return planner.time
-        axes = {"x": 0, "y": 1}
-        head, _, axis = name.rpartition(".")
-        if axis in axes and head == "size":
-            path = f"{self.prefix}.{self.spec.name}" if self.prefix else self.spec.name
-            return planner._base(path, self.prefix)[axes[axis]]
-        if axis in axes and head.endswith(".size"):
-            return planner.size_of(self._path_of(head.removesuffix(".size")))[axes[axis]]
-        graph = planner.flat.graphs[self.prefix]
-        try:
-            target = resolve(graph, name)[0].path
-        except PlaygroundError:
-            if name != "compute":
-                raise KeyError(name) from None
-            if not planner.compute:
-                planner.lacking[self.prefix] = None
-            return int(planner.compute)
-        value = planner.flat.values[f"{self.prefix}.{target}" if self.prefix else target]
-        if not isinstance(value, int | float):
-            raise KeyError(name)
-        return value
-
-    def _path_of(self, name: str) -> str:
-        """Return the path of the pass, or of what feeds the technique's input, that a name stands for."""
-        flat = self.planner.flat
-        path = f"{self.prefix}.{name}" if self.prefix else name
-        if path in flat.specs:
-            return path
-        source = flat.wires[self.prefix][name]
-        if isinstance(source, Fed):
-            output = dict(flat.specs[source.loop].feedback)[source.name]
-            source = flat.outputs[source.loop][output]
-        if source is None:
-            raise KeyError(name)
-        return source.path

@@ -88,6 +88,9 @@ class Wired(NamedTuple):
     output: str = ""
 
 
+UNWIRED = Wired()
+
+
 class Pool:
     """Results that nobody needs, to be used again: making a texture costs more than filling it."""
 

@@ -23,7 +23,6 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import GIVEN
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -91,24 +90,29 @@ class Runner:
         self.binder.release()
         self.programs.release()
 
-    def given_for(self, kernel: Kernel, step: Step) -> dict[str, Any]:
+    def given_for(self, step: Step) -> dict[str, Any]:
         """Return what the engine gives beside the parameters and the turn, where the text names it."""
+        kernel = step.kernel
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
-        for name in GIVEN:
-            if name in ("iteration", "iterations", "until", "stage", "size") or not kernel.reads(name):
-                continue
+        for name in kernel.given:
             if name == "spacing":
                 extent = self._given["extent"]
                 found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.whole_size, strict=True))
-            else:
+            elif name in self._given:
                 found[name] = self._given[name]
         return found
 
-    def samples_for(self, plan: Plan, kernel: Kernel) -> int:
+    def given_for_key(self, step: Step) -> dict[str, Any]:
+        """Return all that the engine gives a step and that its textures depend on."""
+        given = self.given_for(step)
+        return {**given, "samples": self._samples_for(step.kernel)} if step.kernel.kind == "draw" else given
+
+    def _samples_for(self, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
-        return max(min(kernel.samples or plan.sketch.samples, self.info.max_samples), 1)
+        assert self._plan is not None, "look_at() comes first"
+        return max(min(kernel.samples or self._plan.sketch.samples, self.info.max_samples), 1)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
@@ -140,9 +144,8 @@ class Runner:
         assert self._plan is not None, "begin() comes first"
         if self.tell is not None:
             self.tell(step)
-        kernel = step.kernel
-        samples = self.samples_for(self._plan, kernel)
-        job = Job(step, self.given_for(kernel, step), inputs, turn, start, samples, keeps_surface)
+        given, samples = self.given_for(step), self._samples_for(step.kernel)
+        job = Job(step, given, inputs, turn=turn, start=start, samples=samples, keeps_surface=keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         try:
             return self._run(job, driver)

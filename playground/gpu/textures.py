@@ -7,6 +7,7 @@ errors: asking waits for the driver, so it stays out of what happens every frame
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,12 +28,14 @@ _NUMPY: dict[str, np.dtype[Any]] = {
 _LARGEST_HALF = 65504.0
 
 
+@cache
 def split_format(form: str) -> tuple[int, str]:
     """Return (components, moderngl dtype) of a format, as "rgba16f"."""
     letters = form.rstrip("0123456789f")
     return len(letters), _DTYPES[form[len(letters) :]]
 
 
+@cache
 def bytes_of(size: tuple[int, int], form: str) -> int:
     """Return the bytes that a texture takes, without mipmaps."""
     components, dtype = split_format(form)

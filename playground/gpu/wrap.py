@@ -287,6 +287,7 @@ def _texel(output: Output) -> str:
 def _wrap_variant(kernel: Kernel) -> Wrapped:
     before = [
         "#version 430",
+        "#define COMPUTE_STAGE",
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
     ]
     before += _given(kernel)
@@ -400,6 +401,8 @@ def _check_previous(kernel: Kernel) -> None:
     """Refuse what reads a turn before where there is none, or by a name that no output has."""
     names = [previous_name(kernel, output) for output in kernel.outputs]
     for number, line in enumerate(kernel.source.lines):
+        if "previous" not in line.code:
+            continue
         for match in re.finditer(r"\bprevious(?:_(\w+))?\s*\(", line.code):
             called = match.group().rstrip("( \t")
             if called in names and kernel.repeat == "1":

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.gpu.driver_warnings import warnings_of
@@ -49,7 +49,7 @@ from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
 from playground.workbench.autosave import QUIET, Rememberer, memory_of
 from playground.workbench.bench import Bench
-from playground.workbench.disk_caching import DiskCaching
+from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.editors import Opener
 from playground.workbench.interface import WindowControls, remembered_size
 from playground.workbench.last_frame import Painter
@@ -107,7 +107,7 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        trial = stack.enter_context(Trial(software=software))
+        trial = stack.enter_context(Sandbox(software=software))
         trial.start()
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
@@ -126,7 +126,7 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, DiskCaching(session, keeps), tell)
+        live = Live(window, session, watcher, rememberer, SessionCaching(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
         live.lessons.begin(lesson, language, beside=beside)
@@ -176,7 +176,7 @@ class Live:
         session: Session,
         watcher: Watcher,
         rememberer: Rememberer,
-        caching: DiskCaching,
+        caching: SessionCaching,
         tell: Callable[[str], None],
     ) -> None:
         self.window = window

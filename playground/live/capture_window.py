@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.capture.video import QUALITIES
 from playground.images.extensions import VIDEO_ENDINGS
 from playground.live import theme
@@ -104,7 +104,7 @@ def _sweep(wish: Wish, number: int, draft: Draft | None) -> None:
             imgui.end_combo()
 
 
-def _progress(working: Working, look: Theme) -> None:
+def _progress(working: JobProcess, look: Theme) -> None:
     done, of = working.progress
     text = f"{done} of {of}" if of else "beginning …"
     imgui.progress_bar(done / of if of else 0.0, ImVec2(-90 * look.scale, 0), text)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from playground.errors import ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
+from playground.sketch.reserved_names import GIVEN
 from playground.sketch.source import Line, SourceText
 
 VARIANTS = ("compute", "passes")
@@ -63,6 +64,7 @@ class Kernel:
     inputs: tuple[Input, ...] = ()
     repeat: str = "1"
     accepts: str = ""
+    own_accepts: str = ""  # of a compute variant: the sizes that it takes, where its technique takes more
     visits: str = ""
     stride: str = ""  # after a turn, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
@@ -92,10 +94,20 @@ class Kernel:
         """Absolute paths of every file the kernel is made of."""
         return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
 
+    @cached_property
+    def given(self) -> tuple[str, ...]:
+        """Which names the text reads of those that the engine gives: see ``reserved_names.GIVEN``."""
+        return tuple(name for name in GIVEN if self.reads(name))
+
     @property
     def pragma(self) -> Line | None:
         """The line of its header; a plain shader has none."""
         return next((line for line in self.source.lines if line.pragma and not line.chain), None)
+
+    @cached_property
+    def file_parameters(self) -> tuple[Parameter, ...]:
+        """Those of its parameters that name files."""
+        return tuple(p for p in self.parameters if p.widget.kind == "file")
 
     def error(self, message: str) -> ShaderError:
         """Return an error that points at its header."""
@@ -104,7 +116,11 @@ class Kernel:
 
     def parameter(self, name: str) -> Parameter | None:
         """Return the parameter of that name, if there is one."""
-        return next((p for p in self.parameters if p.name == name), None)
+        return self._parameters_by_name.get(name)
+
+    @cached_property
+    def _parameters_by_name(self) -> dict[str, Parameter]:
+        return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
     def reads(self, given: str) -> bool:
         """Say whether the text names something that the engine gives."""
@@ -171,9 +187,24 @@ class Graph:
             found |= dict.fromkeys(variant.files)
         return tuple(found)
 
+    @cached_property
+    def kernels(self) -> tuple[tuple[str, Kernel], ...]:
+        """Every kernel inside, by its path."""
+        found: list[tuple[str, Kernel]] = []
+        for spec in self.passes:
+            if isinstance(spec.technique, Kernel):
+                found.append((spec.name, spec.technique))
+            else:
+                found += [(f"{spec.name}.{path}", kernel) for path, kernel in spec.technique.kernels]
+        return tuple(found)
+
+    @cached_property
+    def _passes_by_name(self) -> dict[str, PassSpec]:
+        return {spec.name: spec for spec in reversed(self.passes)}
+
     def find(self, name: str) -> PassSpec | None:
         """Return the pass of that name, if there is one."""
-        return next((p for p in self.passes if p.name == name), None)
+        return self._passes_by_name.get(name)
 
 
 Technique = Kernel | Graph
@@ -203,10 +234,6 @@ class Variant:
         return (*self.technique.files, *filter(None, [self.record]))
 
 
-def kernels_of(technique: Technique, prefix: str = "") -> Iterator[tuple[str, Kernel]]:
-    """Yield (path, kernel) of every kernel a technique is made of, in the order of the files."""
-    if isinstance(technique, Kernel):
-        yield prefix, technique
-        return
-    for spec in technique.passes:
-        yield from kernels_of(spec.technique, f"{prefix}.{spec.name}" if prefix else spec.name)
+def kernels_of(technique: Technique) -> tuple[tuple[str, Kernel], ...]:
+    """Return (path, kernel) of every kernel a technique is made of, in the order of the files."""
+    return (("", technique),) if isinstance(technique, Kernel) else technique.kernels

@@ -19,6 +19,8 @@ CELLS = 16
 LEVELS = 5
 SOUTH, EAST, NORTH, WEST = 1, 2, 4, 8
 SIDES = (SOUTH, EAST, NORTH, WEST)
+_ROW = CELLS + 1  # nodes from one to the next in the north
+_RING = np.array([(-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)])
 
 Piece = tuple[str, int, int]
 """A list: "fans", level, sides where the neighbour is coarser; "quarter" of the finest level, east or
@@ -42,8 +44,7 @@ def vertices() -> NDArray[np.float32]:
     steps = np.arange(CELLS + 1)
     north, east = np.meshgrid(steps, steps, indexing="ij")
     top = np.stack([east.ravel(), north.ravel(), np.zeros(east.size)], axis=1)
-    rim = [_node(*node) for side in SIDES for node in _side(side, 1)]
-    foot = top[rim]
+    foot = top[np.concatenate([_side(side, 1) for side in SIDES])]
     foot[:, 2] = 1.0
     return np.concatenate([top, foot]).astype(np.float32)
 
@@ -55,9 +56,12 @@ def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
     for level in range(LEVELS - 1):
         for coarser in range(16):
             found["fans", level, coarser] = _fans(level, coarser)
-    west, east, far, north = (_node(*n) for n in ((0, 0), (CELLS, 0), (CELLS, CELLS), (0, CELLS)))
-    found["fans", LEVELS - 1, 0] = np.array([west, east, far, west, far, north], np.uint32)
-    found["fans", LEVELS - 1, 1] = np.array([west, east, north, east, far, north], np.uint32)
+    south_west, south_east = _side(SOUTH, CELLS)
+    north_east, north_west = _side(NORTH, CELLS)
+    cut = [south_west, south_east, north_east, south_west, north_east, north_west]
+    found["fans", LEVELS - 1, 0] = np.array(cut, np.uint32)
+    cut = [south_west, south_east, north_west, south_east, north_east, north_west]
+    found["fans", LEVELS - 1, 1] = np.array(cut, np.uint32)
     for east in (0, 1):
         for north in (0, 1):
             found["quarter", east, north] = _fans(0, 0, (east, north))
@@ -77,52 +81,41 @@ def ranges() -> Mapping[Piece, tuple[int, int]]:
     return found
 
 
-def _node(east: int, north: int) -> int:
-    return north * (CELLS + 1) + east
-
-
-def _side(side: int, step: int) -> list[tuple[int, int]]:
-    """Return a side's nodes, with the tile to the left of who walks along it."""
-    along = range(0, CELLS + 1, step)
-    if side in (SOUTH, NORTH):
-        nodes = [(k, 0 if side == SOUTH else CELLS) for k in along]
-    else:
-        nodes = [(0 if side == WEST else CELLS, k) for k in along]
-    return nodes if side in (SOUTH, EAST) else nodes[::-1]
+def _side(side: int, step: int) -> NDArray[np.int64]:
+    """Return every so many nodes of a side, in the order in which the tile is to their left."""
+    along = np.arange(0, CELLS + 1, step)
+    nodes = along if side in (SOUTH, NORTH) else along * _ROW
+    far = {SOUTH: 0, EAST: CELLS, NORTH: CELLS * _ROW, WEST: 0}[side]
+    return far + (nodes if side in (SOUTH, EAST) else nodes[::-1])
 
 
 def _fans(level: int, coarser: int, quarter: tuple[int, int] | None = None) -> NDArray[np.uint32]:
     """Return a level's triangles: fans around the middles of blocks of two by two quads."""
     half = 1 << level
-    blocks = [list(range(half, CELLS, 2 * half))] * 2
-    if quarter is not None:
-        blocks = [[at for at in blocks[0] if at * 2 // CELLS == part] for part in quarter]
-    ring = [(-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)]
-    found = []
-    for north in blocks[1]:
-        for east in blocks[0]:
-            around = [(east + half * x, north + half * y) for x, y in ring]
-            for side, middle in zip(SIDES, (1, 3, 5, 7), strict=True):
-                axis = 1 if side in (SOUTH, NORTH) else 0
-                rim = 0 if side in (SOUTH, WEST) else CELLS
-                if coarser & side and around[middle][axis] == rim:
-                    around[middle] = around[middle - 1]  # dropped below
-            kept = [node for k, node in enumerate(around) if node != around[k - 1]]
-            for k, node in enumerate(kept):
-                found += [_node(east, north), _node(*node), _node(*kept[(k + 1) % len(kept)])]
-    return np.array(found, np.uint32)
+    middles = np.arange(half, CELLS, 2 * half)
+    east, north = (
+        middles if part is None else middles[middles * 2 // CELLS == part] for part in quarter or (None,) * 2
+    )
+    middle = np.stack([axis.ravel() for axis in np.meshgrid(east, north)], axis=1)  # (blocks, 2), east first
+    around = middle[:, None] + half * _RING  # (blocks, 8, 2)
+    for side, node in zip(SIDES, (1, 3, 5, 7), strict=True):
+        if coarser & side:  # its edge has no node there
+            axis, rim = int(side in (SOUTH, NORTH)), 0 if side in (SOUTH, WEST) else CELLS
+            dropped = around[:, node, axis] == rim
+            around[dropped, node] = around[dropped, node - 1]
+    ring, centre = around @ (1, _ROW), middle @ (1, _ROW)
+    after = np.roll(ring, -1, axis=1)
+    fans = np.stack([np.broadcast_to(centre[:, None], ring.shape), ring, after], axis=2)
+    found: NDArray[np.uint32] = fans[ring != after].astype(np.uint32).ravel()
+    return found
 
 
 def _wall(level: int, side: int) -> NDArray[np.uint32]:
     """Return the wall from a side down to its feet."""
     step = 1 << level
-    first = (CELLS + 1) ** 2 + SIDES.index(side) * (CELLS + 1)
-    top = [_node(*node) for node in _side(side, step)]
-    foot = list(range(first, first + CELLS + 1, step))
-    found = []
-    for k in range(len(top) - 1):
-        found += [top[k], foot[k], foot[k + 1], top[k], foot[k + 1], top[k + 1]]
-    return np.array(found, np.uint32)
+    top, foot = _side(side, step), _ROW**2 + SIDES.index(side) * _ROW + np.arange(0, CELLS + 1, step)
+    quads = [top[:-1], foot[:-1], foot[1:], top[:-1], foot[1:], top[1:]]
+    return np.stack(quads, axis=1).ravel().astype(np.uint32)
 
 
 def rims_of(ny: int, nx: int) -> dict[int, NDArray[np.bool_]]:

@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
@@ -56,7 +56,7 @@ class Captures:
     folder: Path  # where pictures go
     wish: Wish = field(default_factory=Wish)
     shown: bool = False  # the capture's window is open
-    working: Working | None = None
+    working: JobProcess | None = None
     saved: Path | None = None  # the last picture
     made: Path | None = None  # the file or folder that was captured last
     failed: str = ""  # why the last one was not made
@@ -91,7 +91,7 @@ class Captures:
             self.notices.say(self.failed)
             return
         engine = self.session.engine
-        self.working = Working(job, software=engine.info.software, driver=engine.driver)
+        self.working = JobProcess(job, software=engine.info.software, driver=engine.driver)
 
     def poll(self) -> None:
         """Take in how far the job is; report it once it has ended."""
@@ -158,17 +158,17 @@ class Captures:
             if steps:
                 raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
         return Job(
-            wish.kind,
-            sketch,
-            self.folder,
-            size,
-            start,
-            steps,
-            seconds_of(wish, sketch) if moves else None,
-            fps,
-            wish.ending,
-            wish.quality,
-            sweeps,
+            kind=wish.kind,
+            sketch=sketch,
+            folder=self.folder,
+            size=size,
+            time=start,
+            steps=steps,
+            seconds=seconds_of(wish, sketch) if moves else None,
+            fps=fps,
+            ending=wish.ending,
+            quality=wish.quality,
+            sweeps=sweeps,
         )
 
     def summary(self) -> str:

@@ -7,14 +7,14 @@ time, and nobody would learn which of them made it.
 from __future__ import annotations
 
 from playground.engine.disk_cache import store_for
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.non_finite import FiniteWatch
 from playground.workbench.session import Session
 
 
-class DiskCaching:
+class SessionCaching:
     """What one session caches, and reads back; ``limit`` in bytes, 0 for neither."""
 
     def __init__(self, session: Session, limit: int) -> None:
@@ -28,11 +28,11 @@ class DiskCaching:
     def attach(self, engine: Engine) -> None:
         """Have an engine use the disk cache, from its next frame on."""
         if self._limit:
-            engine.keeping = Keeping(store_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(store_for(engine.info, self._limit))
 
     def update(self, inspection: Inspection, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""
-        session, caching = self._session, self._session.engine.keeping
+        session, caching = self._session, self._session.engine.disk_caching
         self.patience = None
         if caching is None or session.plan is None or session.awaits_data:
             return
@@ -50,5 +50,5 @@ class DiskCaching:
 
     def close(self) -> None:
         """Wait until all is written that was read back."""
-        if self._session.engine.keeping is not None:
-            self._session.engine.keeping.close()
+        if self._session.engine.disk_caching is not None:
+            self._session.engine.disk_caching.close()

@@ -367,8 +367,8 @@ class Session:
         if traits.files and self._data_of is not sketch:
             self.data.take(sketch)
             self._data_of = sketch
-        if engine.ground.message:
-            self._note_once("ground", engine.ground.message)
+        if engine.eye_height.message:
+            self._note_once("ground", engine.eye_height.message)
         if traits.arcs and engine.plan is not None and "arc" not in self._reported:
             self._note_once("arc", sun_off_arc(engine.plan))
 

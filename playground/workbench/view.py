@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from playground.engine.plan import repeats_of
+from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value

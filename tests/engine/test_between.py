@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.plan import make_plan
+from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch

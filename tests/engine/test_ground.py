@@ -62,8 +62,8 @@ def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
     assert eye.position[:2] == pytest.approx((x, y), abs=0.01)
     assert eye.position[2] == pytest.approx(ground(x, y) + 0.002 * 300, abs=0.05)
     assert eye.target == pytest.approx(UNDER.target)
-    assert any_engine.ground.raised == pytest.approx(eye.position[2] - z, abs=0.01)
-    assert f"{any_engine.ground.raised:.0f} m" in any_engine.ground.message
+    assert any_engine.eye_height.raised_by == pytest.approx(eye.position[2] - z, abs=0.01)
+    assert f"{any_engine.eye_height.raised_by:.0f} m" in any_engine.eye_height.message
 
 
 @pytest.mark.parametrize(
@@ -78,13 +78,13 @@ def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
 def test_any_other_eye_stays(any_engine, sketch, camera):
     wanted = any_engine.plan_for(sketch.with_camera(camera), (64, 36)).eye
     any_engine.render(sketch.with_camera(camera), size=(64, 36))
-    assert any_engine.plan.eye.position == wanted.position and any_engine.ground.message == ""
+    assert any_engine.plan.eye.position == wanted.position and any_engine.eye_height.message == ""
 
 
 def test_an_eye_straight_over_its_target_may_be_raised_too(any_engine, sketch):
     down = Camera(azimuth=30, elevation=89, distance=20, target=(500, 750, 100))
     frame = any_engine.render(sketch.with_camera(down), size=(64, 36))
-    assert any_engine.ground.raised > 200 and math.isfinite(any_engine.plan.eye.distance)
+    assert any_engine.eye_height.raised_by > 200 and math.isfinite(any_engine.plan.eye.distance)
     assert frame.array[..., :3].max() > 0
 
 
@@ -108,22 +108,22 @@ def test_an_eye_that_stays_under_the_terrain_costs_one_drawing(any_engine, sketc
     assert {"height", "view.land"} <= set(any_engine.ran)
     before = any_engine.runs["view.land"]
     other = any_engine.render(sketch.with_values({"view.exposure": 0.5}).with_camera(UNDER), size=(64, 36))
-    assert any_engine.runs["view.land"] - before <= 1 and any_engine.ground.raised > 0
+    assert any_engine.runs["view.land"] - before <= 1 and any_engine.eye_height.raised_by > 0
     assert (other.array != first).any()
 
 
 def test_a_terrain_that_becomes_wider_or_another_is_looked_at_again(any_engine, sketch):
     any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
-    raised = any_engine.ground.raised
+    raised = any_engine.eye_height.raised_by
     x, y, _ = any_engine.plan.eye.position
     any_engine.render(sketch.with_values({"extent": "1100,1650"}).with_camera(UNDER), size=(64, 36))
-    assert any_engine.ground.raised == pytest.approx(
+    assert any_engine.eye_height.raised_by == pytest.approx(
         raised - ground(x, y) + ground(x / 1.1, y / 1.1), abs=0.1
     )
     text = HILL.replace("exp(", "0.95 * exp(")
     Path(sketch.folder, "hill.glsl").write_text(text)
     any_engine.render(load(Path(sketch.file)).with_camera(UNDER), size=(64, 36))
-    assert any_engine.ground.raised == pytest.approx(raised - 0.05 * ground(x, y), abs=0.1)
+    assert any_engine.eye_height.raised_by == pytest.approx(raised - 0.05 * ground(x, y), abs=0.1)
 
 
 def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):

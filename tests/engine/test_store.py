@@ -18,7 +18,7 @@ import pytest
 
 from playground.engine import disk_cache as store_module
 from playground.engine.disk_cache import Kept, Store, bytes_in, clear, limit_in, listed, store_for, trim
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.gpu.context import ContextInfo
@@ -128,15 +128,15 @@ class Shelf:
     def engine(self, floor: float = ALWAYS, **options: int) -> Engine:
         """Return an engine as a new session has it."""
         made = Engine(self.ctx, driver=self.driver, **options)
-        made.keeping = Keeping(store_for(made.info, 2**26, self.folder), floor=floor)
+        made.disk_caching = DiskCaching(store_for(made.info, 2**26, self.folder), floor=floor)
         self.engines.append(made)
         return made
 
     def keep(self, engine: Engine) -> None:
         """Keep what is worth it of an engine's last frame."""
-        assert engine.keeping is not None and engine.plan is not None
-        engine.keeping.finish(engine, engine.plan)
-        assert engine.keeping.store.trouble == ""
+        assert engine.disk_caching is not None and engine.plan is not None
+        engine.disk_caching.finish(engine, engine.plan)
+        assert engine.disk_caching.store.trouble == ""
 
     def close(self) -> None:
         """Release all of it."""
@@ -234,8 +234,8 @@ def test_a_reopened_sketch_shows_the_same_and_runs_only_what_the_camera_changes(
     second = shelf.engine()
     assert picture(second, worn) == seen
     assert dict(second.runs) == {"view": 1}
-    assert second.keeping.reads == 2 and set(second.results) == {"worn.add", "light", "view"}
-    assert second.keeping.skipped == {"land"}
+    assert second.disk_caching.reads == 2 and set(second.results) == {"worn.add", "light", "view"}
+    assert second.disk_caching.skipped == {"land"}
     turned = replace(worn, camera=replace(worn.camera, azimuth=worn.camera.azimuth + 40.0))
     with Engine(shelf.ctx, driver=shelf.driver) as plain:
         assert picture(second, turned) == picture(plain, turned)
@@ -248,9 +248,9 @@ def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
     any_shelf.keep(first)
     second = any_shelf.engine()
     seen = picture(second, worn)
-    second.keeping.skips = False
+    second.disk_caching.skips = False
     assert picture(second, worn) == seen
-    assert {"land", "worn.add", "light", "view"} == set(second.results) and not second.keeping.skipped
+    assert {"land", "worn.add", "light", "view"} == set(second.results) and not second.disk_caching.skipped
     assert second.runs["land"] == 1 and second.runs["light"] == 0
     with Engine(any_shelf.ctx) as plain:
         for path in ("land:water", "worn", "light"):
@@ -273,10 +273,10 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
                 case 2:
                     sketch = sketch.with_values({"worn.add.share": chance.choice((0.25, 0.5))})
                 case 3:
-                    engine.keeping.skips = not engine.keeping.skips
+                    engine.disk_caching.skips = not engine.disk_caching.skips
                 case 4 if engine.plan is not None:
                     any_shelf.keep(engine)
-                    reads += engine.keeping.reads
+                    reads += engine.disk_caching.reads
                     engine = any_shelf.engine(cache_bytes=memory)
                 case 5:
                     steps = chance.choice(({}, {"worn": 1}, {"worn": 2}, {"land": 2}))
@@ -288,7 +288,7 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
             assert set(engine.ran) == expected or memory < 2**20, "stale() tells what runs"
         path = chance.choice(("land", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
-    assert reads + engine.keeping.reads > 0, "the store was used"
+    assert reads + engine.disk_caching.reads > 0, "the store was used"
 
 
 # ── what is another land ─────────────────────────────────────────────────────
@@ -480,7 +480,7 @@ def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp
     """A picture for a test must not come from a store."""
     monkeypatch.setattr(Store, "read", lambda *_: pytest.fail("the store was read"))
     monkeypatch.setattr(Store, "keep", lambda *_: pytest.fail("the store was written"))
-    assert any_engine.keeping is None
+    assert any_engine.disk_caching is None
     picture(any_engine, worn)
     using = {
         p.relative_to(ROOT / "playground").as_posix()
@@ -550,7 +550,7 @@ def test_a_file_under_anothers_name_is_dropped(kept, worn):
 def test_a_texture_of_another_size_is_not_taken(kept, folder):
     """Not even where the key agrees, as with a technique whose fast variant has other outputs."""
     engine = kept.engine()
-    store = engine.keeping.store
+    store = engine.disk_caching.store
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
     key = engine.keys_of(engine.plan).steps["a"]
@@ -572,9 +572,9 @@ def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypat
         engine = any_shelf.engine(floor)
         picture(engine, worn)
         keys = engine.keys_of(engine.plan)
-        engine.keeping._costs.clear()
+        engine.disk_caching._costs.clear()
         for name, cost in (costs | more).items():
-            engine.keeping._costs[keys.loops.get(name) or keys.steps[name]] = cost
+            engine.disk_caching._costs[keys.loops.get(name) or keys.steps[name]] = cost
         any_shelf.keep(engine)
         return {each.kept.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
@@ -592,18 +592,20 @@ def test_costs_are_measured_where_land_is_made_and_a_loop_counts_as_one(any_shel
     picture(engine, worn)
     keys = engine.keys_of(engine.plan)
     expected = {keys.steps["land"], keys.loops["worn"], keys.steps["light"]}
-    assert set(engine.keeping._costs) == expected
-    assert all(cost > 0.0 for cost in engine.keeping._costs.values())
+    assert set(engine.disk_caching._costs) == expected
+    assert all(cost > 0.0 for cost in engine.disk_caching._costs.values())
     any_shelf.keep(engine)
     (light,) = (each.kept for each in listed(any_shelf.folder) if "light" in each.kept.made_for)
-    assert light.cost == pytest.approx(sum(engine.keeping._costs.values()), abs=0.01)
+    assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
 
 
 def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
-    keeping = engine.keeping = Keeping(engine.keeping.store, floor=ALWAYS, rest=1.0, now=lambda: now)
+    keeping = engine.disk_caching = DiskCaching(
+        engine.disk_caching.store, floor=ALWAYS, rest=1.0, now=lambda: now
+    )
     assert keeping.look(engine, None) is None, "nothing has been made yet"
     picture(engine, worn)
     assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
@@ -625,10 +627,10 @@ def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn,
 def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)
     engine = any_shelf.engine(cache_bytes=20_000)
-    engine.keeping.rest = 0.0
+    engine.disk_caching.rest = 0.0
     picture(engine, worn)
-    engine.keeping.look(engine, engine.plan)
-    engine.keeping.look(engine, engine.plan)
+    engine.disk_caching.look(engine, engine.plan)
+    engine.disk_caching.look(engine, engine.plan)
     other = worn.with_values({"land.bumps": 9.0})
     picture(engine, other)
     any_shelf.keep(engine)

@@ -12,7 +12,7 @@ import pytest
 
 from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
@@ -125,7 +125,7 @@ def test_a_process_that_dies_is_told(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
-    bench.captures.working._process._process.kill()
+    bench.captures.working._worker._process.kill()
     wait(bench)
     assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 
@@ -235,8 +235,14 @@ def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
 
 
 def test_a_job_in_its_process_gives_the_bytes_of_this_one(bench: Bench) -> None:
-    job = Job(PICTURE, wishing(bench, Wish()).job().sketch, bench.captures.folder, (64, 64), fps=Fraction(30))
-    working = Working(job, software=bench.session.engine.info.software)
+    job = Job(
+        kind=PICTURE,
+        sketch=wishing(bench, Wish()).job().sketch,
+        folder=bench.captures.folder,
+        size=(64, 64),
+        fps=Fraction(30),
+    )
+    working = JobProcess(job, software=bench.session.engine.info.software)
     end = time.monotonic() + LIMIT
     while (finished := working.poll()) is None and time.monotonic() < end:
         time.sleep(0.01)

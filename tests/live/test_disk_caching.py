@@ -12,12 +12,12 @@ import pytest
 
 from playground.engine.disk_cache import listed
 from playground.engine.disk_caching import REST as LAND_RESTS
-from playground.engine.disk_caching import Keeping
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
-from playground.workbench import disk_caching as storing_module
+from playground.workbench import disk_caching as module
 from playground.workbench.bench import Bench
-from playground.workbench.disk_caching import DiskCaching
+from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.inspect.thumbnails import Thumbnails
 from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch
@@ -82,7 +82,7 @@ class Desk:
         window = WindowControls(lambda: None)
         self.bench = Bench(self.session, window, folder=self.folder, now=lambda: self.time)
         self.watch = FiniteWatch(lambda: self.time)
-        self.storing = DiskCaching(self.session, 2**26)
+        self.storing = SessionCaching(self.session, 2**26)
 
     def turn(self, seconds: float = 0.0) -> None:
         assert self.session is not None
@@ -121,10 +121,10 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
     made = Desk(ctx, folder)
 
-    def keeping(store: object) -> Keeping:  # all land is worth it, by the test's clock
-        return Keeping(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
+    def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
+        return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(storing_module, "Keeping", keeping)
+    monkeypatch.setattr(module, "DiskCaching", keeping)
     made.open()
     yield made
     made.close()
@@ -238,8 +238,8 @@ def test_a_folder_that_cannot_be_written_is_told_once(desk: Desk, tmp_path: Path
 
 def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
     assert desk.session is not None
-    desk.session.engine.keeping = None
-    desk.storing = DiskCaching(desk.session, 0)
+    desk.session.engine.disk_caching = None
+    desk.storing = SessionCaching(desk.session, 0)
     desk.rest()
     desk.close()
     desk.session = None
@@ -296,13 +296,13 @@ def test_land_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk:
     assert thumbnails.is_current(name)
     pool, outputs = engine.pool, engine.results["height"].outputs
     first = pool.take((5, 3), outputs)
-    engine.results = {**engine.results, "height": first}
+    engine.record.results = {**engine.results, "height": first}
     thumbnails.refresh([name], now=1.0)
     assert thumbnails.is_current(name)
     pool.give(first)
     again = pool.take((5, 3), outputs)
     assert again.textures["height"] is first.textures["height"]
-    engine.results = {**engine.results, "height": again}
+    engine.record.results = {**engine.results, "height": again}
     assert not thumbnails.is_current(name)
     thumbnails.release()
     again.release()

@@ -23,13 +23,7 @@ const uint SALT = 0xa677a9a0u;  // CRC-32 of "generation/endless/shape"
 float hills_at(ivec2 node, int wide, uint which) {
     vec2 share;
     ivec2 cell = cell_of(node, wide, share);
-    uvec2 columns = lattice_columns(cell.x, which);
-    uvec2 rows = lattice_rows(cell.y, which);
-    vec2 low = perlin_across(columns, rows.x, share.x).xy;
-    vec2 high = perlin_across(columns, rows.y, share.x).xy;
-    float south = low.x + low.y * share.y;
-    float north = high.x + high.y * (share.y - 1.0);
-    return PERLIN_SCALE * (south + (north - south) * quintic(share.y));
+    return perlin_in_cell(cell, share, which).x;
 }
 
 float kernel(ivec2 texel) {

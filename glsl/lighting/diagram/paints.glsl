@@ -1,9 +1,10 @@
-// lighting/diagram/paints.glsl -- the colours of the diagrams, told apart by people with colour-blindness, too.
+// lighting/diagram/paints.glsl -- the diagrams' colours, told apart by the colour-blind too.
 //
 //   gives    SKY, GROUND, EDGE, INK, FREE, PARTLY, HIDDEN, SUN, DULL
 //   needs    nothing
 //   units    linear
-//   source   blue and amber as in Okabe and Ito 2002, "Color Universal Design"; the rest chosen here
+//   source   blue and amber as in Okabe and Ito 2002, "Color Universal Design"; the rest chosen
+//            here
 //   tested   tests/glsl/test_diagrams.py, by where they stand
 #ifndef LIGHTING_DIAGRAM_PAINTS
 #define LIGHTING_DIAGRAM_PAINTS

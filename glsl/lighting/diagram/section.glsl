@@ -1,7 +1,7 @@
 // lighting/diagram/section.glsl -- a row of heights as a drawn section of the land.
 //
-//   gives    Section, columns_shown, section_of, on_paper, node_on_paper, column_before, ground_above,
-//            surface_cover
+//   gives    Section, columns_shown, section_of, on_paper, node_on_paper, column_before,
+//            ground_above, surface_cover
 //   needs    lighting/diagram/ink.glsl; the texture comes as an argument, no uniform of its own
 //   units    metres of the land, pixels of the picture
 //   source   none: a picture of numbers
@@ -30,7 +30,8 @@ ivec2 columns_shown(int first, int last, int columns) {
     return ivec2(from, max(to, from + 1));
 }
 
-Section section_of(int row, int columns, ivec2 shown, float spacing, float relief, float lowest, float foot, vec2 size) {
+Section section_of(int row, int columns, ivec2 shown, float spacing, float relief, float lowest,
+                   float foot, vec2 size) {
     float scale = size.x / (float(shown.y - shown.x) * max(spacing, 1e-6));
     vec2 corner = vec2(float(shown.x) * spacing, lowest - foot * size.y / scale);
     return Section(row, columns - 1, spacing, relief, corner, scale);

@@ -1,4 +1,4 @@
-// lighting/horizons/course.glsl -- how a direction crosses a grid: row after row, drifting a part of a texel sideways.
+// lighting/horizons/course.glsl -- how a direction crosses a grid.
 //
 //   gives    Course, course_towards, drifted, beside_of, texel_of, pairs_of, pair_towards
 //   needs    maths/angle.glsl
@@ -7,6 +7,8 @@
 //   source   the sweep along lines: Timonen and Westerholm 2010, "Scalable Height Field
 //            Self-Shadowing", section 3; the eight directions: Belaiche 2010, section 3.4
 //   tested   tests/glsl/test_horizons.py, against angles in float64
+//
+// It goes row after row, and drifts a part of a texel sideways.
 //
 // A row is a line of texels across the axis that the direction follows more. Rows are counted
 // towards the direction from the land's far edge. A line of sight drifts drift / 65536 texels
@@ -52,7 +54,8 @@ int drifted(Course course, int row) {
 
 // How far beside the middle of that texel it is there: -0.5 to 0.5.
 float beside_of(Course course, int row) {
-    return float((row - course.middle) * course.drift - (drifted(course, row) << 16)) * (1.0 / 65536.0);
+    return float((row - course.middle) * course.drift - (drifted(course, row) << 16))
+            * (1.0 / 65536.0);
 }
 
 // The texel of a row.

@@ -2,7 +2,8 @@
 //
 //   gives    above_horizon, horizon_over_slope, sector_shape, sky_of_sector, thrown_back
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    tangents of elevations and slopes: rises over runs; shares of what an open, even sky gives
+//   units    tangents of elevations and slopes: rises over runs; shares of what an open, even sky
+//            gives
 //   source   Belaiche 2010, section 3.4, eqs 3.11 to 3.15, after Stewart and Langer 1997, "Towards
 //            Accurate Recovery of Shape from Shading under Diffuse Lighting"
 //   tested   tests/glsl/test_sky.py, against quadrature

@@ -14,16 +14,20 @@
 #pragma kernel(output = "range:rg32f")
 
 uniform sampler2D height; //! input
-uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest") With nothing, 0 and 1 are told without a look at the land
+uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest")
+                          //! With nothing, 0 and 1 are told without a look at the land
 
 vec2 kernel(ivec2 texel) {
     if (sought == 0) return vec2(0.0, 1.0);
     ivec2 land = textureSize(height, 0);
     ivec2 from = ivec2(quotient(texel.x * land.x, size.x), quotient(texel.y * land.y, size.y));
-    ivec2 to = ivec2(quotient((texel.x + 1) * land.x, size.x), quotient((texel.y + 1) * land.y, size.y));
+    ivec2 to = ivec2(quotient((texel.x + 1) * land.x, size.x),
+                     quotient((texel.y + 1) * land.y, size.y));
     vec2 found = NO_RANGE;
     for (int y = from.y; y < to.y; y++) {
-        for (int x = from.x; x < to.x; x++) found = widened(found, vec2(texelFetch(height, ivec2(x, y), 0).r));
+        for (int x = from.x; x < to.x; x++) {
+            found = widened(found, vec2(texelFetch(height, ivec2(x, y), 0).r));
+        }
     }
     return found;
 }

@@ -17,10 +17,13 @@
 uniform sampler2D weights;  //! input("linear")
 uniform sampler2D height;   //! input
 
-uniform int near = 0;       //! menu("grass", "rock", "snow", "path") label("Near layer") What lies near the eye
-uniform int far = 3;        //! menu("grass", "rock", "snow", "path") label("Far layer") What takes its place far away
+uniform int near = 0;       //! menu("grass", "rock", "snow", "path") label("Near layer")
+                            //! What lies near the eye
+uniform int far = 3;        //! menu("grass", "rock", "snow", "path") label("Far layer")
+                            //! What takes its place far away
 uniform float begins = 500.0;  //! log_slider(1, 100000) unit("m") How far away it begins to
-uniform float ends = 1500.0;   //! log_slider(1, 100000) unit("m") How far away nothing of it is left
+uniform float ends = 1500.0;   //! log_slider(1, 100000) unit("m")
+                               //! How far away nothing of it is left
 
 vec4 unit(int layer) {
     return vec4(equal(ivec4(layer), ivec4(0, 1, 2, 3)));
@@ -29,7 +32,8 @@ vec4 unit(int layer) {
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(weights, 0);
     vec4 share = textureLod(weights, (place_on(grid, texel, size) + 0.5) / vec2(grid), 0.0);
-    vec3 place = vec3(share_of_texel(texel, size) * extent, relief * height_at(height, place_on(textureSize(height, 0), texel, size)));
+    vec3 place = vec3(share_of_texel(texel, size) * extent,
+                      relief * height_at(height, place_on(textureSize(height, 0), texel, size)));
     float away = distance(eye, place);
     float gone = clamp((away - begins) / max(ends - begins, 1e-3), 0.0, 1.0);
     // Land that is not a number is nowhere.

@@ -17,10 +17,13 @@ uniform sampler2D grass;   //! input
 uniform sampler2D rock;    //! input
 uniform sampler2D snow;    //! input
 
-uniform float grass_below = 60.0;  //! slider(0, 300) step(1) group("Heights") Nothing but grass below this grey level
-uniform float rock_from = 130.0;   //! slider(0, 300) step(1) group("Heights") No grass from here up
+uniform float grass_below = 60.0;  //! slider(0, 300) step(1) group("Heights")
+                                   //! Nothing but grass below this grey level
+uniform float rock_from = 130.0;   //! slider(0, 300) step(1) group("Heights")
+                                   //! No grass from here up
 uniform float rock_below = 180.0;  //! slider(0, 300) step(1) group("Heights") No snow below this
-uniform float snow_from = 220.0;   //! slider(0, 300) step(1) group("Heights") Nothing but snow from here up
+uniform float snow_from = 220.0;   //! slider(0, 300) step(1) group("Heights")
+                                   //! Nothing but snow from here up
 
 vec4 nearest(sampler2D field, ivec2 texel) {
     return texelFetch(field, ivec2(place_on(textureSize(field, 0), texel, size) + 0.5), 0);

@@ -25,8 +25,11 @@ uniform sampler2D snow;     //! input
 uniform sampler2D path;     //! input
 uniform sampler2D means;    //! input
 
-uniform int blend = 0;           //! menu("even", "by heights") group("Blend") How materials mix where they meet: as in a mist, or what stands higher comes through
-uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend") How strictly heights decide; 0 is even
+uniform int blend = 0;           //! menu("even", "by heights") group("Blend")
+                                 //! How materials mix where they meet: as in a mist, or what
+                                 //! stands higher comes through
+uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend")
+                                 //! How strictly heights decide; 0 is even
 
 vec3 nearest(sampler2D field, ivec2 texel) {
     return texelFetch(field, ivec2(place_on(textureSize(field, 0), texel, size) + 0.5), 0).rgb;

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.model import Lesson, Words
+from playground.lessons.model import Lesson, Markdown
 from playground.live import theme
 from playground.live.draw import button, pushed_id, styled
 from playground.live.lesson.markdown_runs import written
@@ -36,7 +36,7 @@ class Page:
         """Return a label of the interface."""
         return labels_in(self.reading.language)[key].format(*given)
 
-    def text(self, words: Words, *, size: float = TEXT, dim: bool = False) -> None:
+    def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
         if words:
             ink = theme.packed(theme.DIM if dim else theme.INK)

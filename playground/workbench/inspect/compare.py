@@ -15,7 +15,8 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.plan import Plan, repeats_of
+from playground.engine.plan import Plan
+from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 from playground.workbench.edits import Draft
@@ -262,8 +263,7 @@ class Compare:
 @contextmanager
 def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     """Draw something else, and have the engine tell of the picture before it all the same."""
-    ran, texels, times, triangles = engine.ran, engine.texels, engine.times, engine.triangles
-    runs, profiling = engine.runs.copy(), engine.profiling
+    record, runs, profiling = engine.record, engine.runs.copy(), engine.profiling
     engine.profiling = False
     try:
         yield
@@ -273,8 +273,7 @@ def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
             _drawn(engine, plan.sketch, plan, plan.steps)
         finally:
             engine.profiling = profiling
-            engine.ran, engine.texels, engine.times = ran, texels, times
-            engine.runner.draws.drawn = triangles
+            engine.record = engine.record.counted_as(record)
             engine.runs.clear()
             engine.runs.update(runs)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from playground.engine.plan import repeated_in
+from playground.engine.planner import repeated_in
 from playground.lessons.model import Scene
 from playground.sketch.flatten import flatten
 from playground.sketch.map_sketch import USE, Map

@@ -1,0 +1,95 @@
+"""Record what the last frame was made from, what it gave and what its making took."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+from playground.engine.cache_keys import Keys
+from playground.engine.plan import Plan
+from playground.engine.results import Result
+from playground.engine.runner import Runner
+
+
+@dataclass
+class FrameRecord:
+    """One frame; before the first there is no plan."""
+
+    plan: Plan | None = None
+    keys: Keys = field(default_factory=Keys)
+    results: Mapping[str, Result] = field(default_factory=dict)  # by path; valid until the next frame
+    ran: list[str] = field(default_factory=list)  # paths of the passes that ran, in order
+    texels: int = 0  # computed
+    times: dict[str, float] = field(default_factory=dict)  # [ms] of each pass that ran, while profiling
+    triangles: int = 0  # drawn; of what is cached, none
+
+    def plus(self, before: FrameRecord) -> FrameRecord:
+        """Return the record with the counts of an earlier drawing of the same frame added."""
+        return replace(
+            self,
+            ran=[*before.ran, *(path for path in self.ran if path not in before.ran)],
+            texels=before.texels + self.texels,
+            times={p: before.times.get(p, 0.0) + self.times.get(p, 0.0) for p in before.times | self.times},
+            triangles=before.triangles + self.triangles,
+        )
+
+    def counted_as(self, other: FrameRecord) -> FrameRecord:
+        """Return the record with the counts of another frame."""
+        return replace(self, ran=other.ran, texels=other.texels, times=other.times, triangles=other.triangles)
+
+
+class Recorded:
+    """Whatever draws frames, as far as the last one is concerned."""
+
+    def __init__(self) -> None:
+        self.record = FrameRecord()  # of the last frame
+
+    @property
+    def plan(self) -> Plan | None:
+        """The plan of the last frame."""
+        return self.record.plan
+
+    @property
+    def results(self) -> Mapping[str, Result]:
+        """The textures of the last frame, by path; valid until the next."""
+        return self.record.results
+
+    @property
+    def ran(self) -> list[str]:
+        """The paths of the passes that ran for the last frame, in order."""
+        return self.record.ran
+
+    @property
+    def texels(self) -> int:
+        """How many texels were computed for the last frame."""
+        return self.record.texels
+
+    @property
+    def times(self) -> dict[str, float]:
+        """How long each pass of the last frame ran [ms], while profiling."""
+        return self.record.times
+
+    @property
+    def triangles(self) -> int:
+        """How many triangles were drawn for the last frame; of what is cached, none."""
+        return self.record.triangles
+
+
+class FrameSource(Protocol):
+    """What draws frames, as far as those need it that look at the last one."""
+
+    @property
+    def record(self) -> FrameRecord:
+        """The last frame's."""
+
+    @property
+    def runner(self) -> Runner:
+        """What runs the passes, with its context and its pool of textures."""
+
+    def borrowed(self) -> AbstractContextManager[None]:
+        """Lend the context, made current."""
+
+    def recall(self, plan: Plan) -> None:
+        """Make an earlier frame the last one again."""

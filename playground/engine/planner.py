@@ -1,0 +1,533 @@
+"""Make a sketch concrete: sizes, counts, files, the terrain's metres. Still no OpenGL.
+
+A plan is made whole once for a graph of passes. Where only values have changed since, the passes
+whose values they are get them, and the rest of the plan stays; it is made whole again where a
+size or a count names a changed value or the time, or where the terrain's file is another one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from numbers import Integral, Real
+from pathlib import Path
+
+from playground.engine.between import between_of
+from playground.engine.error_place import placed
+from playground.engine.files import find_file
+from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node
+from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.paths import shown
+from playground.sketch import expressions
+from playground.sketch.assign import resolve
+from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flatten import flatten
+from playground.sketch.identity import Same
+from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.repeats import repeated_path, repeated_paths
+from playground.sketch.variant_check import INSIDE
+from playground.sketch.wiring import inner, output_names, target_of
+from playground.terrain.camera import Eye, look
+from playground.terrain.sources import Land, source_kind
+
+DEFAULT_LAND = (513, 513)
+DEFAULT_EXTENT = 10_240.0
+DEFAULT_RELIEF = 1_800.0
+MAX_REPEAT = 1_000_000
+_MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """What a plan is made for, besides a graph, its values, the camera and the time."""
+
+    frame_size: tuple[int, int]
+    stopped: tuple[tuple[str, int], ...]  # repeats that are stopped early: steps to run, by path
+    fills: bool
+    compute: bool
+    varies: bool  # keyframes set parameters, and so perhaps counts of steps
+    terrain: Land  # what the sketch says of it
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A plan, and what it would be made anew for."""
+
+    plan: Plan
+    values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
+    named: frozenset[str]  # paths of the values that a size or a count names
+    by_time: bool  # one of them names the time
+    refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+
+
+class Planner:
+    """Makes plans, and remembers the last of each graph."""
+
+    def __init__(self) -> None:
+        self.made_whole = 0  # plans that were not made of an earlier one
+        self._plans: OrderedDict[object, _Known] = OrderedDict()
+
+    def plan(
+        self,
+        sketch: Sketch,
+        *,
+        frame_size: tuple[int, int],
+        time: float = 0.0,
+        variants: Collection[str] = (),
+        steps: Mapping[str, int] | None = None,
+        wanted: str = "",
+        interpolated: bool | None = None,
+        largest: int = LARGEST_SIDE,
+    ) -> Plan:
+        """Make a plan as ``make_plan`` does."""
+        size, seconds = _pixels(frame_size, largest), _seconds(time)
+        varies = any(keyframe.values for keyframe in sketch.keyframes)
+        sketch = sketch.at(seconds)
+        stopped = {repeated_in(sketch, path): _steps(path, count) for path, count in (steps or {}).items()}
+        fills = not wanted if interpolated is None else interpolated
+        terrain = Land(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
+        request = _Request(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
+        place = (Same(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
+        known = self._plans.pop(place, None)
+
+        def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
+            flat = flatten(
+                sketch,
+                variants=variants,
+                opened=(wanted,) if wanted else (),
+                stopped=tuple(stopped),
+                refused=tuple(refused),
+                before=known.plan.flat if known else None,
+            )
+            return _Planning(sketch, flat, request, seconds, known)
+
+        found = planning(known.refusals, known).renewed() if known else None
+        if found is None:
+            self.made_whole += 1
+            attempt = planning(())
+            refusals = attempt.refusals()
+            if refusals:
+                plain = planning(refusals).whole()
+                named, by_time = plain.named | attempt.named, plain.by_time or attempt.by_time
+                found = replace(plain, named=named, by_time=by_time, refusals=refusals)
+                lacking = (*found.plan.lacking, *refusals.values())
+                found = replace(found, plan=replace(found.plan, lacking=lacking))
+            else:
+                found = attempt.whole()
+        self._plans[place] = found
+        while len(self._plans) > _MOST_PLANS:
+            self._plans.popitem(last=False)
+        return found.plan
+
+
+def make_plan(
+    sketch: Sketch,
+    *,
+    frame_size: tuple[int, int],
+    time: float = 0.0,
+    variants: Collection[str] = (),
+    steps: Mapping[str, int] | None = None,
+    wanted: str = "",
+    interpolated: bool | None = None,
+    largest: int = LARGEST_SIDE,
+) -> Plan:
+    """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
+
+    ``variants`` are the kinds of fast variants that may replace techniques, but not
+    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+    path (that of a technique will do where one pass inside it repeats), and no later than they
+    end unless their number changes with time or keyframes. What a stopped pass has not reached is
+    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
+    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
+    kernel's header.
+    """
+    return Planner().plan(
+        sketch,
+        frame_size=frame_size,
+        time=time,
+        variants=variants,
+        steps=steps,
+        wanted=wanted,
+        interpolated=interpolated,
+        largest=largest,
+    )
+
+
+def repeated_in(sketch: Sketch, path: str) -> str:
+    """Return the path of the repeated pass that a path stands for, or raise ``SketchError``.
+
+    It is the path itself, or that of the only pass that repeats inside a technique.
+    """
+    nodes = flatten(sketch).nodes
+    found = repeated_path(str(path), nodes)
+    if found is None:
+        hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
+        raise SketchError(f"steps: no repeated pass '{path}' in sketch {sketch.name}{hint}")
+    return found
+
+
+def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
+    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
+    found: dict[str, int] = {}
+    for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
+        if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
+            found.setdefault(node.path, node.whole)
+    return found
+
+
+def _pixels(size: object, largest: int) -> tuple[int, int]:
+    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
+    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
+        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
+    width, height = int(found[0]), int(found[1])
+    if not (1 <= width <= largest and 1 <= height <= largest):
+        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
+    return width, height
+
+
+def _seconds(time: object) -> float:
+    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
+        raise ParameterError(f"time {time!r}: expected a number of seconds")
+    return float(time)
+
+
+def _steps(path: str, count: object) -> int:
+    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
+        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
+    return int(count)
+
+
+def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
+    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
+    flat = flatten(sketch)
+    return _accepted_by(flat, (least, least))
+
+
+def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
+    for leaf in flat.leaves:
+        at_land_size = leaf.spec.size is None and leaf.path.partition(".")[0] != "view"
+        if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
+            size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
+    return size
+
+
+def _sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
+    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
+    if leaf.kernel.kind == "compute":
+        return leaf.path, leaf.kernel.own_accepts
+    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
+    is_variant = inside and flat.specs[path].technique.variants
+    return (path, leaf.kernel.accepts) if is_variant else (path, "")
+
+
+class _Planning:
+    """One plan being made; ``known`` is the last of the same graph, made for the same request."""
+
+    def __init__(
+        self, sketch: Sketch, flat: Flat, request: _Request, time: float, known: _Known | None
+    ) -> None:
+        self.sketch = sketch
+        self.flat = flat
+        self.request = request
+        self.time = time
+        self.stopped = dict(request.stopped)
+        self.known = known if known and known.plan.flat.shape is flat.shape else None
+        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
+        self.named: set[str] = set()
+        self.by_time = False
+        self._sizes: dict[str, tuple[int, int]] = {}
+        self._open: list[str] = []
+        self._values: dict[str, Mapping[str, Value]] = {}
+        before = self.known.values if self.known else {}
+        same = self.known.plan.flat.leaves if self.known else ()
+        for leaf, earlier in zip_longest(flat.leaves, same):
+            values = before[leaf.path] if leaf is earlier else {}
+            if leaf is not earlier or leaf.kernel.file_parameters:
+                now = self._with_files(leaf)  # another file may have come to stand before the one known
+                values = values if values == now else now
+            self._values[leaf.path] = values
+        self.land = self._land()
+
+    def renewed(self) -> _Known | None:
+        """Return the known plan with the values of now; None where it has to be made whole."""
+        known = self.known
+        if known is None or known.plan.land != self.land or (known.by_time and known.plan.time != self.time):
+            return None
+        plan, now, before = known.plan, self.flat.values, known.plan.flat.values
+        if [path for path in known.named if now[path] is not before[path]]:
+            return None
+        eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
+        nodes = tuple([self._renewed(node) for node in plan.nodes])
+        plan = replace(plan, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=self.time)
+        return replace(known, plan=plan, values=self._values)
+
+    def _renewed(self, node: PlanNode) -> PlanNode:
+        if isinstance(node, Turns):
+            body = tuple([self._renewed(inside) for inside in node.body])
+            same = all([now is before for now, before in zip(body, node.body, strict=True)])
+            return node if same else replace(node, body=body)
+        values = self._values[node.path]
+        return node if node.values is values else replace(node, values=values)
+
+    def whole(self) -> _Known:
+        """Make the plan from nothing."""
+        # What has the terrain's own size first: the others' sizes follow from it.
+        for leaf in self.flat.leaves:
+            if leaf.spec.size is None:
+                self._refuse(leaf, self._size_of_leaf(leaf))
+        nodes = tuple(self._node(node) for node in self.flat.nodes)
+        lacking = tuple(
+            f"{path or 'the sketch'} does without compute shaders, which are not here: "
+            f"see {shown(self.flat.graphs[path].path)}"
+            for path in self.lacking
+        )
+        plan = Plan(
+            sketch=self.sketch,
+            nodes=nodes,
+            flat=self.flat,
+            land=self.land,
+            eye=self._eye(),
+            frame_size=self.request.frame_size,
+            time=self.time,
+            steps=self.stopped,
+            interpolated=self.request.fills,
+            lacking=lacking,
+        )
+        return _Known(plan, self._values, frozenset(self.named), self.by_time, {})
+
+    def refusals(self) -> dict[str, str]:
+        """Return a sentence for each technique whose fast variant does not take its size, by its path."""
+        found: dict[str, str] = {}
+        for leaf in self.flat.leaves:
+            path, accepts = _sizes_of_variant(leaf, self.flat)
+            if accepts and path not in found:
+                size = self._size_of_leaf(leaf)
+                if not expressions.is_accepted(accepts, size):
+                    found[path] = (
+                        f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
+                        f"not {size[0]} x {size[1]}; the plain form runs"
+                    )
+        return found
+
+    def _eye(self) -> Eye:
+        extent, relief = self.land.extent, self.land.relief
+        assert extent is not None and relief is not None
+        return look(self.sketch.camera, extent, relief, self.request.frame_size)
+
+    def _node(self, node: Node) -> PlanNode:
+        if isinstance(node, Loop):
+            prefix = node.path.rpartition(".")[0]
+            whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
+            count = self._stopped(node.path, whole, node.repeat)
+            body = tuple(self._node(inside) for inside in node.body)
+            return Turns(node.path, count, whole, body, node.feedback, node.spec)
+        kernel = node.kernel
+        size = self._size_of_leaf(node)
+        values = self._values[node.path]
+        self._refuse(node, size)
+        names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
+        self._note_names(node)
+        whole = self._count(kernel.repeat, node.path, kernel, names)
+        # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
+        repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
+        between = between_of(node, repeat, whole, names) if self.request.fills else None
+        return Step(
+            path=node.path,
+            kernel=kernel,
+            values=values,
+            inputs=node.inputs,
+            size=size,
+            repeat=repeat,
+            whole=whole,
+            spec=node.spec,
+            between=between,
+        )
+
+    def _note_names(self, leaf: Leaf) -> None:
+        """Note what a kernel's own counts name."""
+        texts = [text for text in (leaf.kernel.repeat, leaf.kernel.stride) if text not in ("", "1")]
+        names = frozenset[str]().union(*map(expressions.names_in, texts))
+        self.by_time |= "time" in names
+        self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
+
+    def _stopped(self, path: str, whole: int, repeat: str) -> int:
+        """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
+        asked = self.stopped.get(path, whole)
+        if asked > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
+        return min(asked, whole)
+
+    def _count(
+        self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
+    ) -> int:
+        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
+        if text == "1":
+            return 1
+        try:
+            count = expressions.evaluate(text, names)
+        except ExpressionError as error:
+            raise owner.error(f"pass '{name}': repeat {error}") from None
+        if not 0 <= count <= MAX_REPEAT:
+            raise owner.error(
+                f"pass '{name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
+            )
+        return count
+
+    def _refuse(self, leaf: Leaf, size: tuple[int, int]) -> None:
+        """Raise ``SketchError`` for a size that a kernel does not take, with the nearest that it takes."""
+        if not leaf.kernel.accepts or expressions.is_accepted(leaf.kernel.accepts, size):
+            return
+        near = expressions.nearest_accepted(leaf.kernel.accepts, size)
+        listed = " or ".join(f"{x} x {y}" for x, y in near)
+        raise leaf.spec.error(
+            f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
+            f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
+        )
+
+    def _land(self) -> Land:
+        known = Land()
+        for leaf in self.flat.leaves:
+            if leaf.kernel.kind == "source":
+                self._check_source(leaf)
+                try:
+                    known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
+                if known != Land():
+                    break
+        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
+        extent = self.sketch.extent or known.extent
+        if extent is None:
+            shape = known.size or size
+            ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
+            extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
+        relief = self.sketch.relief if self.sketch.relief is not None else known.relief
+        base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
+        return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
+
+    def _check_source(self, leaf: Leaf) -> None:
+        try:
+            kind = source_kind(leaf.kernel.registry)
+        except PlaygroundError as error:
+            raise leaf.spec.error(str(error)) from None
+        missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
+        if missing:
+            raise leaf.spec.error(
+                f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}"
+            )
+
+    def _with_files(self, leaf: Leaf) -> dict[str, Value]:
+        values = dict(leaf.values)
+        for parameter in leaf.kernel.parameters if leaf.kernel.file_parameters else ():
+            if parameter.widget.kind == "file":
+                text = str(values[parameter.name])
+                try:
+                    path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
+                values[parameter.name] = str(path)
+        return values
+
+    def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
+        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
+        path = leaf.path
+        technique: Technique = self.flat.graphs.get(path, leaf.kernel)
+        while isinstance(technique, Graph):
+            where = target_of(technique, output_names(technique)[0]).partition(":")[0]
+            path, found = f"{path}.{where}", inner(technique, where)
+            if found is None:
+                break
+            technique = found
+        return self.size_of(path)
+
+    def size_of(self, path: str) -> tuple[int, int]:
+        """Return the size in texels of a pass at any level."""
+        if path in self._sizes:
+            return self._sizes[path]
+        spec = self.flat.specs[path]
+        prefix = path.rpartition(".")[0]
+        if path in self._open:
+            raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
+        self._open.append(path)
+        base = self._base(path, prefix)
+        size = base
+        if spec.size is not None:
+            try:
+                names = self._names(prefix, spec)
+                size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
+            except ExpressionError as error:
+                raise spec.error(f"pass '{spec.name}': size {error}") from None
+            if not all(1 <= side <= LARGEST_SIDE for side in size):
+                raise spec.error(
+                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
+                    f"1 to {LARGEST_SIDE} a side were expected"
+                )
+        self._open.pop()
+        self._sizes[path] = size
+        return size
+
+    def _base(self, path: str, prefix: str) -> tuple[int, int]:
+        if prefix:
+            return self.size_of(prefix)
+        assert self.land.size is not None
+        return self.request.frame_size if path == "view" else self.land.size
+
+    def _names(self, prefix: str, spec: PassSpec) -> Names:
+        return Names(self, prefix, spec)
+
+
+class Names:
+    """What names stand for in an expression of a pass: sizes, and the parameters around it."""
+
+    def __init__(self, planner: _Planning, prefix: str, spec: PassSpec) -> None:
+        self.planner = planner
+        self.prefix = prefix
+        self.spec = spec
+
+    def __call__(self, name: str) -> Number:
+        """Return the number of a name, or raise ``KeyError``."""
+        planner = self.planner
+        if name == "time":
+            planner.by_time = True
+            return planner.time
+        axes = {"x": 0, "y": 1}
+        head, _, axis = name.rpartition(".")
+        if axis in axes and head == "size":
+            path = f"{self.prefix}.{self.spec.name}" if self.prefix else self.spec.name
+            return planner._base(path, self.prefix)[axes[axis]]
+        if axis in axes and head.endswith(".size"):
+            return planner.size_of(self._path_of(head.removesuffix(".size")))[axes[axis]]
+        graph = planner.flat.graphs[self.prefix]
+        try:
+            target = resolve(graph, name)[0].path
+        except PlaygroundError:
+            if name != "compute":
+                raise KeyError(name) from None
+            if not planner.request.compute:
+                planner.lacking[self.prefix] = None
+            return int(planner.request.compute)
+        path = f"{self.prefix}.{target}" if self.prefix else target
+        planner.named.add(path)
+        value = planner.flat.values[path]
+        if not isinstance(value, int | float):
+            raise KeyError(name)
+        return value
+
+    def _path_of(self, name: str) -> str:
+        """Return the path of the pass, or of what feeds the technique's input, that a name stands for."""
+        flat = self.planner.flat
+        path = f"{self.prefix}.{name}" if self.prefix else name
+        if path in flat.specs:
+            return path
+        source = flat.wires[self.prefix][name]
+        if isinstance(source, Fed):
+            output = dict(flat.specs[source.loop].feedback)[source.name]
+            source = flat.outputs[source.loop][output]
+        if source is None:
+            raise KeyError(name)
+        return source.path

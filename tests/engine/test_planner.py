@@ -1,0 +1,155 @@
+"""A plan of which only values changed is made of the one before, and says what one made from nothing says."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine import planner as planner_module
+from playground.engine.cache import Cache
+from playground.engine.engine import Engine
+from playground.engine.plan import Plan, every_node
+from playground.engine.planner import Planner, make_plan
+from playground.errors import DataError
+from playground.images.files import write_values
+from playground.sketch.assign import resolve, shown_parameters
+from playground.sketch.load import load
+from playground.sketch.model import Sketch, Value
+
+SIZE = (64, 36)
+SKETCHES = (
+    "jacksboro",
+    "mixed",
+    "fault_formation",
+    "splat_many",
+    "diamond_square_steps",
+    "sun_flight",
+    "delaunay",
+)
+
+
+def said(plan: Plan) -> list[object]:
+    """Return all that a plan says; matrices by their numbers."""
+    eye = plan.eye.clip_from_world.tolist(), plan.eye.position, plan.eye.target
+    return [
+        plan.sketch,
+        list(every_node(plan.nodes)),
+        plan.land,
+        eye,
+        plan.frame_size,
+        plan.time,
+        plan.lacking,
+    ]
+
+
+def other_values(sketch: Sketch) -> list[tuple[str, Value]]:
+    """Return a value for each parameter with a range or choices, other than its default."""
+    found: list[tuple[str, Value]] = []
+    for shown in shown_parameters(sketch):
+        parameter, widget = shown.parameter, shown.parameter.widget
+        if parameter.name == "packing":
+            continue  # another than the file has
+        if parameter.type == "bool":
+            found.append((shown.path, not parameter.default))
+        elif widget.kind == "menu":
+            found.append((shown.path, (int(parameter.default) + 1) % len(widget.choices)))  # type: ignore[arg-type]
+        elif (
+            parameter.type in ("float", "int", "uint") and widget.high is not None and widget.low is not None
+        ):
+            middle = (widget.low + widget.high) / 2
+            found.append((shown.path, middle if parameter.type == "float" else int(middle)))
+    return found
+
+
+@pytest.mark.parametrize("name", SKETCHES)
+def test_a_renewed_plan_is_the_one_made_from_nothing(name):
+    sketch, planner = load(name), Planner()
+    planner.plan(sketch, frame_size=SIZE)
+    for number, (path, value) in enumerate(other_values(sketch)[:40]):
+        changed = sketch.with_values({path: value})
+        time = 0.5 * (number % 3)
+        assert said(planner.plan(changed, frame_size=SIZE, time=time)) == said(
+            make_plan(changed, frame_size=SIZE, time=time)
+        ), path
+    assert planner.made_whole < 41, "some were renewed"
+
+
+def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch):
+    planned: Counter[str] = Counter()
+    plan_node = planner_module._Planning._node
+
+    def counting(self, node):
+        planned[node.path] += 1
+        return plan_node(self, node)
+
+    monkeypatch.setattr(planner_module._Planning, "_node", counting)
+    sketch, planner = load(""), Planner()
+    first = planner.plan(sketch, frame_size=SIZE)
+    assert set(planned) == {step.path for step in first.walk()} and max(planned.values()) == 1
+    planned.clear()
+    for azimuth in range(20):
+        second = planner.plan(sketch.with_values({"light.sun": (100.0 + azimuth, 20.0)}), frame_size=SIZE)
+    assert not planned and planner.made_whole == 1
+    moved = {
+        step.path for step, before in zip(second.walk(), first.walk(), strict=True) if step is not before
+    }
+    sun = {target.path.rpartition(".")[0] for target in resolve(sketch.graph, "light.sun")}
+    assert moved == sun, "only passes that have the value are other ones"
+
+
+def test_a_value_that_a_count_names_plans_anew():
+    sketch, planner = load("fault_formation"), Planner()
+    first = planner.plan(sketch, frame_size=SIZE)
+    named = next(iter(planner._plans.values())).named
+    counts = [path for path in named if path.startswith("height.")]
+    assert counts, "its number of faults is the number of its steps"
+    for path in counts:
+        more = sketch.with_values({path: 7})
+        plan = planner.plan(more, frame_size=SIZE)
+        assert said(plan) == said(make_plan(more, frame_size=SIZE)) != said(first)
+    assert planner.made_whole == 1 + len(counts)
+
+
+def test_another_file_of_the_terrain_plans_anew(tmp_path):
+
+    def rise(side: int) -> None:
+        write_values(
+            tmp_path / "rise.npy", np.linspace(0, 1, side * side, dtype=np.float32).reshape(side, side)
+        )
+
+    rise(9)
+    (tmp_path / "sketch.toml").write_text(
+        'format = 1\n[[pass]]\nname = "height"\n'
+        'use = "generation/heightmap"\nset = { elevation = "rise.npy" }\n'
+    )
+    sketch, planner = load(tmp_path), Planner()
+    assert planner.plan(sketch, frame_size=SIZE).land.size == (9, 9)
+    rise(17)
+    assert planner.plan(sketch, frame_size=SIZE).land.size == (17, 17)
+    Path(tmp_path / "rise.npy").unlink()
+    with pytest.raises(DataError, match="there is no such file"):
+        planner.plan(sketch, frame_size=SIZE)
+
+
+def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
+    weighed: Counter[str] = Counter()
+    weigh = Cache._weigh
+
+    def counting(self, key):
+        weighed[key] += 1
+        weigh(self, key)
+
+    sketch = load("")
+    with Engine(ctx) as engine:
+        engine.render(sketch, size=SIZE)
+        monkeypatch.setattr(Cache, "_weigh", counting)
+        engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
+        passes = len(list(engine.plan.walk()))
+        # What ran is weighed as it is put away as well, once more where something stood under its key.
+        assert sum(weighed.values()) <= passes + 2 * len(engine.ran)
+        weighed.clear()
+        engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
+        assert engine.ran == [] and sum(weighed.values()) <= passes
