@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob
 from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
@@ -137,7 +137,7 @@ class Captures:
             raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
         return size
 
-    def job(self) -> Job:
+    def job(self) -> CaptureJob:
         """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
         wish, session = self.wish, self.session
         if session.sketch is None:
@@ -157,7 +157,7 @@ class Captures:
             swept(at, [read_sweep(at, text) for text in sweeps])
             if steps:
                 raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
-        return Job(
+        return CaptureJob(
             kind=wish.kind,
             sketch=sketch,
             folder=self.folder,

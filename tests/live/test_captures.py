@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from playground.api import headless
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, do
 from playground.capture.job_process import JobProcess
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
@@ -235,12 +235,9 @@ def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
 
 
 def test_a_job_in_its_process_gives_the_bytes_of_this_one(bench: Bench) -> None:
-    job = Job(
-        kind=PICTURE,
-        sketch=wishing(bench, Wish()).job().sketch,
-        folder=bench.captures.folder,
-        size=(64, 64),
-        fps=Fraction(30),
+    sketch = wishing(bench, Wish()).job().sketch
+    job = CaptureJob(
+        kind=PICTURE, sketch=sketch, folder=bench.captures.folder, size=(64, 64), fps=Fraction(30)
     )
     working = JobProcess(job, software=bench.session.engine.info.software)
     end = time.monotonic() + LIMIT

@@ -271,6 +271,20 @@ def test_a_library_file_and_a_lonely_variant_are_sentences(folder):
     assert load(folder.path / "land.comp").graph.find("height").technique.variants[0].kind == "compute"
 
 
+PLAIN_COMPUTE = """#version 430
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba8, binding = 0) uniform image2D picture;
+void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
+"""
+
+
+@pytest.mark.parametrize("name", ["land.comp", "sketch.comp"])
+def test_a_plain_shader_opens_itself_whatever_stands_beside_it(folder, name):
+    folder.sketch('[[pass]]\nname = "height"\nuse = "generation/fbm"\n')
+    found = load(folder.write(name, PLAIN_COMPUTE))
+    assert found.file.endswith(name) and found.graph.passes[0].technique.kind == "plain_compute"
+
+
 # Mistakes
 
 P = PASS

@@ -56,7 +56,8 @@ void main() {
         do {
             int end = min(stop, column_end(rows, y, o, fine));
             float middle = 0.5 * float(y + end - 1);
-            Column piece = column_add(column_moved(smooth_part, middle - around), rows, middle, o, fine);
+            Column piece = column_moved(smooth_part, middle - around);
+            piece = column_add(piece, rows, middle, o, fine);
             do {
                 store(x, y, column_height(piece, float(y) - middle));
                 y++;
