@@ -15,7 +15,7 @@ from playground.engine.disk_caching import REST as LAND_RESTS
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
-from playground.workbench import disk_caching as storing_module
+from playground.workbench import disk_caching as module
 from playground.workbench.bench import Bench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.inspect.thumbnails import Thumbnails
@@ -116,7 +116,7 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
         return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(storing_module, "DiskCaching", keeping)
+    monkeypatch.setattr(module, "DiskCaching", keeping)
     made.open()
     yield made
     made.close()
