@@ -9,7 +9,7 @@
         height = engine.read(sketch, "height")               # float32, row 0 in the south
         evening = sketch.with_values({"light.sun": (250.0, 12.0)})
         square = playground.load("diamond_square")
-        for turn, values in engine.steps(square, "height"):  # a repeated kernel, turn by turn
+        for step, values in engine.steps(square, "height"):  # a repeated kernel, step by step
             ...
 
 A sketch is a frozen value; setting a parameter makes a new one. Importing this opens

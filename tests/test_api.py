@@ -11,17 +11,9 @@ import pytest
 
 import playground
 
-SKETCH = """
-format = 1
-size = 65
-[[pass]]
-name = "height"
-use = "generation/diamond_square"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+from .sketch_texts import map_of_height
+
+SKETCH = "\nformat = 1\nsize = 65\n" + map_of_height("generation/diamond_square", channel="red")
 
 
 @pytest.fixture
@@ -106,9 +98,9 @@ def test_one_call_renders_a_shipped_sketch():
         ({"time": "noon"}, "time 'noon': expected a number of seconds"),
         (
             {"steps": {"height.raw": 1.5}},
-            "'height.raw' stops after 1.5 turns; expected a whole number from 0",
+            "'height.raw' stops after 1.5 steps; expected a whole number from 0",
         ),
-        ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 turns; expected a whole number from 0"),
+        ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 steps; expected a whole number from 0"),
     ],
 )
 def test_what_is_asked_wrongly_is_refused_in_a_sentence(engine, sketch, asked, said):

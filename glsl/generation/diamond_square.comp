@@ -1,4 +1,4 @@
-// generation/diamond_square.comp -- diamond-square, two levels at a time, normalised as it is written.
+// generation/diamond_square.comp -- diamond-square, two levels at a time, and normalised.
 //
 //   gives    height, as generation/diamond_square.toml, for 2^n + 1 texels a side
 //   needs    generation/diamond_square/{lattice,order,rows}.glsl, noise/finest.glsl,

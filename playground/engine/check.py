@@ -26,13 +26,19 @@ from playground.engine.standalone import free_name, stage, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.allowed_files import TEXTS, canonical_of, is_variant, root_of
+from playground.sketch.allowed_files import TEXTS, is_variant, root_of
 from playground.sketch.assign import values_of
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
-from playground.sketch.techniques import lonely_variant, nothing_to_run, read_kernel, read_technique
+from playground.sketch.techniques import (
+    lonely_variant,
+    nothing_to_run,
+    read_kernel,
+    read_technique,
+    technique_beside,
+)
 from playground.sketch.unpack import ENDING, is_pack, unpacked
 from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import (
@@ -139,7 +145,7 @@ class _Check:
 
     def run(self) -> FileReport:
         check: Callable[[], None] = self.shader
-        if is_variant(self.path) and canonical_of(self.path) is not None:
+        if technique_beside(self.path) is not None:
             check = self.variant
         elif self.path.suffix == ".toml":
             check = self.technique if is_technique(self.path) else self.sketch
@@ -175,7 +181,7 @@ class _Check:
 
     def variant(self) -> None:
         """Try a fast variant, verified or not."""
-        owner = canonical_of(self.path)
+        owner = technique_beside(self.path)
         assert owner is not None
         technique = self.read(owner)
         own = next((v for v in technique.variants if Path(v.path) == self.path), None)

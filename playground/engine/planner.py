@@ -7,24 +7,24 @@ size or a count names a changed value or the time, or where the terrain's file i
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from numbers import Integral, Real
 from pathlib import Path
 
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
 from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node
+from playground.engine.plan_request import PlanRequest, checked_pixels, checked_seconds, checked_steps
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Fed, Flat, Leaf, Loop, Node, flatten
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flatten import flatten
 from playground.sketch.identity import Same
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
@@ -38,18 +38,6 @@ DEFAULT_EXTENT = 10_240.0
 DEFAULT_RELIEF = 1_800.0
 MAX_REPEAT = 1_000_000
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
-
-
-@dataclass(frozen=True, slots=True)
-class _Request:
-    """What a plan is made for, besides a graph, its values, the camera and the time."""
-
-    frame_size: tuple[int, int]
-    stopped: tuple[tuple[str, int], ...]  # repeats that are stopped early: steps to run, by path
-    fills: bool
-    compute: bool
-    varies: bool  # keyframes set parameters, and so perhaps counts of steps
-    terrain: Land  # what the sketch says of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +71,15 @@ class Planner:
         largest: int = LARGEST_SIDE,
     ) -> Plan:
         """Make a plan as ``make_plan`` does."""
-        size, seconds = _pixels(frame_size, largest), _seconds(time)
+        size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
         varies = any(keyframe.values for keyframe in sketch.keyframes)
         sketch = sketch.at(seconds)
-        stopped = {repeated_in(sketch, path): _steps(path, count) for path, count in (steps or {}).items()}
+        stopped = {
+            repeated_in(sketch, path): checked_steps(path, count) for path, count in (steps or {}).items()
+        }
         fills = not wanted if interpolated is None else interpolated
         terrain = Land(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
-        request = _Request(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
+        request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
         place = (Same(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
         known = self._plans.pop(place, None)
 
@@ -178,28 +168,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
     return found
 
 
-def _pixels(size: object, largest: int) -> tuple[int, int]:
-    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
-        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
-    width, height = int(found[0]), int(found[1])
-    if not (1 <= width <= largest and 1 <= height <= largest):
-        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
-    return width, height
-
-
-def _seconds(time: object) -> float:
-    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
-        raise ParameterError(f"time {time!r}: expected a number of seconds")
-    return float(time)
-
-
-def _steps(path: str, count: object) -> int:
-    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
-        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
-    return int(count)
-
-
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
     """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
     flat = flatten(sketch)
@@ -227,7 +195,7 @@ class _Planning:
     """One plan being made; ``known`` is the last of the same graph, made for the same request."""
 
     def __init__(
-        self, sketch: Sketch, flat: Flat, request: _Request, time: float, known: _Known | None
+        self, sketch: Sketch, flat: Flat, request: PlanRequest, time: float, known: _Known | None
     ) -> None:
         self.sketch = sketch
         self.flat = flat

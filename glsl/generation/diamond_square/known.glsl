@@ -7,7 +7,7 @@
 //   source   Belaiche 2010, section 1.3.2, figures 1.8 to 1.11
 //   tested   tests/glsl/test_diamond_square.py: how many texels each step sets, and which
 //
-// Its steps are those of generation/diamond_square/raw.glsl: both stopped after as many turns
+// Its steps are those of generation/diamond_square/raw.glsl: both stopped after as many steps
 // are one picture of the algorithm on its way.
 #include "generation/diamond_square/lattice.glsl"
 #pragma kernel(output = "phase:r32f", \
