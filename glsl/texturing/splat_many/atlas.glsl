@@ -28,61 +28,34 @@ uniform sampler2D material_14;  //! input("linear", "repeat", "mipmap", "black")
 uniform sampler2D material_15;  //! input("linear", "repeat", "mipmap", "black")
 uniform sampler2D material_16;  //! input("linear", "repeat", "mipmap", "black")
 
+// A tile in a cell `side` texels wide: by a whole level, whose texels are as large as the cell's.
+vec4 of_tile(sampler2D tile, vec2 place, float side) {
+    float level = max(log2(float(textureSize(tile, 0).x) / side), 0.0);
+    return vec4(textureLod(tile, place, floor(level + 0.5)).rgb, 1.0);
+}
+
 vec4 kernel(ivec2 texel) {
     int cell = max(size.x / 4, 1);
     ivec2 which = texel / cell;
     vec2 place = (vec2(texel - which * cell) + 0.5) / float(cell);
     int number = 4 * which.y + which.x;
-    // A whole level: the tile's texels are as large as the cell's.
     float side = float(cell);
     switch (number) {
-    case 0: return vec4(textureLod(material_1, place,
-                                   floor(max(log2(float(textureSize(material_1, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 1: return vec4(textureLod(material_2, place,
-                                   floor(max(log2(float(textureSize(material_2, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 2: return vec4(textureLod(material_3, place,
-                                   floor(max(log2(float(textureSize(material_3, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 3: return vec4(textureLod(material_4, place,
-                                   floor(max(log2(float(textureSize(material_4, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 4: return vec4(textureLod(material_5, place,
-                                   floor(max(log2(float(textureSize(material_5, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 5: return vec4(textureLod(material_6, place,
-                                   floor(max(log2(float(textureSize(material_6, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 6: return vec4(textureLod(material_7, place,
-                                   floor(max(log2(float(textureSize(material_7, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 7: return vec4(textureLod(material_8, place,
-                                   floor(max(log2(float(textureSize(material_8, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 8: return vec4(textureLod(material_9, place,
-                                   floor(max(log2(float(textureSize(material_9, 0).x) / side), 0.0)
-                                         + 0.5)).rgb, 1.0);
-    case 9: return vec4(textureLod(material_10, place,
-                                   floor(max(log2(float(textureSize(material_10, 0).x) / side),
-                                             0.0) + 0.5)).rgb, 1.0);
-    case 10: return vec4(textureLod(material_11, place,
-                                    floor(max(log2(float(textureSize(material_11, 0).x) / side),
-                                              0.0) + 0.5)).rgb, 1.0);
-    case 11: return vec4(textureLod(material_12, place,
-                                    floor(max(log2(float(textureSize(material_12, 0).x) / side),
-                                              0.0) + 0.5)).rgb, 1.0);
-    case 12: return vec4(textureLod(material_13, place,
-                                    floor(max(log2(float(textureSize(material_13, 0).x) / side),
-                                              0.0) + 0.5)).rgb, 1.0);
-    case 13: return vec4(textureLod(material_14, place,
-                                    floor(max(log2(float(textureSize(material_14, 0).x) / side),
-                                              0.0) + 0.5)).rgb, 1.0);
-    case 14: return vec4(textureLod(material_15, place,
-                                    floor(max(log2(float(textureSize(material_15, 0).x) / side),
-                                              0.0) + 0.5)).rgb, 1.0);
+    case 0: return of_tile(material_1, place, side);
+    case 1: return of_tile(material_2, place, side);
+    case 2: return of_tile(material_3, place, side);
+    case 3: return of_tile(material_4, place, side);
+    case 4: return of_tile(material_5, place, side);
+    case 5: return of_tile(material_6, place, side);
+    case 6: return of_tile(material_7, place, side);
+    case 7: return of_tile(material_8, place, side);
+    case 8: return of_tile(material_9, place, side);
+    case 9: return of_tile(material_10, place, side);
+    case 10: return of_tile(material_11, place, side);
+    case 11: return of_tile(material_12, place, side);
+    case 12: return of_tile(material_13, place, side);
+    case 13: return of_tile(material_14, place, side);
+    case 14: return of_tile(material_15, place, side);
     }
-    return vec4(textureLod(material_16, place,
-                           floor(max(log2(float(textureSize(material_16, 0).x) / side), 0.0)
-                                 + 0.5)).rgb, 1.0);
+    return of_tile(material_16, place, side);
 }
