@@ -5,9 +5,9 @@
     │   └── ParameterError         a value or a parameter's name is wrong
     ├── ShaderError                a GLSL text is wrong; one diagnostic a mistake
     ├── DataError                  an image or elevation file cannot be used
-    ├── ContextError               no OpenGL context, or one that cannot do what is asked
+    ├── ContextError               no OpenGL context, or one that lacks what is needed
     │   └── OpenGLFault            OpenGL reports an error of the engine's own doing
-    └── TrialError                 the trial child was stopped
+    └── TrialError                 the sandbox process was stopped
         ├── TrialTimeout           … it took too long
         └── TrialCrash             … it died
 
@@ -89,7 +89,7 @@ class PlaygroundError(Exception):
         super().__init__("\n".join(map(str, found)))
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Cross a process border whole (the trial child sends its errors back)."""
+        """Cross a process border whole (the sandbox process sends its errors back)."""
         return _rebuild, (type(self), self.diagnostics)
 
 
@@ -110,7 +110,7 @@ class DataError(PlaygroundError):
 
 
 class ContextError(PlaygroundError):
-    """There is no OpenGL context, or it cannot do what is asked."""
+    """There is no OpenGL context, or it lacks what is needed."""
 
 
 class OpenGLFault(ContextError):
@@ -118,19 +118,19 @@ class OpenGLFault(ContextError):
 
 
 class TrialError(PlaygroundError):
-    """The trial child was stopped before it could answer."""
+    """The sandbox process was stopped before it could answer."""
 
 
 class TrialTimeout(TrialError):
-    """The trial child took too long and was killed."""
+    """The sandbox process took too long and was killed."""
 
 
 class TrialCrash(TrialError):
-    """The trial child died: the driver or its compiler crashed, or memory ran out."""
+    """The sandbox process died: the driver or its compiler crashed, or memory ran out."""
 
 
 class PlaygroundWarning(UserWarning):
-    """What can be drawn, though not as its author may think: Python's own warnings tell it to a program."""
+    """What can be drawn, but maybe not as its author intends; programs receive it as a Python warning."""
 
 
 class PlainFormWarning(PlaygroundWarning):
@@ -143,7 +143,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
-    """Say which valid name was probably meant, as the tail of a sentence.
+    """Suggest the valid name that was probably meant, as the end of a sentence.
 
     Returns ``""`` when nothing is near and there is nothing to list, else
     ``"; did you mean 'x'?"`` or ``"; there are: a, b, c"``.
