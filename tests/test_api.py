@@ -176,4 +176,4 @@ def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
     names: dict[str, object] = {}
     exec(compile(example, "playground", "exec"), names)
     assert (tmp_path / "terrain.png").is_file()
-    assert names["turn"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"
+    assert names["step"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"
