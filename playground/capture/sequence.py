@@ -14,7 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.api import headless
-from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, telling
+from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_uniforms
 from playground.capture.large import is_large, write_large
 from playground.engine.engine import Engine, opened
 from playground.errors import DataError, ParameterError
@@ -59,7 +59,7 @@ def write_sequence(
 ) -> Written:
     """Write pictures of a film as PNG files, each whole or not at all.
 
-    ``numbers`` are those of the pictures, all of the film's unless told; ``pattern`` names the
+    ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
     files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
     and good is kept. ``done`` is called after each. Raises ``DataError`` in a sentence.
     """
@@ -87,7 +87,7 @@ def write_sequence(
 
 def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) -> None:
     text, time = {MADE_OF: made_of}, film.time(number)
-    with telling(engine, film, number):
+    with frame_uniforms(engine, film, number):
         if is_large(engine, film.sketch, film.size):
             write_large(engine, film.sketch, path, film.size, time=time, steps=film.steps, text=text)
         else:
@@ -127,7 +127,7 @@ def render_sequence(
     if not wanted or min(wanted) < 0 or max(wanted) >= MOST_FRAMES:
         raise ParameterError(f"pictures are numbered from 0 to {MOST_FRAMES - 1}; at least one was expected")
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
-    film = Film(opened(sketch), max(wanted) + 1, rate, size)
+    film = Film(sketch=opened(sketch), count=max(wanted) + 1, fps=rate, size=size)
     if engine is not None:
         return write_sequence(engine, film, pattern, numbers=wanted, resume=resume)
     with headless() as made:

@@ -42,18 +42,18 @@ def check(
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files
-    from playground.engine.sandbox import Trial
+    from playground.engine.sandbox import Sandbox
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)
     failed, skipped = 0, False
     reported: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (
-        Trial(software=renderer.software, device=renderer.device) as trial,
+        Sandbox(software=renderer.software, device=renderer.device) as sandbox,
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root, plain=plain)
+            report = check_file(path, sandbox, root, plain=plain)
             report = replace(report, warnings=tuple(w for w in report.warnings if w not in reported))
             reported |= set(report.warnings)
             failed += not report.ok

@@ -132,7 +132,14 @@ def _make_frames(job: SeriesJob, numbers: range) -> None:
     check_pattern(pattern)
     pixels = job.size or moment.size or DEFAULT_PICTURE
     fps = job.series.fps or Fraction(FPS)
-    film = Film(moment.sketch, numbers[-1] + 1, fps, pixels, moment.time, moment.steps)
+    film = Film(
+        sketch=moment.sketch,
+        count=numbers[-1] + 1,
+        fps=fps,
+        size=pixels,
+        start=moment.time,
+        steps=moment.steps,
+    )
     with job.drawing("drawing", len(numbers)) as (engine, done):
         found = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
     if found.kept:
@@ -151,7 +158,7 @@ def _make_video(job: SeriesJob) -> None:
     )
     quality = job.check_video(pixels, fps)
     with job.drawing("filming", film.count) as (engine, done), _noting_stop():
-        print(write_film(engine, film, series.video, quality=quality, done=done, say=note))
+        print(write_film(engine, film, series.video, quality=quality, done=done, notice=note))
 
 
 def _make_sweep(job: SeriesJob) -> None:
@@ -177,7 +184,7 @@ def _make_sweep(job: SeriesJob) -> None:
                 time=moment.time,
                 quality=quality,
                 done=done,
-                say=note,
+                notice=note,
             )
             print(path)
         return
@@ -186,7 +193,7 @@ def _make_sweep(job: SeriesJob) -> None:
         job.drawing("sweeping", count) as (engine, done),
     ):
         size = job.size or sheet.USUAL_SIZE
-        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, say=note))
+        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, notice=note))
 
 
 def _pattern(output: str, name: str) -> str:

@@ -34,7 +34,7 @@ from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
     from playground.reduce.failures import Finding
-    from playground.reduce.initial_case import Beginning, Question
+    from playground.reduce.initial_case import InitialCase, Question
     from playground.reduce.output import Account
     from playground.reduce.search import Search, State
 
@@ -211,17 +211,17 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
     """Shrink the sketch, and write what is left of it into the folder."""
-    from playground.reduce.initial_case import Bench
+    from playground.reduce.initial_case import CandidateBench
     from playground.reduce.output import claim, plain_texts, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
-    with Bench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as tell:
         beginning = bench.begin()
         probe, found = beginning.probe, beginning.finding
-        # The message of a refusal is its word; of the rest, the details say where and how much.
-        note(found.word if found.messages else f"{found.word}: {found.told}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, tell=tell)
+        # The message of a refusal is its kind; of the rest, the details say where and how much.
+        note(found.kind if found.messages else f"{found.kind}: {found.details}")
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=tell)
         stopped = False
         try:
             search.run()
@@ -231,8 +231,8 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         if finding is None:
             note("what is left does not fail every time: say so where you report it")
             finding = search.finding
-        shader = plain_texts(search.best, probe, finding, bench.workers[0]) if plain else {}
-        finding = replace(finding, told=finding.told.replace(f"{probe.folder}{os.sep}", ""))
+        shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
+        finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
     for path in write_folder(folder, _account(question, beginning, search, finding, folder), shader):
         print(path)
     if plain and not shader:
@@ -243,13 +243,13 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
 
 
 def _account(
-    question: Question, beginning: Beginning, search: Search, finding: Finding, folder: Path
+    question: Question, beginning: InitialCase, search: Search, finding: Finding, folder: Path
 ) -> Account:
     """Return what the text in the folder says."""
     from playground.reduce.output import Account, to_reproduce
 
     return Account(
-        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
         sketch=question.sketch.name,
         before=beginning.case,
         after=search.best,
@@ -259,7 +259,7 @@ def _account(
         tries=search.tries,
         seconds=search.state.seconds,
         finished=search.finished,
-        reproduce=to_reproduce(question, folder, search.best, beginning.probe.fault),
+        reproduce=to_reproduce(question, folder, search.best, beginning.probe.failure),
     )
 
 

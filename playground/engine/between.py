@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Leaf
+from playground.sketch.flat import Leaf
 from playground.sketch.model import Kernel
 from playground.sketch.wiring import initial_names
 

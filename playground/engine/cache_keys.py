@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from playground.engine.files import content_hash
 from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
-from playground.sketch.flatten import Fed, Source
+from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
 from playground.terrain.meshes import mesh_parameters

@@ -31,7 +31,7 @@ from playground.engine.plan import (
 from playground.engine.results import Result
 from playground.gpu.textures import bytes_of
 from playground.sketch.expressions import names_in
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 

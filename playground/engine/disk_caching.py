@@ -25,7 +25,7 @@ from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.engine.results import Result
 from playground.gpu.textures import bytes_of, make_framebuffer
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
     import moderngl

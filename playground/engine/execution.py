@@ -15,7 +15,7 @@ from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
-from playground.sketch.flatten import Fed, Ref, Source
+from playground.sketch.flat import Fed, Ref, Source
 
 Turn = tuple[int, int]
 """A turn of a loop, and its turns in all."""

@@ -17,7 +17,7 @@ import numpy as np
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan, Step
 from playground.engine.results import Result
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.sketch.model import Camera
 
 if TYPE_CHECKING:

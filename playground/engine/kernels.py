@@ -16,6 +16,7 @@ from playground.engine.plan import Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
+from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
@@ -27,26 +28,6 @@ from playground.sketch.wiring import initial_names
 if TYPE_CHECKING:
     import moderngl
 
-_COPY = """#version 330
-uniform sampler2D k_picture;
-uniform ivec2 k_size;
-out vec4 k_out;
-void main() {
-    ivec2 whole = textureSize(k_picture, 0);
-    ivec2 texel = ivec2(gl_FragCoord.xy / vec2(k_size) * vec2(whole));
-    k_out = texelFetch(k_picture, min(texel, whole - 1), 0);
-}
-"""
-_SPREAD = """#version 330
-uniform sampler2D k_picture;
-uniform int k_shift;
-out vec4 k_out;
-void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    bool known = ((texel.x | texel.y) & ((1 << k_shift) - 1)) == 0;
-    k_out = known ? texelFetch(k_picture, texel >> k_shift, 0) : vec4(0.0);
-}
-"""
 _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
@@ -133,7 +114,7 @@ class Kernels:
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
         target.use()
-        program = self.programs.own(_COPY)
+        program = self.programs.own(own_shader("copy.frag"))
         self.binder.texture(program, "k_picture", 0, texture, Sampling())
         program.set("k_size", size)
         program.fill()
@@ -246,7 +227,7 @@ class Kernels:
         for output in close.outputs:
             single = make_framebuffer(self.ctx, [result.textures[output.name]])
             single.use()
-            program = self.programs.own(_SPREAD)
+            program = self.programs.own(own_shader("spread.frag"))
             self.binder.texture(program, "k_picture", 0, close.textures[output.name], Sampling())
             program.set("k_shift", shift)
             program.fill()

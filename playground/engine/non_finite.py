@@ -29,7 +29,7 @@ from playground.engine.plan import Plan, Step, Turns, every_node
 from playground.engine.results import Result, Wired
 from playground.gpu.textures import read_raw, split_format
 from playground.gpu.wrap import FRAGMENT
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.sketch.model import Kernel
 
 # All bits of the exponent are set in NaN and infinity, and in nothing else (IEEE 754).

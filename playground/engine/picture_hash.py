@@ -19,7 +19,7 @@ from typing import Any
 from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
 from playground.sketch.canonical import compiled_text
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 
 _DIGITS = 9
 

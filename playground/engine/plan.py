@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from playground.engine.between import Between
-from playground.sketch.flatten import Flat, Ref, Source
+from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
 from playground.terrain.sources import Land

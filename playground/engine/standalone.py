@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.gpu.own_shaders import own_shader
 from playground.images.files import write_values
 from playground.paths import shown
 from playground.sketch.assign import values_of
@@ -75,36 +76,17 @@ def _text(code: str) -> SourceText:
     return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(lines, 1)))
 
 
-# Hills of six octaves, each turned against the one before; its channels are four terrains.
 _TERRAIN = Kernel(
     "a stand-in",
     "kernel",
-    _text("""
-uniform uint seed = 0u;
-vec4 kernel(ivec2 texel) {
-    vec2 place = vec2(texel) / vec2(max(size - 1, ivec2(1)));
-    vec4 sum = vec4(0.5);
-    for (int octave = 0; octave < 6; octave++) {
-        float turn = 1.7 * float(octave) + float(seed);
-        float share = exp2(float(octave));
-        vec2 way = vec2(cos(turn), sin(turn)) * 4.0 * share;
-        vec4 along = vec4(dot(place, way) + turn) + vec4(0.0, 1.0, 2.0, 3.0);
-        float across = dot(place, vec2(-way.y, way.x)) * 1.3;
-        sum += 0.24 / share * sin(along) * cos(across + turn);
-    }
-    return clamp(sum, 0.0, 1.0);
-}
-"""),
+    _text(own_shader("stand_in_terrain.glsl")),
     (Output("value", "rgba32f"),),
     (Parameter(SEED, "uint", 0),),
 )
 _COPY = Kernel(
     "a copy",
     "kernel",
-    _text("""
-uniform sampler2D shown;
-vec4 kernel(ivec2 texel) { return texelFetch(shown, min(texel, textureSize(shown, 0) - 1), 0); }
-"""),
+    _text(own_shader("stand_in_view.glsl")),
     (Output("frame", "rgba16f"),),
     inputs=(Input("shown"),),
 )

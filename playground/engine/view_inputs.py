@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from playground.engine.plan import Plan
-from playground.sketch.flatten import Ref, leaves_of
+from playground.sketch.flat import Ref, leaves_of
 from playground.sketch.wiring import input_names
 
 

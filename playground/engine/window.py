@@ -21,7 +21,7 @@ from functools import lru_cache
 
 from playground.engine.plan import Plan, PlanNode, Turns, Window, sources_of, walk
 from playground.errors import SketchError
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.sketch.identity import Same
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM

@@ -11,14 +11,15 @@ from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.lessons.model import Scene
 from playground.paths import SKETCHES
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flatten import flatten, leaves_of
+from playground.sketch.flat import leaves_of
+from playground.sketch.flatten import flatten
 from playground.sketch.load import load_with
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import read_set
-from playground.sketch.toml_lines import Place
+from playground.sketch.toml_places import Place
 from playground.sketch.toml_sketch import read_steps
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell

@@ -16,22 +16,22 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, nearest
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.reduce.candidate_process import LIMIT, CandidateProcess
 from playground.reduce.case import Case
-from playground.reduce.child import Task
+from playground.reduce.draw_handler import DrawTask
 from playground.reduce.failures import (
     Commanded,
     Died,
     Differs,
-    Fault,
+    FailureKind,
     Finding,
     NotFinite,
     OffReference,
     Refused,
     Side,
 )
-from playground.reduce.inline import lay_flat
+from playground.reduce.inline import inline_sketch
 from playground.reduce.probe import Probe
-from playground.reduce.worker import LIMIT, Worker
 from playground.shots.compare import TOLERANCE
 from playground.shots.suite import ShotCase, check
 from playground.sketch.model import Sketch
@@ -40,9 +40,9 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 """What failing may mean; "" is to look for it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Question:
-    """What fails, as it was asked."""
+    """What fails, as it was question."""
 
     sketch: Sketch
     kind: str = ""  # one of KINDS
@@ -64,7 +64,7 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
+class InitialCase:
     """A case that fails, and what tries others."""
 
     case: Case
@@ -73,71 +73,75 @@ class Beginning:
     renderers: tuple[ContextInfo, ...]  # of each side; none where a command judges
 
 
-class Bench:
+class CandidateBench:
     """The folder and the processes that candidates are tried in; use it with ``with``."""
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self._stack = ExitStack()
         self._folder = Path()
-        self.workers: list[Worker] = []
+        self.processes: list[CandidateProcess] = []
 
-    def __enter__(self) -> Bench:
-        asked = self.question
+    def __enter__(self) -> CandidateBench:
+        question = self.question
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="playground-reduce-")))
-        make = {"software": asked.software, "limit": asked.limit}
-        self.workers = [self._stack.enter_context(Worker(device=asked.device, **make))]  # type: ignore[arg-type]
-        if asked.kind == "against":
-            device = asked.device if asked.other_device is None else asked.other_device
-            other = Worker(device=device, environment=asked.environment, **make)  # type: ignore[arg-type]
-            self.workers.append(self._stack.enter_context(other))
+        make = {"software": question.software, "limit": question.limit}
+        self.processes = [self._stack.enter_context(CandidateProcess(device=question.device, **make))]  # type: ignore[arg-type]
+        if question.kind == "against":
+            device = question.device if question.other_device is None else question.other_device
+            other = CandidateProcess(device=device, environment=question.environment, **make)  # type: ignore[arg-type]
+            self.processes.append(self._stack.enter_context(other))
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def begin(self) -> Beginning:
+    def begin(self) -> InitialCase:
         """Return the case to shrink; raise ``DataError`` where nothing fails, or only sometimes."""
-        asked = self.question
-        sketch = asked.sketch.for_shot(asked.sketch.shot(asked.shot)) if asked.shot else asked.sketch
-        case = lay_flat(sketch, frame=asked.frame, time=asked.time, steps=dict(asked.steps))
+        question = self.question
+        sketch = (
+            question.sketch.for_shot(question.sketch.shot(question.shot))
+            if question.shot
+            else question.sketch
+        )
+        case = inline_sketch(sketch, frame=question.frame, time=question.time, steps=dict(question.steps))
         refused = ""
-        for fault, candidate in self._possible(case):
-            probe = Probe(fault, self.workers, self._folder, asked.limit)
+        for failure, candidate in self._possible(case):
+            probe = Probe(failure, self.processes, self._folder, question.limit)
             finding = probe.find(candidate)
             refused = refused or probe.refused
             if finding is None:
                 continue
             probe.renew()
             again = probe.find(candidate)
-            if again is None or not fault.same(finding, again):
-                raise DataError(f"it fails only sometimes ({finding.word}): nothing can be told from one try")
-            if asked.kind == "command":
-                return Beginning(candidate, finding, probe, ())
-            renderers = tuple(self.workers[number].info for number in range(len(self.workers)))
-            return Beginning(candidate, finding, probe, renderers)
+            if again is None or not failure.same(finding, again):
+                raise DataError(f"it fails only sometimes ({finding.kind}): one try proves nothing")
+            if question.kind == "command":
+                return InitialCase(candidate, finding, probe, ())
+            renderers = tuple(self.processes[number].info for number in range(len(self.processes)))
+            return InitialCase(candidate, finding, probe, renderers)
         if refused:
-            raise DataError(f"{asked.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
-        raise DataError(_nothing(asked))
+            raise DataError(f"{question.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
+        raise DataError(_nothing(question))
 
-    def _possible(self, case: Case) -> Iterator[tuple[Fault, Case]]:
-        """Yield what may be the fault, and where, in the order in which it is looked for."""
-        asked = self.question
-        if asked.kind == "command":
-            yield Commanded(asked.command), self._chosen(case)[-1]
-        elif asked.kind == "shot":
+    def _possible(self, case: Case) -> Iterator[tuple[FailureKind, Case]]:
+        """Yield what may be the failure, and where, in the order in which it is looked for."""
+        question = self.question
+        if question.kind == "command":
+            yield Commanded(question.command), self._chosen(case)[-1]
+        elif question.kind == "shot":
             yield self._off_reference(), case
-        elif asked.kind:
-            for fault in self._faults(asked.kind):
-                yield from ((fault, one) for one in self._chosen(case))
+        elif question.kind:
+            for failure in self._failures(question.kind):
+                yield from ((failure, one) for one in self._chosen(case))
         else:
             # A pass may fail in any way before the next is drawn, which may take long.
-            faults = [fault for kind in ("error", "crash", "nan") for fault in self._faults(kind)]
-            yield from ((fault, one) for one in self._chosen(case) for fault in faults)
-            yield from ((fault, one) for fault in self._faults("drivers") for one in self._chosen(case))
+            failures = [failure for kind in ("error", "crash", "nan") for failure in self._failures(kind)]
+            yield from ((failure, one) for one in self._chosen(case) for failure in failures)
+            yield from ((failure, one) for failure in self._failures("drivers") for one in self._chosen(case))
 
     def _chosen(self, case: Case) -> list[Case]:
-        """Return the case looking at each pass in turn, or at the one that was asked for."""
+        """Return the case looking at each pass in turn, or at the one that was named."""
         names = [one.name for one in case.passes]
         if not self.question.path:
             return [case.looking_at(name) for name in names]
@@ -147,69 +151,81 @@ class Bench:
             raise ParameterError(f"--pass {self.question.path}: no such pass{nearest(wanted, names)}")
         return [case.looking_at(name) for name in inside]
 
-    def _faults(self, kind: str) -> list[Fault]:
-        asked = self.question
+    def _failures(self, kind: str) -> list[FailureKind]:
+        question = self.question
         if kind == "against":
-            driver = asked.driver or "auto"
-            names = ("here", " ".join(f"{k}={v}" for k, v in asked.environment.items()) or "the other device")
-            return [Differs((Side(0, driver), Side(1, driver)), names, asked.tolerance)]
-        compute = self.workers[0].info.compute
+            driver = question.driver or "auto"
+            names = (
+                "here",
+                " ".join(f"{k}={v}" for k, v in question.environment.items()) or "the other device",
+            )
+            return [Differs((Side(0, driver), Side(1, driver)), names, question.tolerance)]
+        compute = self.processes[0].info.compute
         if kind == "drivers":
             if not compute:
-                if asked.kind:
-                    opengl = self.workers[0].info.opengl
+                if question.kind:
+                    opengl = self.processes[0].info.opengl
                     raise DataError(f"this context is {opengl}; the compute driver needs 4.3")
                 return []
             sides = (Side(0, FRAGMENT), Side(0, COMPUTE))
-            return [Differs(sides, (FRAGMENT, COMPUTE), asked.tolerance)]
-        drivers = [asked.driver] if asked.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
+            return [Differs(sides, (FRAGMENT, COMPUTE), question.tolerance)]
+        drivers = [question.driver] if question.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
         if kind == "nan":
-            return [NotFinite(driver, asked.anywhere) for driver in drivers]
+            return [NotFinite(driver, question.anywhere) for driver in drivers]
         if kind == "error":
-            return [Refused(asked.pattern, driver) for driver in drivers]
-        word = kind if asked.kind else ""  # a hang counts too where nothing was asked for
+            return [Refused(question.pattern, driver) for driver in drivers]
+        word = kind if question.kind else ""  # a hang counts too where no kind was named
         return [Died(word, driver) for driver in drivers]
 
-    def _off_reference(self) -> Fault:
-        asked = self.question
-        shot = asked.sketch.shot(asked.shot)
-        worker = self.workers[0]
-        shown = asked.sketch.for_shot(shot)
-        steps = tuple(asked.steps.items())
-        seen = worker.look(Task(shown, "", asked.driver or "auto", shot.size, shot.time, steps))
-        if seen.values is None:
-            raise DataError(f"shot '{shot.name}' gives no picture: {seen.told.splitlines()[0]}")
-        case = ShotCase(asked.sketch, shot)
-        outcome = check(case, Frame(seen.values, asked.sketch.name, shot.time), worker.info)
+    def _off_reference(self) -> FailureKind:
+        question = self.question
+        shot = question.sketch.shot(question.shot)
+        process = self.processes[0]
+        shown = question.sketch.for_shot(shot)
+        steps = tuple(question.steps.items())
+        result = process.draw(
+            DrawTask(
+                sketch=shown,
+                ref="",
+                driver=question.driver or "auto",
+                frame=shot.size,
+                time=shot.time,
+                steps=steps,
+            )
+        )
+        if result.values is None:
+            raise DataError(f"shot '{shot.name}' gives no picture: {result.details.splitlines()[0]}")
+        case = ShotCase(question.sketch, shot)
+        outcome = check(case, Frame(result.values, question.sketch.name, shot.time), process.info)
         if outcome.reference is None:
             raise DataError(
-                f"shot '{shot.name}' has no reference for {worker.info.slug}: nothing to differ from"
+                f"shot '{shot.name}' has no reference for {process.info.slug}: nothing to differ from"
             )
         if outcome.ok:
             raise DataError(f"shot '{shot.name}' is as its reference; nothing fails")
-        fault = OffReference(seen.values, [outcome.reference.pixels], TOLERANCE)
-        if not fault.wrong.any():
+        failure = OffReference(result.values, [outcome.reference.pixels], TOLERANCE)
+        if not failure.wrong.any():
             raise DataError(f"shot '{shot.name}' fails, but no pixel is off by more than {TOLERANCE} of 255")
-        fault.sides = (Side(0, asked.driver or "auto"),)
-        return fault
+        failure.sides = (Side(0, question.driver or "auto"),)
+        return failure
 
 
-def _nothing(asked: Question) -> str:
-    """Say that nothing fails, in the words of what was asked."""
-    name = asked.sketch.name
-    if asked.kind == "shot":
+def _nothing(question: Question) -> str:
+    """Say that nothing fails, in the words of what was question."""
+    name = question.sketch.name
+    if question.kind == "shot":
         return (
-            f"shot '{asked.shot}' of {name} is off its reference, but not once its techniques are laid flat;"
-            " a compute shader that stands for a whole technique may be at fault: try --driver fragment"
+            f"shot '{question.shot}' of {name} is off its reference, but not once its techniques are inlined;"
+            " a compute shader that stands for a whole technique may be the cause: try --driver fragment"
         )
-    said = {
+    nothing = {
         "": "it compiles and draws, every value is finite, and both drivers give the same bits",
         "drivers": "both drivers give the same",
         "against": "both sides give the same",
         "nan": "every value of every pass is finite",
-        "error": f"the compiler refuses nothing with a message that {asked.pattern!r} finds",
+        "error": f"the compiler refuses nothing with a message that {question.pattern!r} finds",
         "crash": "the driver does not crash",
-        "hang": f"nothing takes longer than {asked.limit:g} s",
+        "hang": f"nothing takes longer than {question.limit:g} s",
         "command": "the command says that all is well",
-    }[asked.kind]
-    return f"{name} does not fail: {said}"
+    }[question.kind]
+    return f"{name} does not fail: {nothing}"

@@ -1,8 +1,8 @@
 """From sketches to the pictures they promise, and from pictures to what came of them.
 
 ``shots_of`` lists the cases, ``take`` draws one, ``check`` compares it with its reference,
-``save_pictures`` puts what there is to look at into a folder. No pytest, no options: a
-command or a report calls the same four.
+``images_of`` gives what there is to look at. No pytest, no options: a command or a report
+calls the same four.
 """
 
 from __future__ import annotations
@@ -11,17 +11,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from playground.engine.engine import Engine
 from playground.engine.error_place import told_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
-from playground.shots.names import REFERENCE_RENDERER
+from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
     accepted,
@@ -45,7 +47,7 @@ class ShotCase:
 
 
 @dataclass(frozen=True, eq=False)
-class Taken(Frame):
+class RenderedShot(Frame):
     """A frame, with what is known of how it was drawn."""
 
     drawn: str = ""  # hash of what was drawn
@@ -53,7 +55,7 @@ class Taken(Frame):
     gl_error: str = ""  # what drawing it left behind
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome:
     """What came of one shot."""
 
@@ -106,7 +108,7 @@ class Outcome:
 
     @property
     def other_build(self) -> str:
-        """Say who drew the reference, if that was another build of the renderer; else ""."""
+        """Say what drew the reference, if that was another build of the renderer; else ""."""
         before = self.reference.drawn_by if self.reference else ""
         return before if before != drawn_by(self.renderer) else ""
 
@@ -120,10 +122,10 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
     return [ShotCase(sketch, shot) for sketch in loaded for shot in sketch.shots]
 
 
-def take(engine: Engine, case: ShotCase) -> Taken:
+def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
-    An OpenGL error left behind is told in the frame: whatever that looks like, it is not to be
+    An OpenGL error left behind is recorded in the frame: whatever that looks like, it is not to be
     trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass
     fails and there is no frame.
     """
@@ -133,7 +135,7 @@ def take(engine: Engine, case: ShotCase) -> Taken:
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
     found = engine.not_finite()
-    return Taken(
+    return RenderedShot(
         frame.array,
         frame.sketch,
         frame.time,
@@ -146,7 +148,7 @@ def take(engine: Engine, case: ShotCase) -> Taken:
 def check(
     case: ShotCase, frame: Frame, renderer: ContextInfo, reference_renderer: str = REFERENCE_RENDERER
 ) -> Outcome:
-    """Judge a frame by the references of its renderer; any may match, else the nearest is told.
+    """Judge a frame by the references of its renderer; any may match, else the nearest decides.
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
     a reference that is not there is missing, whatever others have drawn. A frame that `take`
@@ -154,7 +156,7 @@ def check(
     """
     name = case.shot.name
     drawn, not_finite, gl_error = "", "", ""
-    if isinstance(frame, Taken):
+    if isinstance(frame, RenderedShot):
         drawn, not_finite, gl_error = frame.drawn, frame.not_finite, frame.gl_error
     fingerprint = fingerprint_of(renderer, frame.size, drawn)
     path = reference_path(case.sketch, name, renderer.slug)
@@ -167,7 +169,13 @@ def check(
         try:
             references.append(read_reference(file))
         except DataError as error:
-            return Outcome(case, frame, unreadable(frame.array, fingerprint, str(error)), file, renderer)
+            return Outcome(
+                case=case,
+                frame=frame,
+                judgement=unreadable(frame.array, fingerprint, str(error)),
+                path=file,
+                renderer=renderer,
+            )
     judgement, reference = judge(
         frame.array,
         fingerprint,
@@ -176,29 +184,27 @@ def check(
         not_finite=not_finite,
         gl_error=gl_error,
     )
-    return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
+    return Outcome(
+        case=case,
+        frame=frame,
+        judgement=judgement,
+        path=reference.path if reference else path,
+        renderer=renderer,
+        reference=reference,
+    )
 
 
-def save_pictures(outcome: Outcome, folder: Path) -> dict[str, Path]:
-    """Write the actual picture, and the expected one and the differences if there is a reference.
+def images_of(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
+    """Return the actual image, and the expected one and the differences if there is a reference.
 
-    One of those is 16 times as strong as the pixels have it, the other, of pictures of one size,
-    is FLIP. Returns the files by the words actual, expected, difference and flip:
-    ``folder/<sketch>/<shot>.actual.png`` and so on. Raises ``DataError`` where the folder cannot
-    be written to.
+    One of those is 16 times as strong as the pixels have it, the other, of images of one size,
+    is FLIP. By the words actual, expected, difference and flip.
     """
-    pictures = {"actual": outcome.frame.array}
-    if outcome.reference is not None:
-        pictures["expected"] = outcome.reference.pixels
-        pictures["difference"] = difference_picture(outcome.frame.array, outcome.reference.pixels)
-        if outcome.frame.array.shape == outcome.reference.pixels.shape:
-            pictures["flip"] = flip_picture(outcome.frame.array, outcome.reference.pixels)
-    place = folder / outcome.case.sketch.name
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
-    files = {word: place / f"{outcome.case.shot.name}.{word}.png" for word in pictures}
-    for word, file in files.items():
-        write_png(file, pictures[word])
-    return files
+    actual, reference = outcome.frame.array, outcome.reference
+    if reference is None:
+        return {"actual": actual}
+    images = {"actual": actual, "expected": reference.pixels}
+    images["difference"] = difference_picture(actual, reference.pixels)
+    if actual.shape == reference.pixels.shape:
+        images["flip"] = flip_picture(actual, reference.pixels)
+    return images

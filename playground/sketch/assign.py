@@ -182,11 +182,11 @@ def _resolve(technique: Technique, path: str) -> tuple[Target, ...]:
     if rest:
         spec = technique.find(head)
         found = _resolve(spec.technique, rest) if spec else ()
-        return tuple(Target(f"{head}.{t.path}", t.parameter) for t in found)
+        return tuple([Target(f"{head}.{t.path}", t.parameter) for t in found])
     export = next((e for e in technique.parameters if e.name == head), None)
     # A target is a path inside: one without a dot would be another export, perhaps this one.
     targets = [target for target in export.targets if "." in target] if export else []
-    return tuple(found for target in targets for found in _resolve(technique, target))
+    return tuple([found for target in targets for found in _resolve(technique, target)])
 
 
 def _leaves(technique: Graph) -> Iterator[tuple[str, Parameter]]:

@@ -25,8 +25,8 @@ from playground.sketch.assign import LAND, resolve, values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
 from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
-from playground.sketch.toml_lines import Place
-from playground.sketch.toml_spans import append, drop, put, text_of
+from playground.sketch.toml_edit import append, drop, put, text_of
+from playground.sketch.toml_places import Place
 from playground.sketch.values import shortest
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from playground.sketch.assign import LAND, resolve
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.sketch.toml_lines import Place
-from playground.sketch.toml_spans import Spans, text_of
+from playground.sketch.toml_edit import text_of
+from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import is_whole, shortest
 
 
@@ -55,10 +55,10 @@ def written_land(value: object) -> str:
 
 def said_so_far(text: str, table: Place, key: str) -> str:
     """Return what the text says there so far, "" where nothing is."""
-    spans = Spans(text)
-    place = spans.find(table, key)
+    places = TomlPlaces(text)
+    place = places.find(table, key)
     if place is None:
         # Azimuth and elevation may also be set by two dotted keys, which no value stands behind.
         return ""
-    pair = spans.pairs[place]
+    pair = places.pairs[place]
     return text[pair.value : pair.end]

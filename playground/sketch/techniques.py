@@ -10,11 +10,13 @@ from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import (
     FAST,
     TECHNIQUES,
+    canonical_of,
     is_file,
     is_inside,
     is_variant,
     leads_outside,
     names_below,
+    root_of,
 )
 from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_names
@@ -57,6 +59,21 @@ def nothing_to_run(path: Path) -> SketchError:
     if "mainImage" in read_text(path):
         message += "; ShaderToy's mainImage needs a #version before it and a main that calls it"
     return SketchError(message, file=shown(path))
+
+
+def technique_beside(path: Path) -> Path | None:
+    """Return the technique that a fast variant replaces; None for another file, and where there is none.
+
+    A ``.comp`` with its own ``#version`` is a plain shader, whatever stands beside it.
+    """
+    if not is_variant(path) or (path.suffix == ".comp" and _is_plain(path)):
+        return None
+    return canonical_of(path)
+
+
+def _is_plain(path: Path) -> bool:
+    kernel = read_kernel(path, root_of(path))
+    return kernel is not None and kernel.kind.startswith("plain")
 
 
 def lonely_variant(path: Path) -> SketchError:

@@ -14,7 +14,7 @@ from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
 from playground.sketch.assign import LAND, check_value, flat_values, resolve
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
-from playground.sketch.toml_lines import Place
+from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
 

@@ -10,7 +10,7 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import read_set
-from playground.sketch.toml_lines import Place
+from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 

@@ -23,7 +23,7 @@ from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes
-from playground.sketch.toml_lines import Place
+from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 from playground.sketch.wiring import check_graph

@@ -29,7 +29,9 @@ from .conftest import OURS
 SCREENSHOTS = Path(__file__).resolve().parent.parent.parent / "screenshots"
 SIZE = (200, 100)  # pixels; 0.5 % of them are 100
 NEWER = replace(OURS, version="4.5 Mesa 25.0.7", vendor="Mesa", mesa="25.0.7")
-CARD = Fingerprint("NVIDIA H200/PCIe/SSE2", "4.6.0 NVIDIA 570.86", "NVIDIA Corporation", drawn="ab12")
+CARD = Fingerprint(
+    renderer="NVIDIA H200/PCIe/SSE2", version="4.6.0 NVIDIA 570.86", vendor="NVIDIA Corporation", drawn="ab12"
+)
 
 
 def picture(seed: int = 7) -> np.ndarray:
@@ -285,14 +287,14 @@ def test_structural_defects_fail_on_another_renderer(defect: str) -> None:
     base = shot("jacksboro/morning")
     found = by_eye(np.ascontiguousarray(DEFECTS[defect](base)), base)
     assert (found.word, found.tier) == ("structure", OTHER_RENDERER)
-    assert found.seen is not None
+    assert found.perceived is not None
     assert found.sentence.startswith("structure: FLIP ")
 
 
 def test_to_within_one_level_another_renderers_picture_is_simply_the_same() -> None:
     base = picture()
     found = by_eye(changed(base, scattered(99), 1), base)
-    assert (found.word, found.tier, found.seen) == ("same", OTHER_RENDERER, None)
+    assert (found.word, found.tier, found.perceived) == ("same", OTHER_RENDERER, None)
 
 
 def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one() -> None:

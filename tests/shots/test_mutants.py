@@ -17,14 +17,14 @@ from playground.errors import DataError
 from playground.images.files import read_png
 from playground.shots import judge
 from playground.shots.compare import compare
-from playground.shots.mutants import repeatability as again_module
+from playground.shots.mutants import repeatability as repeatability_module
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.shots.mutants.redraw import commented
+from playground.shots.mutants.redraw_handler import commented
 from playground.shots.mutants.render_mutants import rendering_mutants
-from playground.shots.mutants.repeatability import Redrawn, again
+from playground.shots.mutants.repeatability import Redrawn, redraw
 from playground.shots.mutants.suite import (
     Bench,
     Result,
@@ -35,7 +35,7 @@ from playground.shots.mutants.suite import (
     survivors,
 )
 from playground.shots.mutants.tiers import TIERS
-from playground.shots.suite import ShotCase, take
+from playground.shots.suite import ShotCase, render_shot
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
@@ -180,7 +180,7 @@ def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
         line.text for line in edited.graph.passes[2].technique.passes[-1].technique.source.lines
     )
     with Engine(bench.engine.ctx) as engine:
-        found = take(engine, ShotCase(edited, shot))
+        found = render_shot(engine, ShotCase(edited, shot))
     np.testing.assert_array_equal(found.array, expected.array)
     assert found.drawn == expected.drawn != ""
 
@@ -225,7 +225,7 @@ def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
     edit: Edit, said: str, default_sketch: Sketch
 ):
     with pytest.raises(DataError, match=said) as caught:
-        broken(Rendering("old", "It is old.", (edit,)), default_sketch)
+        broken(Rendering(name="old", broke="It is old.", edits=(edit,)), default_sketch)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
 
 
@@ -247,7 +247,7 @@ def test_a_shot_that_does_not_show_a_defect_says_so(bench: Bench):
         change = Finished("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
         return next(bench.run([change]))
 
-    (wire,) = bench.run([Rendering("none", "Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
+    (wire,) = bench.run([Rendering(name="none", broke="Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
     for result in (wire, shown(1)):
         assert result.unseen and result.well and not result.counts
     assert shown(2).counts and not shown(2).unseen
@@ -316,7 +316,7 @@ def redrawn(bench: Bench, sketch: Sketch, count: int) -> list[Redrawn]:
     shot = shot_of(sketch, size=SIZE)
     # A process loads the file, which says nothing of a smaller land; so the shot does.
     smaller = replace(shot, values=tuple(SMALLER.items()))
-    return list(again(sketch, smaller, bench.unbroken(shot), bench.engine.info, count))
+    return list(redraw(sketch, smaller, bench.unbroken(shot), bench.engine.info, count))
 
 
 HARMLESS = Process(
@@ -331,10 +331,10 @@ HARMLESS = Process(
 
 
 def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(again_module, "processes", lambda count, drivers: [HARMLESS])
+    monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
-    found = list(again(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
+    found = list(redraw(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
 
@@ -342,7 +342,7 @@ def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypat
 def test_nor_does_it_to_the_default_sketch(
     bench: Bench, default_sketch: Sketch, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(again_module, "processes", lambda count, drivers: [HARMLESS])
+    monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
     found = redrawn(bench, default_sketch, 2)
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
@@ -351,10 +351,10 @@ def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
     arguments = (bench.sketch, shot, bench.unbroken(shot), any_engine.info, 1)
-    (late,) = again(*arguments, limit=0.01)
+    (late,) = redraw(*arguments, limit=0.01)
     assert late.refused == "the process took more than 0.01 s and was stopped"
     (mine / "slope.glsl").write_text(SLOPE.replace("rise *", "ryse *"))
-    (wrong,) = again(*arguments)
+    (wrong,) = redraw(*arguments)
     assert "slope.glsl:" in wrong.refused and "ryse" in wrong.refused and not wrong.identical
 
 
@@ -363,7 +363,7 @@ def test_a_picture_that_is_not_the_same_is_refused(mine: Path, any_engine: Engin
     shot = shot_of(bench.sketch)
     unbroken = bench.unbroken(shot)
     expected = replace(unbroken, array=finished("two-levels-brighter")(unbroken.array))
-    (found,) = again(bench.sketch, shot, expected, any_engine.info, 1)
+    (found,) = redraw(bench.sketch, shot, expected, any_engine.info, 1)
     assert found.refused.startswith("differs: max difference 2") and not found.identical
 
 
@@ -445,4 +445,4 @@ def test_every_mutant_has_a_name_to_be_asked_for():
     (one,) = named(["seam"])
     assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)
     with pytest.raises(DoesNotApply):
-        broken(Rendering("x", "X.", wires=(("colour.mix.grass", "nowhere"),)), load())
+        broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load())

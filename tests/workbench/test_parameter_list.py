@@ -21,7 +21,7 @@ from playground.workbench.typed_values import read_typed
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high it lies
-uniform float other = 0.5; //! slider(0, 1) group("More") label("Beside it")
+uniform float other = 0.5; //! slider(0, 1) group("More") label("Blend it")
 float kernel(ivec2 texel) { return level + other; }
 """
 SKETCH = """format = 1

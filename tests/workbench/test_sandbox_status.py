@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport
-from playground.live.overlay import PATIENCE, trial_text
+from playground.engine.sandbox import SandboxReport
+from playground.live.overlay import PATIENCE, checking_text
 from playground.workbench.reload import Follower
 from playground.workbench.session import Session
 
@@ -44,7 +44,7 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
     try:
         clock[0] = 0.5
         assert session.drafts.checking == ("sketch.toml", 0.5)
-        trial.answer = TrialReport(True)
+        trial.answer = SandboxReport(True)
         session.frame((32, 32))
         assert session.drafts.checking is None
 
@@ -63,5 +63,5 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
 
 
 def test_the_words() -> None:
-    assert trial_text("land.glsl", PATIENCE) == "trying land.glsl …"
-    assert trial_text("land.glsl", 3.9) == "trying land.glsl … 3 s"
+    assert checking_text("land.glsl", PATIENCE) == "trying land.glsl …"
+    assert checking_text("land.glsl", 3.9) == "trying land.glsl … 3 s"

@@ -15,7 +15,7 @@ import numpy as np
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import height_seen
 from playground.gpu.textures import read_texels
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.workbench.inspect.surface_point import Ground
 from playground.workbench.session import Session
 
