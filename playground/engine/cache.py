@@ -14,10 +14,10 @@ MOST = 512
 
 @dataclass(eq=False)
 class Kept:
-    """The results of one pass, or of all passes of a loop after some turn."""
+    """The results of one pass, or of all passes of a loop after some iteration."""
 
     results: dict[str, Result]  # by the pass's path
-    turn: int = 0  # turns done, of a loop
+    turn: int = 0  # iterations done, of a loop
 
     @property
     def bytes(self) -> int:
@@ -57,7 +57,7 @@ class Cache:
         return key in self._kept
 
     def holds(self, key: str, turn: int) -> bool:
-        """Say whether a loop is kept after that turn."""
+        """Return whether a loop is cached after that iteration."""
         kept = self._kept.get(key)
         return kept is not None and kept.turn == turn
 
@@ -101,7 +101,7 @@ class Cache:
         self._latest[path] = (unfinished, key, turn)
 
     def take_earlier(self, path: str, unfinished: str, turn: int) -> Result | None:
-        """Hand over the same pass after fewer turns, unless this frame uses it; the caller now owns it."""
+        """Hand over the same pass after fewer iterations to the caller, if this frame does not use it."""
         known, key, before = self._latest.get(path, ("", "", 0))
         if known != unfinished or before >= turn or key in self._in_use or key not in self._kept:
             return None

@@ -1,10 +1,10 @@
 """Work out what each pass's textures depend on, before anything runs.
 
 A pass is stale when its key changes. The key holds its text without comments, the values
-and given names that the text uses, its size and count of turns, its driver, its files by
+and given names that the text uses, its size and count of iterations, its driver, its files by
 their contents, and the keys of what it reads. Inside a loop, what is fed back has a name
-in place of a key: a loop's key is the same at every turn, so a loop can go on from the
-turn that is kept.
+in place of a key: a loop's key is the same at every iteration, so a loop can go on from the
+iteration that is kept.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Keys:
 
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
     raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
-    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the count of turns
-    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, whatever the count of turns
+    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the number of steps
+    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
     step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
     loop_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a loop
 
@@ -236,7 +236,7 @@ class _Made:
         key = self.keys.loops[loop.path] = _digest(parts)
         self.keys.loop_loops[loop.path] = outer
         for path in inside:
-            if loop.path in self.varies[path]:  # what reads it from here on sees the last turn
+            if loop.path in self.varies[path]:  # what reads it from here on sees the last iteration
                 self.keys.steps[path] = _digest([key, path, loop.repeat])
                 self.varies[path] -= {loop.path}
 

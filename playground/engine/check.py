@@ -1,12 +1,12 @@
 """Check files: compile every kernel by both drivers, load every sketch, draw one small frame of each.
 
-A kernel is drawn on a stage of its own: stand-in textures for its inputs, a stand-in
+A kernel is drawn on a stage of its own: placeholder textures for its inputs, a placeholder
 picture for files that nothing names, and a view that only copies, so that a mistake
-elsewhere cannot pass for one of its own. What is drawn is drawn in the trial child,
+elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox process,
 where it can crash or hang.
 
 Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
-texture holds nothing else, for stand-ins may be what it has no answer to.
+texture holds nothing else, for placeholders may be what it has no answer to.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class FileReport:
     errors: tuple[Diagnostic, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
     notes: tuple[str, ...] = ()  # sentences: fast variants that do not run
-    seconds: float = 0.0  # in the trial child
+    seconds: float = 0.0  # in the sandbox process
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
@@ -137,7 +137,7 @@ class _Check:
         self.trial = trial
         self.path = path
         self.root = GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root
-        self.scratch = scratch  # where the stand-in picture is written
+        self.scratch = scratch  # where the placeholder picture is written
         self.skipped: dict[str, None] = {}
         self.errors: dict[Diagnostic, None] = {}
         self.warnings: dict[Diagnostic, None] = {}
@@ -253,14 +253,14 @@ class _Check:
         return TrySketch(self.stage(technique), _FRAME, drivers=drivers, refuses="all")
 
     def stage(self, technique: Technique) -> Sketch:
-        """Return a sketch that shows a technique, its inputs wired to stand-ins."""
+        """Return a sketch that shows a technique, its inputs wired to placeholders."""
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
         found = stage(technique, free_name(subject, technique), self.root, self.picture)
         return replace(found, name=self.path.stem, file=str(self.path))
 
     @property
     def picture(self) -> Path:
-        """The file that stands in for those that nothing names."""
+        """The file that replaces those that nothing names."""
         return self.scratch / "stand-in.png"
 
 
@@ -284,7 +284,7 @@ def _is_ours(path: Path) -> bool:
 
 
 def _names_files(sketch: Sketch) -> bool:
-    """Say whether any parameter names an image or an elevation file."""
+    """Return whether any parameter names an image or an elevation file."""
     values = values_of(sketch)
     return any(
         parameter.widget.kind == "file" and values[f"{path}.{parameter.name}"]

@@ -6,7 +6,7 @@ version of the playground, down to its own Python files. So nothing here is ever
 nobody asks for any more goes when the bound in bytes is reached, least recently used first.
 
 A file is written beside its place and then given its name, so that another process sees all of it
-or nothing. One that is damaged, cut short or not ours is dropped, and the land is computed. Which
+or nothing. One that is damaged, cut short or not ours is dropped, and the terrain is computed. Which
 passes are worth it, ``store_choice`` says; who reads and writes textures is ``store_keeping``.
 """
 
@@ -129,7 +129,7 @@ class Store:
         return kept
 
     def fits(self, size: int) -> bool:
-        """Say whether so many bytes of texels may be kept."""
+        """Return whether so many bytes of texels may be kept."""
         return not self.trouble and size <= self.limit // SHARE
 
     def keep(self, key: str, kept: Kept) -> None:

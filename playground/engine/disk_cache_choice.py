@@ -1,7 +1,7 @@
 """Choose what a frame takes from the store, and what is worth keeping there.
 
 The camera, the window's size and the time change a sketch's last passes all the time; what
-they read of the land stays. Where that meets is the frontier: of the passes that stay, those
+they read of the terrain stays. Where that meets is the frontier: of the passes that stay, those
 that are read by one that does not. A reopened sketch takes the frontier from the disk, and
 the passes behind it are not run at all.
 
@@ -40,7 +40,7 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     """Return the paths of the steps and loops of a plan that are never kept.
 
     What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
-    stopped before its last turn or gone on from by a later draw, or reads a file that is
+    stopped before its last iteration or gone on from by a later draw, or reads a file that is
     ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
     """
     found: set[str] = set()

@@ -1,7 +1,7 @@
 """Keep an engine's expensive textures in a store, and take them from there.
 
-What passes cost is measured as they run. Once the land has rested for a moment, the textures
-that are worth it are read back a piece a turn, and the store's own thread writes them: no
+What passes cost is measured as they run. Once the terrain has rested for a moment, the textures
+that are worth it are read back a piece at a time, and the store's own thread writes them: no
 frame waits for either. The next time, an engine with this store reads them and does not run
 the passes at all; a pass in between that is wanted after all, runs then.
 """
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 FLOOR = 20.0  # [ms] that reading must save: less is not seen
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
-REST = 1.0  # [s] without another piece of land before one is kept
-PIECE = 4 * 2**20  # [bytes] read back in one turn
+REST = 1.0  # [s] without another piece of terrain before one is kept
+PIECE = 4 * 2**20  # [bytes] read back at once
 _MOST_COSTS = 4096
 
 

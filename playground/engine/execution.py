@@ -1,6 +1,6 @@
-"""Run the passes of one plan in order: what is kept is taken, what is stale is made, loops go turn by turn.
+"""Run the passes of one plan in order: what is cached is taken, what is stale is made, loops iterate.
 
-What a turn of a loop makes belongs to the loop until its next turn is done; all else
+What an iteration of a loop makes belongs to the loop until its next iteration is done; all else
 belongs to the cache. A pass inside a loop that does not change with it runs once.
 """
 
@@ -18,10 +18,10 @@ from playground.sketch.expressions import names_in
 from playground.sketch.flat import Fed, Ref, Source
 
 Turn = tuple[int, int]
-"""A turn of a loop, and its turns in all."""
+"""An iteration of a loop, and its iterations in all."""
 
 Make = Callable[[Step, Mapping[str, Wired], Turn | None, Result | None], Result]
-"""Runs a step: its inputs, the turn of the loop around it, the same step after fewer turns to go on from."""
+"""Runs a step: its inputs, the iteration of the loop around it, the same step after fewer to go on from."""
 
 
 Timed = Callable[[str, str], AbstractContextManager[None]]
@@ -49,7 +49,7 @@ class Execution:
         self._settled: set[int] = set()  # identities of nodes that change with no loop, and have run
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
-        """Run nodes in order: those that change with no loop, and loops from their first turn on."""
+        """Run nodes in order: those that change with no loop, and loops from their first iteration on."""
         for node in nodes:
             if not self.keys.changes(node):
                 self._run(node, {}, None, {})
@@ -128,7 +128,7 @@ class Execution:
     # ── loops ────────────────────────────────────────────────────────────────
 
     def _kept_loop(self, loop: Turns) -> None:
-        """Run a loop from the turn that is kept, or from the start where that lies further on."""
+        """Run a loop from the iteration that is kept, or from the start where that lies further on."""
         key = self.keys.loops[loop.path]
         state = self.cache.get(key)
         if state is None or state.turn > loop.repeat:
@@ -140,7 +140,7 @@ class Execution:
         self.cache.grew(key)
 
     def _loop(self, loop: Turns, state: Kept, around: Mapping[Fed, Wired], owned: dict[str, Result]) -> None:
-        """Run a loop's turns after ``state``, which each replaces; what stays over the turns is ``owned``."""
+        """Run a loop's iterations after ``state``, which each replaces; what stays over them is ``owned``."""
         self.run(loop.body)
         fed = dict(around)
         for name, first, _ in loop.feedback:
@@ -170,7 +170,7 @@ class Execution:
             self.results |= made
 
     def _unturned(self, loop: Turns, changing: list[PlanNode], fed: Mapping[Fed, Wired]) -> dict[str, Result]:
-        """Return what a loop gives before its first turn: what its first turn would read, else zeros."""
+        """Return what a loop gives before its first iteration: what that would read, else zeros."""
         found = {step.path: self.runner.empty(step) for step in walk(tuple(changing))}
         for name, _, ref in loop.feedback:
             texture = fed[Fed(loop.path, name)].texture
@@ -194,7 +194,7 @@ def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -
 
 
 def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
-    """Say whether an earlier draw will stand for a step: see ``Execution``."""
+    """Return whether an earlier draw will stand for a step: see ``Execution``."""
     start = dict(step.inputs).get("initial")
     earlier = steps.get(start.path) if isinstance(start, Ref) else None
     if step.kernel.kind != "draw" or step.repeat or earlier is None:

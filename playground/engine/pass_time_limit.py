@@ -1,4 +1,4 @@
-"""Know how long each pass of a request has taken, in all its turns: a limit is meant for one pass.
+"""Measure how long each pass of a request has taken, in all its iterations: a limit is meant for one pass.
 
 A process tells what it is about to do; what it did before has ended then. What it waited for a
 processor does not count, but for a share (see ``waiting``).
@@ -23,7 +23,7 @@ class _Now:
     what: Hashable
     began: float  # as time.monotonic
     waits: Waits  # when it began, or shortly before
-    earlier: float  # [s] that it took in its turns before
+    earlier: float  # [s] that it took in its iterations before
 
 
 class PassClock:
@@ -51,7 +51,7 @@ class PassClock:
 
     @property
     def seconds(self) -> float:
-        """How long what is being done has taken so far, in all its turns; 0 before anything has begun."""
+        """How long what is being done has taken so far, in all its iterations; 0 before it begins."""
         now = self._now
         if now is None:
             return 0.0

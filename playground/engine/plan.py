@@ -30,8 +30,8 @@ class Step:
     values: Mapping[str, Value]  # files as absolute paths
     inputs: tuple[tuple[str, Source | None], ...]
     size: tuple[int, int]
-    repeat: int  # turns to run
-    whole: int  # turns in all; more than ``repeat`` where it is stopped early
+    repeat: int  # iterations to run
+    whole: int  # iterations in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
     between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
@@ -47,8 +47,8 @@ class Turns:
     """A loop made concrete."""
 
     path: str
-    repeat: int  # turns to run
-    whole: int  # turns in all
+    repeat: int  # iterations to run
+    whole: int  # iterations in all
     body: tuple[Step | Turns, ...]
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec

@@ -155,7 +155,7 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
-    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
+    """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
     found: dict[str, int] = {}
     for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
         if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
@@ -186,7 +186,7 @@ def _steps(path: str, count: object) -> int:
 
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
+    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
     flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
@@ -323,7 +323,7 @@ class _Planning:
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
     ) -> int:
-        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
+        """Return how many iterations; ``owner`` is what says so, and where a mistake is."""
         if text == "1":
             return 1
         try:

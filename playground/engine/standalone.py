@@ -1,4 +1,4 @@
-"""A stage: a sketch of one technique alone, on stand-ins for what it reads.
+"""A stage: a sketch of one technique alone, on placeholders for what it reads.
 
 Nothing else is on it, so that a mistake elsewhere cannot pass for one of the technique's own.
 """
@@ -27,11 +27,11 @@ from playground.sketch.model import (
 from playground.sketch.source import Line, SourceText
 
 SEED = "seed"
-"""The stand-ins' parameter: which terrain."""
+"""The placeholders' parameter: which terrain."""
 
 
 def stage(technique: Technique, subject: str, folder: Path, picture: Path, *, seed: int = 0) -> Sketch:
-    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to stand-ins.
+    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to placeholders.
 
     ``folder`` is where its files are; ``picture`` is the file of parameters that name none.
     """

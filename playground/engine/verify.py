@@ -176,7 +176,7 @@ def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
 
 
 def _starts(technique: Technique, name: str) -> bool:
-    """Say whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
+    """Return whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
     if isinstance(technique, Kernel):
         return technique.kind == "kernel" and name in initial_names(technique)
     targets = [t.rpartition(".") for e in technique.inputs if e.name == name for t in e.targets]
@@ -283,7 +283,7 @@ def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: 
 
 
 def _has_run(engine: Engine, place: Place) -> bool:
-    """Say whether the fast variant was what gave the last texture: where more is wired, it steps back."""
+    """Return whether the fast variant was what gave the last texture: where more is wired, it steps back."""
     files = {kernel.path for _, kernel in kernels_of(place.variant.technique)}
     steps = engine.plan.walk() if engine.plan is not None else ()
     return any(step.path.startswith(place.path) and step.kernel.path in files for step in steps)

@@ -1,4 +1,4 @@
-"""Tell which textures the picture shows: the view's height, its colour, its light."""
+"""Report which textures the picture shows: the view's height, its colour, its light."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def seen(plan: Plan, name: str) -> str:
 
 
 def height_seen(plan: Plan) -> str:
-    """Return the land's heights: those that the view shows, else the latest there are; "" without any."""
+    """Return the terrain's heights: those that the view shows, else the latest there are; "" without any."""
     found = seen(plan, "height")
     passes = [spec.name for spec in reversed(plan.sketch.graph.passes) if spec.name != "view"]
     return found or next((f"{path}:height" for path in passes if "height" in plan.flat.outputs[path]), "")

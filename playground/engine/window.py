@@ -2,7 +2,7 @@
 
 A picture may be larger than any texture. Its passes that have a texel for each pixel then
 run for a window of it at a time: they are told the size of the whole and where the window
-lies, and everything else, the land, its light, is made once and stays. The camera is that
+lies, and everything else, the terrain, its light, is made once and stays. The camera is that
 of the whole picture, and so are a draw's clip space and its viewport, of which the window
 is all that is kept.
 
@@ -100,7 +100,7 @@ def _previous(kernel: Kernel) -> list[str]:
 
 
 def _names(code: str, *names: str) -> bool:
-    """Say whether a text names something besides declaring a sampler of that name."""
+    """Return whether a text names something besides declaring a sampler of that name."""
     return any(re.search(rf"(?<!sampler2D )\b{name}\b", code) for name in names)
 
 

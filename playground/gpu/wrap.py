@@ -78,7 +78,7 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
 def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
     """Write checkboxes and menus into a wrapped text as constants, lines and columns kept.
 
-    A processor that draws goes both ways of every ``if``: what was not chosen costs as much
+    A software renderer goes both ways of every ``if``: what was not chosen costs as much
     as what was, unless the compiler can see that it never happens.
     """
     stages = {}
@@ -116,7 +116,7 @@ def signature(kernel: Kernel) -> str:
 
 
 def previous_name(kernel: Kernel, output: Output) -> str:
-    """Return the name of the function that reads an output's texel of the turn before."""
+    """Return the name of the function that reads an output's texel of the iteration before."""
     return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
 
 
@@ -151,7 +151,7 @@ def _version(kernel: Kernel) -> str:
 
 
 def reads_unwired(kernel: Kernel) -> bool:
-    """Say whether a kernel fetches texels while some input of it may stay unwired."""
+    """Return whether a kernel fetches texels while some input of it may stay unwired."""
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
@@ -340,7 +340,7 @@ def _argument(text: str) -> tuple[str, str, str]:
 
 
 def _check_previous(kernel: Kernel) -> None:
-    """Refuse what reads a turn before where there is none, or by a name that no output has."""
+    """Refuse what reads an iteration before where there is none, or by a name that no output has."""
     names = [previous_name(kernel, output) for output in kernel.outputs]
     for number, line in enumerate(kernel.source.lines):
         if "previous" not in line.code:

@@ -118,7 +118,7 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
 
 
 def check_value(sketch: Settable, path: str, given: object) -> Value:
-    """Return a value as the parameter, or the part of the land, takes it; raise ``ParameterError``."""
+    """Return a value as the parameter, or the part of the terrain, takes it; raise ``ParameterError``."""
     if path in LAND:
         return _land_value(path, given)
     try:

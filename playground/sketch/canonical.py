@@ -1,4 +1,4 @@
-"""Say in one hash what a technique's text says, so that two readings of it can be compared.
+"""Return in one hash what a technique's text says, so that two readings of it can be compared.
 
 The text of a kernel counts as the compiler takes it: with its includes, without comments,
 whatever its white space. Of a technique of several passes each pass counts, and how they are

@@ -1,4 +1,4 @@
-"""Say what there is to choose from: sketches, techniques, and the parameters of each.
+"""Report what there is to choose from: sketches, techniques, and the parameters of each.
 
 Reads text only. A file that is wrong has its place here too, with what is wrong with it,
 so that one mistake does not hide the rest.

@@ -1,4 +1,4 @@
-"""Say which camera and values a sketch with keyframes has at a time: a pure function of both.
+"""Return which camera and values a sketch with keyframes has at a time: a pure function of both.
 
 Each thing that keyframes set, a parameter or one number of the camera, has a track of its
 own: the keyframes that name it. Before its first and after its last it stays. What goes on

@@ -1,4 +1,4 @@
-"""Write what was set by hand back into a sketch's own TOML, and touch nothing else in it.
+"""Write what was set by the user back into a sketch's own TOML, and touch nothing else in it.
 
 Values go to the ``set`` of their pass, the camera to ``[view]``, a technique to ``use``. A
 value that stands there already is written over in its place; what its file does not hold
@@ -241,7 +241,7 @@ def write_over(
 
 
 def _same_text(a: Sketch, b: Sketch) -> bool:
-    """Say whether two sketches were read from the same words, whatever their kernels say."""
+    """Return whether two sketches were read from the same words, whatever their kernels say."""
 
     def words(sketch: Sketch) -> object:
         parts = [

@@ -46,7 +46,7 @@ def written_number(value: float | int) -> str:
 
 
 def written_land(value: object) -> str:
-    """Return one of the land's own values as TOML writes it: two equal sides as one number."""
+    """Return one of the terrain's own values as TOML writes it: two equal sides as one number."""
     if not isinstance(value, tuple):
         return written_number(value) if isinstance(value, int | float) else str(value)
     numbers = [written_number(n) for n in value]

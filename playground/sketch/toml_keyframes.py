@@ -83,7 +83,7 @@ def _camera(
 
 
 def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
-    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the land"."""
+    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the terrain"."""
     far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
     for index, keyframe in enumerate(found):
         if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:

@@ -1,4 +1,4 @@
-"""Read a whole sketch from its TOML: the land, the passes, the view, shots and presets."""
+"""Read a whole sketch from its TOML: the terrain, the passes, the view, shots and presets."""
 
 from __future__ import annotations
 
@@ -179,7 +179,7 @@ def _marks(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str,
 def read_steps(
     file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place
 ) -> tuple[tuple[str, int], ...]:
-    """Return what a table's ``steps`` says of repeated passes: turns by path; raise ``SketchError``."""
+    """Return what a table's ``steps`` says of repeated passes: steps by path; raise ``SketchError``."""
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
         nodes = flatten(sketch).nodes

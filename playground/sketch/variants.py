@@ -3,7 +3,7 @@
 A technique's canonical form is its plain text. A fast variant beside it, a ``.comp`` or the
 passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
 their contents (see ``canonical``) are in a record (see ``variant_record``). What is asked here
-is asked of the techniques as they are at hand, so a text that stands in for a file's, or a
+is asked of the techniques as they are at hand, so a text that replaces a file's, or a
 kernel that was changed in memory, counts as well.
 """
 
@@ -28,7 +28,7 @@ def standing(technique: Technique, kinds: Collection[str]) -> Variant | None:
 
 
 def is_verified(technique: Technique, variant: Variant) -> bool:
-    """Say whether a technique and its fast variant are those that were found to agree."""
+    """Return whether a technique and its fast variant are those that were found to agree."""
     return variant.verified == (content_of(technique), content_of(variant.technique))
 
 
@@ -91,7 +91,7 @@ def without_variants(technique: Technique) -> Technique:
 
 
 def any_variants(technique: Technique) -> bool:
-    """Say whether a technique, or one inside it, has fast variants."""
+    """Return whether a technique, or one inside it, has fast variants."""
     if technique.variants:
         return True
     return isinstance(technique, Graph) and any(any_variants(spec.technique) for spec in technique.passes)

@@ -1,7 +1,7 @@
-"""The sources a sketch may name: what the processor must do to make land.
+"""The sources a sketch may name: what the processor must do to make terrain.
 
 A closed registry: a sketch is data and cannot bring Python. A source says what it knows
-of its land before any texel is made (``describe``), then makes the texels (``make``).
+of its terrain before any texel is made (``describe``), then makes the texels (``make``).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from playground.terrain.resample import resample
 
 @dataclass(frozen=True, slots=True)
 class Land:
-    """What a source knows of its land; None where it does not."""
+    """What a source knows of its terrain; None where it does not."""
 
     size: tuple[int, int] | None = None  # texels, x and y
     extent: tuple[float, float] | None = None  # [m]
