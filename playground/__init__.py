@@ -9,7 +9,7 @@
         height = engine.read(sketch, "height")               # float32, row 0 in the south
         evening = sketch.with_values({"light.sun": (250.0, 12.0)})
         square = playground.load("diamond_square")
-        for turn, values in engine.steps(square, "height"):  # a repeated kernel, turn by turn
+        for step, values in engine.steps(square, "height"):  # a repeated kernel, step by step
             ...
 
 A sketch is a frozen value; setting a parameter makes a new one. Importing this opens
@@ -39,11 +39,11 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import PlainFormWarning as PlainFormWarning
     from playground.errors import PlaygroundError as PlaygroundError
     from playground.errors import PlaygroundWarning as PlaygroundWarning
+    from playground.errors import SandboxCrash as SandboxCrash
+    from playground.errors import SandboxError as SandboxError
+    from playground.errors import SandboxTimeout as SandboxTimeout
     from playground.errors import ShaderError as ShaderError
     from playground.errors import SketchError as SketchError
-    from playground.errors import TrialCrash as TrialCrash
-    from playground.errors import TrialError as TrialError
-    from playground.errors import TrialTimeout as TrialTimeout
     from playground.sketch.find import shipped_sketches as shipped_sketches
     from playground.sketch.load import load as load
     from playground.sketch.model import Camera as Camera
@@ -78,18 +78,25 @@ _HOMES = {
     "ShaderError": "playground.errors",
     "DataError": "playground.errors",
     "ContextError": "playground.errors",
-    "TrialError": "playground.errors",
-    "TrialTimeout": "playground.errors",
-    "TrialCrash": "playground.errors",
+    "SandboxError": "playground.errors",
+    "SandboxTimeout": "playground.errors",
+    "SandboxCrash": "playground.errors",
 }
+
+_RENAMED = {"TrialError": "SandboxError", "TrialTimeout": "SandboxTimeout", "TrialCrash": "SandboxCrash"}
 
 __all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> object:
-    if name in _HOMES:
-        import importlib
+    import importlib
+    import warnings
 
+    if name in _RENAMED:
+        message = f"playground.{name} is called {_RENAMED[name]} now"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        name = _RENAMED[name]
+    if name in _HOMES:
         return getattr(importlib.import_module(_HOMES[name]), name)
     raise AttributeError(f"module 'playground' has no attribute '{name}'")
 

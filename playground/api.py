@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import CACHE_BYTES, Engine, opened
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import warn
 from playground.errors import Diagnostic, PlaygroundWarning
@@ -20,18 +20,19 @@ def headless(
     software: bool = False,
     device: int | None = None,
     driver: str = "auto",
+    cache_bytes: int = CACHE_BYTES,
     notice: Callable[[str], None] = warn,
 ) -> Engine:
-    """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
+    """Open an engine on a context without a window; use it with ``with``, or call its ``release()``.
 
-    ``software`` asks for the processor's renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". What is drawn though something is wrong with
-    it is told by Python's warnings, as ``PlaygroundWarning``, once. Where a fast variant does not
-    run, ``notice`` is told why: a ``PlainFormWarning``, unless told otherwise, and then the other
-    warnings are left out as well. Raises ``ContextError`` in a sentence.
+    ``software`` asks for the software renderer, ``device`` for an EGL device by number,
+    ``driver`` is "auto", "fragment" or "compute". What can be drawn although something is wrong
+    raises Python's warning ``PlaygroundWarning``, once. ``notice`` receives the reason why a fast
+    variant does not run: by default as a ``PlainFormWarning``; with a function of your own, the
+    other warnings are left out as well. Raises ``ContextError``.
     """
     context = open_context(software=software, device=device)
-    engine = Engine(context, driver=driver, owns_context=True, notice=notice)
+    engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
         engine.warnings.tell = _warn
     return engine
@@ -49,10 +50,10 @@ def render(
     values: Mapping[str, object] | None = None,
     plain: bool = False,
 ) -> Frame:
-    """Render one picture with a context of its own.
+    """Render one frame with a context of its own.
 
     ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path; ``plain`` runs
-    every technique in its canonical form, no fast variant. For more than one picture, keep an
+    every technique in its canonical form, no fast variant. For more than one frame, keep an
     engine from ``headless()``.
     """
     found = opened(sketch)

@@ -60,12 +60,12 @@ _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 app = typer.Typer(
     name="playground",
     help=help_text(
-        "A playground for terrain shaders: save a GLSL file and see the land change.\n\n"
+        "A playground for terrain shaders: save a GLSL file and see the terrain change.\n\n"
         "Without a command, opens the default sketch in a window; where there is no display,"
         " renders it to a PNG in this folder and prints its path.",
         "playground",
         "playground live jacksboro",
-        "playground render jacksboro -o land.png --set light.sun=250,12",
+        "playground render jacksboro -o terrain.png --set light.sun=250,12",
         "playground new my-land",
         "playground check my-land",
     ),
@@ -107,7 +107,7 @@ def _status(given: list[str]) -> int:
         gone = isinstance(left.__context__, OSError) or sys.stdout is not output
         return BROKEN_PIPE if gone else int(left.code or 0)
     except MemoryError:
-        complain("out of memory; choose a smaller --size, or a smaller land, as --set size=513")
+        complain("out of memory; choose a smaller --size, or a smaller terrain, as --set size=513")
         return MISTAKE
     except OSError as error:
         complain(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
@@ -138,7 +138,7 @@ def _printing_warnings() -> Iterator[None]:
         yield
 
 
-def _say_version(wanted: bool) -> None:
+def _print_version(wanted: bool) -> None:
     if wanted:
         print(f"playground {__version__}")
         raise typer.Exit()
@@ -150,7 +150,7 @@ def _global(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", metavar="", help="Print the version.", callback=_say_version, is_eager=True
+            "--version", metavar="", help="Print the version.", callback=_print_version, is_eager=True
         ),
     ] = False,
     software: SoftwareOption = False,
@@ -166,10 +166,10 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, "auto", {}, beside=True)
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, beside=True)
         return
     note("no display here, so a picture is made instead; playground --help says what else there is")
-    render.make_picture(render.Picture(), renderer)
+    render.make_picture(render.Request(), renderer)
 
 
 def _usage_message(error: Exception) -> str:

@@ -7,9 +7,9 @@
     ├── DataError                  an image or elevation file cannot be used
     ├── ContextError               no OpenGL context, or one that cannot do what is asked
     │   └── OpenGLFault            OpenGL reports an error of the engine's own doing
-    └── TrialError                 the trial child was stopped
-        ├── TrialTimeout           … it took too long
-        └── TrialCrash             … it died
+    └── SandboxError               a worker process was stopped
+        ├── SandboxTimeout         … it took too long
+        └── SandboxCrash           … it died
 
 ``PlaygroundWarning`` is for what can be drawn all the same.
 
@@ -89,7 +89,7 @@ class PlaygroundError(Exception):
         super().__init__("\n".join(map(str, found)))
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Cross a process border whole (the trial child sends its errors back)."""
+        """Cross a process border whole (a worker process sends its errors back)."""
         return _rebuild, (type(self), self.diagnostics)
 
 
@@ -117,16 +117,16 @@ class OpenGLFault(ContextError):
     """A pass left an OpenGL error behind: what it drew is not to be trusted."""
 
 
-class TrialError(PlaygroundError):
-    """The trial child was stopped before it could answer."""
+class SandboxError(PlaygroundError):
+    """A worker process was stopped before it could answer."""
 
 
-class TrialTimeout(TrialError):
-    """The trial child took too long and was killed."""
+class SandboxTimeout(SandboxError):
+    """A worker process took too long and was killed."""
 
 
-class TrialCrash(TrialError):
-    """The trial child died: the driver or its compiler crashed, or memory ran out."""
+class SandboxCrash(SandboxError):
+    """A worker process died: the driver or its compiler crashed, or memory ran out."""
 
 
 class PlaygroundWarning(UserWarning):

@@ -106,9 +106,9 @@ def test_one_call_renders_a_shipped_sketch():
         ({"time": "noon"}, "time 'noon': expected a number of seconds"),
         (
             {"steps": {"height.raw": 1.5}},
-            "'height.raw' stops after 1.5 turns; expected a whole number from 0",
+            "'height.raw' stops after 1.5 steps; expected a whole number from 0",
         ),
-        ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 turns; expected a whole number from 0"),
+        ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 steps; expected a whole number from 0"),
     ],
 )
 def test_what_is_asked_wrongly_is_refused_in_a_sentence(engine, sketch, asked, said):

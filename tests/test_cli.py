@@ -86,7 +86,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     # On a busy machine a draw that ends may take longer than a user is made to wait.
-    monkeypatch.setattr(trial, "Trial", partial(trial.Trial, limit_seconds=120.0))
+    monkeypatch.setattr(trial, "Sandbox", partial(trial.Sandbox, limit_seconds=120.0))
 
     def called(*arguments: str, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
         monkeypatch.chdir(cwd)

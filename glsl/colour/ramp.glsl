@@ -1,6 +1,7 @@
 // colour/ramp.glsl -- a number 0..1 as a colour that people with colour-blindness can order, too.
 //
-//   gives    ramp_blue_yellow, ramp_viridis, ramp_cividis, ramp_cool_warm; ramp_colour, one of them by number
+//   gives    ramp_blue_yellow, ramp_viridis, ramp_cividis, ramp_cool_warm; ramp_colour, one of
+//            them by number
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    0..1 in, sRGB-encoded colour out
 //   source   blue_yellow made here: five stops from dark blue to pale yellow whose lightness rises

@@ -1,8 +1,7 @@
-// generation/deterministic_fractal.glsl -- deterministic fractals: sets made of n copies of themselves at the scale r.
+// generation/deterministic_fractal.glsl -- sets made of n copies of themselves at the scale r.
 //
 //   gives    colour: a drawing of the set; away: how far it is, 0 on it
-//   needs    generation/deterministic_fractal/folds.glsl, generation/deterministic_fractal/label.glsl,
-//            maths/whole.glsl
+//   needs    generation/deterministic_fractal/{folds,label}.glsl, maths/whole.glsl
 //   units    colours linear; distances in widths of the set
 //   source   Belaiche 2010, section 1.2.1 and figure 1.1
 //   tested   tests/glsl/test_deterministic_fractal.py: distances to every piece, and the
@@ -15,36 +14,24 @@
 #include "maths/whole.glsl"
 #pragma kernel(output = "colour:rgba16f, away:r32f")
 
-uniform int fractal = 0;   //! menu("all", "Cantor set", "Koch curve", "Cantor dust", "Vicsek cross", "Sierpinski triangle", "Sierpinski carpet") Which set, or all side by side
-uniform int depth = 5;     //! slider(0, 8) How many times each piece has made way for smaller copies
-uniform float pen = 0.5;   //! slider(0, 4) step(0.1) unit("px") How far around the set ink reaches: pieces finer than a pixel stay visible
+uniform int fractal = 0;   //!
+                           //! menu("all", "Cantor set", "Koch curve", "Cantor dust",
+                           //! "Vicsek cross", "Sierpinski triangle", "Sierpinski carpet") Which
+                           //! set, or all side by side
+uniform int depth = 5;     //! slider(0, 8) How many times each piece has made way for smaller
+                           //! copies
+uniform float pen = 0.5;   //! slider(0, 4) step(0.1) unit("px") How far around the set ink
+                           //! reaches: pieces finer than a pixel stay visible
 uniform float margin = 0.06;  //! slider(0, 0.4) step(0.01) Empty border, as a share of the panel
 uniform bool label = true;    //! Write the copies n, their scale r and the dimension D underneath
 uniform vec3 ink = vec3(0.012, 0.03, 0.07);      //! colour Colour of the set
 uniform vec3 paper = vec3(0.86, 0.84, 0.78);     //! colour Colour of the ground
 
-// Copies, and the part of its width that each has.
-ivec2 copies_of(int which) {
-    if (which == 0) return ivec2(2, 3);
-    if (which == 3) return ivec2(5, 3);
-    if (which == 4) return ivec2(3, 2);
-    if (which == 5) return ivec2(8, 3);
-    return ivec2(4, 3);
-}
-
-float distance_to(int which, vec2 place) {
-    if (which == 0) return cantor_bars(place, depth);
-    if (which == 1) return koch_curve(place, depth);
-    if (which == 2) return cantor_dust(place, depth);
-    if (which == 3) return vicsek_cross(place, depth);
-    if (which == 4) return sierpinski_triangle(place, depth);
-    return sierpinski_carpet(place, depth);
-}
-
 void kernel(ivec2 texel, out vec4 colour, out float away) {
     ivec2 panels = fractal == 0 ? ivec2(3, 2) : ivec2(1);
-    ivec2 panel = ivec2(quotient(texel.x * panels.x, size.x), quotient(texel.y * panels.y, size.y));
-    int which = fractal == 0 ? panel.x + 3 * (1 - panel.y) : fractal - 1;
+    ivec2 along = texel * panels;
+    ivec2 panel = ivec2(quotient(along.x, size.x), quotient(along.y, size.y));
+    int set = fractal == 0 ? panel.x + 3 * (1 - panel.y) : fractal - 1;
     vec2 room = vec2(size) / vec2(panels);
     vec2 inside = vec2(texel) + 0.5 - vec2(panel) * room;
 
@@ -53,11 +40,11 @@ void kernel(ivec2 texel, out vec4 colour, out float away) {
     float strip = label ? 3.0 * letter * float(LABEL.y) : 0.0;
     float side = max(min(room.x, room.y - strip) * (1.0 - 2.0 * margin), 1.0);
     vec2 place = (inside - 0.5 * vec2(room.x, room.y + strip)) / side;
-    away = distance_to(which, place);
+    away = set == CANTOR_SET ? cantor_bars(place, depth) : distance_to_set(set, place, depth);
     float shown = clamp(pen + 0.5 - away * side, 0.0, 1.0);
     if (label) {
         vec2 letters = inside - 0.5 * vec2(room.x, strip) + 0.5 * letter * vec2(LABEL);
-        ivec2 copies = copies_of(which);
+        ivec2 copies = copies_of(set);
         if (is_label(ivec2(floor(letters / letter)), copies.x, copies.y)) shown = 1.0;
     }
     colour = vec4(mix(paper, ink, shown), 1.0);

@@ -1,19 +1,20 @@
-// generation/diamond_square.comp -- diamond-square, two levels at a time and normalised as they are written.
+// generation/diamond_square.comp -- diamond-square, two levels at a time, and normalised.
 //
 //   gives    height, as generation/diamond_square.toml, for 2^n + 1 texels a side
-//   needs    generation/diamond_square/{lattice,order,rows}.glsl, noise/finest.glsl, terrain/extremes.glsl
+//   needs    generation/diamond_square/{lattice,order,rows}.glsl, noise/finest.glsl,
+//            terrain/extremes.glsl
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
 //   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
 //   agrees   to the last bit, where the compiler fuses no multiplication with an addition
 //
-// The first turn makes the coarse lattice, of 32 spacings a side or fewer, in one group's
-// shared memory. Each further turn makes a lattice of four times as many spacings: a thread
-// walks north through ROWS rows of the coarser lattice, keeps what the next step needs, and
-// writes eight columns of four rows a step. Neighbouring threads write neighbouring columns.
+// The first step makes the coarse lattice, of 32 spacings a side or fewer, in one group's
+// shared memory. Each further step makes a lattice of four times as many spacings: a thread
+// goes north through ROWS rows of the coarser lattice, keeps what the next rows need, and
+// writes eight columns of four rows at a time. Neighbouring threads write neighbouring columns.
 //
-// To normalise, the last turn is done twice: first only to find the range, then to write. The
+// To normalise, the last step is done twice: first only to find the range, then to write. The
 // first skips rows whose heights cannot leave the range that is known from the coarser lattice.
 //
 // Lattices lie in one buffer, the finest at its beginning, in fours of floats, which a
@@ -26,20 +27,26 @@
 #include "generation/diamond_square/order.glsl"
 #include "noise/finest.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(groups = "(size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 256, (size.x - 1) // 4**max(log2(size.x - 1) // 2 - 2 - iteration, 0) // 48 + 1", local = "32, 1", repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", overwrites = "height", agrees = "1e-5")
+#pragma compute(where = "levels_left = max(log2(size.x - 1) // 2 - 2 - iteration, 0); \
+                         spacings = (size.x - 1) // 4**levels_left", \
+                groups = "spacings // 256, spacings // 48 + 1", local = "32, 1", \
+                repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", \
+                buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", \
+                overwrites = "height", agrees = "1e-5")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique
 uniform int random = 0;         //! menu("centred", "positive") As in the technique
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") As in the technique
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01)
+    //! parts("SW", "SE", "NW", "NE") As in the technique
 uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the technique
 
 const int LANES = 32;
-const int ROWS = 12;            // that a thread walks through
+const int ROWS = 12;            // that a thread goes through
 const int MOST_COARSE = 32;     // spacings a side of the coarse lattice
 shared float coarse[(MOST_COARSE + 1) * (MOST_COARSE + 1)];
 
-// Halvings from the land's side to one texel, and those that the first turn makes.
+// Halvings from the terrain's side to one texel, and those that the first step makes.
 int count_levels() {
     int found = 0;
     while ((1 << found) < size.x - 1) found++;
@@ -58,14 +65,16 @@ int place_of(int level, int levels) {
 
 Lattice lattice_of(int level) {
     int side = 1 << level;
-    return Lattice(side, FINEST_SIDE >> level, 2.0 / float(side) * smoothing, random == 0, seed + DIAMOND_SQUARE_SALT);
+    float amplitude = 2.0 / float(side) * smoothing;
+    return Lattice(side, FINEST_SIDE >> level, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
 }
 
-// What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl does.
+// What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl
+// does.
 vec2 scale_of(vec2 range) {
     float low = normalise == 1 ? 0.0 : range.x;
     float span = span_of(vec2(low, range.y));
-    // A land without a range becomes 0, or with "max" stays as it is.
+    // A terrain without a range becomes 0, or with "max" stays as it is.
     if (span == 0.0) span = normalise == 1 ? 1.0 : 3.4e38;
     return vec2(low, span);
 }
@@ -75,26 +84,28 @@ vec4 scaled(vec4 h, vec2 scale) {
     return normalise == 1 ? share : clamp(share, 0.0, 1.0);
 }
 
-// ── the coarse lattice ───────────────────────────────────────────────────────
+// ── the coarse lattice ──
 
 void make_coarse(int lane, int levels) {
-    // Loops that take no turn, not an if: a processor goes through the inside of an if anyhow.
+    // Loops that do nothing, not an if: a processor goes through the inside of an if anyhow.
     int made = iteration == 0 ? coarse_levels(levels) : -1;
     Lattice lattice = lattice_of(max(made, 0));
     int side = lattice.side;
     int pitch = side + 1;
-    for (int i = lane; i < (made < 0 ? 0 : 4); i += LANES) coarse[((i >> 1) * pitch + (i & 1)) * side] = corners[i];
+    for (int i = lane; i < (made < 0 ? 0 : 4); i += LANES) {
+        coarse[((i >> 1) * pitch + (i & 1)) * side] = corners[i];
+    }
     barrier();
-    for (int turn = 1; turn <= 2 * made; turn++) {
-        bool centres = (turn & 1) == 1;
-        int r = half_spacing(turn, side);
-        lattice.reach = float(2 * r) / float(side) * smoothing;
-        int cells = centres ? 1 << (turn >> 1) : (1 << (turn >> 1)) + 1;
+    for (int which = 1; which <= 2 * made; which++) {
+        bool centres = (which & 1) == 1;
+        int r = half_spacing(which, side);
+        lattice.amplitude = float(2 * r) / float(side) * smoothing;
+        int cells = centres ? 1 << (which >> 1) : (1 << (which >> 1)) + 1;
         ivec2 along = centres ? ivec2(r, r) : ivec2(r, 0);
         ivec2 across = ivec2(-along.y, along.x);
         for (int y = 0; y < cells; y++) {
             for (int x = lane; x < cells; x += LANES) {
-                ivec2 point = texel_of_cell(ivec2(x, y), turn, side);
+                ivec2 point = texel_of_cell(ivec2(x, y), which, side);
                 // Every other row of edges has one cell less.
                 if (point.x > side) continue;
                 vec4 neighbours;
@@ -126,11 +137,12 @@ void make_coarse(int lane, int levels) {
             int x = 4 * i + k - y * row;
             h[k] = coarse[x <= side && y <= side ? y * pitch + x : 0];
         }
-        height[place_of(made, levels) + i] = made == levels && normalise != 0 ? scaled(h, scale_of(range)) : h;
+        if (made == levels && normalise != 0) h = scaled(h, scale_of(range));
+        height[place_of(made, levels) + i] = h;
     }
 }
 
-// ── two further levels ───────────────────────────────────────────────────────
+// ── two further levels ──
 
 // Columns 2 j - 1 .. 2 j + 3 of a row; rows beyond the border are those at the border.
 void read_five(int place, int side, int row, int j, out float h[5]) {
@@ -145,7 +157,7 @@ void read_five(int place, int side, int row, int j, out float h[5]) {
     h[4] = early ? second.y : second.w;
 }
 
-// What a turn does with the rows it makes.
+// What a step does with the rows it makes.
 struct Task {
     int place;      // of the lattice in the buffer
     bool keeps;     // writes them
@@ -156,7 +168,8 @@ struct Task {
 
 // Rows 2 k and 2 k + 1 of a lattice, from rows k and k + 1 of the coarser; `below` are the
 // centres south of row 2 k, and become those north of it.
-void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6], float high[6], inout float below[5], inout vec2 range) {
+void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6], float high[6],
+              inout float below[5], inout vec2 range) {
     int side = lattice.side;
     bool is_last = j == (side >> 3) - 1;
     bool has_odd = 2 * k < side;
@@ -169,7 +182,9 @@ void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6
     if (is_last) odd[1].w = odd[1].z;
     // No eight columns hold the last of an even row, or the first two of an odd one.
     float last = low[4];
-    vec2 first = vec2(edge_in_column(above[0], high[0], 0.0, low[0], ivec2(0, 2 * k + 1), true, false, lattice), above[0]);
+    vec4 neighbours = vec4(above[0], high[0], 0.0, low[0]);
+    vec2 first = vec2(above[0]);
+    first.x = edge_in_column(neighbours, ivec2(0, 2 * k + 1), bvec2(true, false), lattice);
     below = above;
     if (normalise != 0 && wanted && task.tells) {
         if (!has_odd) odd = even;
@@ -178,7 +193,8 @@ void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6
         range.x = min(range.x, min(min(least.x, least.y), min(least.z, least.w)));
         range.y = max(range.y, max(max(most.x, most.y), max(most.z, most.w)));
         if (is_last) range = widened(range, vec2(last));
-        if (j == 0 && has_odd) range = widened(range, vec2(min(first.x, first.y), max(first.x, first.y)));
+        vec2 ends = vec2(min(first.x, first.y), max(first.x, first.y));
+        if (j == 0 && has_odd) range = widened(range, ends);
     }
     if (normalise != 0 && task.scales) {
         for (int i = 0; i < 2; i++) {
@@ -206,11 +222,12 @@ void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6
 }
 
 // Narrow the rows from `begin` to `end` to those where heights may leave the range that is
-// known: a new height is within `reach` of the heights around it.
-void narrow(int place, int side, int j, float reach, bool looks, inout int begin, inout int end) {
-    // Others may widen the range meanwhile: it is a true one all the same, and rows are skipped sooner.
+// known: a new height is within `margin` of the heights around it.
+void narrow(int place, int side, int j, float margin, bool looks, inout int begin, inout int end) {
+    // Others may widen the range meanwhile: it is a true one all the same, and more rows are
+    // skipped.
     vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
-    reach += 1e-5 * max(abs(known.x), abs(known.y));  // roundings
+    margin += 1e-5 * max(abs(known.x), abs(known.y));  // roundings
     if (normalise == 1) known.x = -3.4e38;
     vec2 around[4] = vec2[](NO_RANGE, NO_RANGE, NO_RANGE, NO_RANGE);  // of the last four rows
     int first = end;
@@ -223,10 +240,11 @@ void narrow(int place, int side, int j, float reach, bool looks, inout int begin
         if (j == 0) h[0] = h[1];
         if (2 * j + 3 > side) h[4] = h[3];
         for (int i = 0; i < 3; i++) around[i] = around[i + 1];
-        around[3] = vec2(min(min(h[0], h[1]), min(min(h[2], h[3]), h[4])), max(max(h[0], h[1]), max(max(h[2], h[3]), h[4])));
+        around[3] = vec2(h[4]);
+        for (int i = 0; i < 4; i++) around[3] = widened(around[3], vec2(h[i]));
         vec2 found = widened(widened(around[0], around[1]), widened(around[2], around[3]));
         int q = row - 2;
-        if (q >= begin && q < end && (found.x - reach < known.x || found.y + reach > known.y)) {
+        if (q >= begin && q < end && (found.x - margin < known.x || found.y + margin > known.y)) {
             first = min(first, q);
             last = q;
         }
@@ -238,7 +256,7 @@ void narrow(int place, int side, int j, float reach, bool looks, inout int begin
 }
 
 void make_two_levels(int j, int begin, int levels) {
-    int last = max((levels >> 1) - 2, 0);  // the turn that makes the land, or only looks at it
+    int last = max((levels >> 1) - 2, 0);  // the step that makes the terrain, or only looks at it
     int level = min(4 + (levels & 1) + 2 * iteration, levels);
     bool looks = normalise != 0 && iteration == last;
     bool works = iteration > 0 && levels > 5 && j < 1 << max(level - 3, 0);
@@ -247,13 +265,17 @@ void make_two_levels(int j, int begin, int levels) {
     int side = fine.side >> 2;
     int from = place_of(level - 2, levels);
     vec2 scale = scale_of(vec2(height_of_key(~extremes[1]), height_of_key(extremes[0])));
-    Task task = Task(place_of(level, levels), !looks, normalise != 0 && (looks || iteration == last - 1), iteration > last, scale);
+    bool tells = normalise != 0 && (looks || iteration == last - 1);
+    Task task = Task(place_of(level, levels), !looks, tells, iteration > last, scale);
     int end = works ? min(begin + ROWS, side + 1) : begin - 1;
     if (!works) j = 0;
     // Twice two displacements lie between the coarser lattice and the finer.
-    if (normalise != 0) narrow(from, side, j, 2.0 * (middle.reach + fine.reach), works && looks, begin, end);
+    float margin = 2.0 * (middle.amplitude + fine.amplitude);
+    if (normalise != 0) narrow(from, side, j, margin, works && looks, begin, end);
 
-    float low[5], high[5], next[5], centres[4], next_centres[4], even[6], odd[6], next_even[6], below[5];
+    float low[5], high[5], next[5], below[5];
+    float centres[4], next_centres[4];
+    float even[6], odd[6], next_even[6];
     read_five(from, side, begin - 1, j, low);
     read_five(from, side, begin, j, high);
     four_centres(low, high, j, begin - 1, middle, centres);

@@ -1,8 +1,8 @@
-// generation/fourier.comp -- the same land from half of its spectrum, sixteen numbers transformed at a time.
+// generation/fourier.comp -- the same terrain from half of its spectrum, by sixteens.
 //
 //   gives    height
-//   needs    generation/fourier/wave.glsl, maths/complex.glsl, maths/fourier.glsl, maths/power.glsl,
-//            maths/whole.glsl, terrain/extremes.glsl
+//   needs    generation/fourier/wave.glsl, maths/{complex,fourier,power,whole}.glsl,
+//            terrain/extremes.glsl
 //   units    heights without unit: 0..1, unless normalise says otherwise
 //   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
 //            others 1992, "Numerical Recipes in C", section 12.3
@@ -11,7 +11,7 @@
 // The technique draws waves, adds them up to a grid and transforms that: which gives the waves
 // again. Here they are weighed as they are drawn, and only the way back to heights is gone.
 //
-// Rows y, y + n/4, y + n/2 and y + 3n/4 of the land are two complex rows, and both lie in one
+// Rows y, y + n/4, y + n/2 and y + 3n/4 of the terrain are two complex rows, and both lie in one
 // row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in
 // base 16: the top one, one more where n > 8, and a lowest of 1 to 4 bits. Each stage takes
 // sixteen numbers that differ in one digit, transforms them and puts them back where they were:
@@ -35,22 +35,30 @@
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
 #include "terrain/extremes.glsl"
-#pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", groups = "(max(size.x, 64) + 4) * max(size.y, 64) // (512 if iteration == 6 else 2048) + 1, 1", local = "32, 1", buffers = "waves:vec4:(max(size.x - size.x % 2, 64) + 4) * max(size.y - size.y % 2, 64) // 4 if max(size.x, size.y) < 4098 else 2**40; bounds:uint:2; height:vec4:(size.x * size.y + 3) // 4", overwrites = "waves, height", aligned = "4", agrees = "1e-5")
+#pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", local = "32, 1", \
+                accepts = "n up to 4097, m up to 4097", \
+                where = "numbers_x = max(size.x - size.x % 2, 64); \
+                         numbers_y = max(size.y - size.y % 2, 64); \
+                         a_group = 512 if iteration == 6 else 2048", \
+                groups = "(max(size.x, 64) + 4) * max(size.y, 64) // a_group + 1, 1", \
+                buffers = "waves:vec4:(numbers_x + 4) * numbers_y // 4; bounds:uint:2; \
+                           height:vec4:(size.x * size.y + 3) // 4", \
+                overwrites = "waves, height", aligned = "4", agrees = "1e-5")
 
-uniform float roughness = 2.0; //! slider(0, 4) step(0.01) The r of 1 / f^r
-uniform uint seed = 7u;        //! slider(0, 9999) Which land
-uniform int normalise = 2;     //! menu("none", "max", "minmax") What is stretched to 1
+uniform float roughness = 2.0; //! slider(0, 4) step(0.01) As in the technique
+uniform uint seed = 7u;        //! slider(0, 9999) As in the technique
+uniform int normalise = 2;     //! menu("none", "max", "minmax") As in the technique
 
 const int DRAW = 0, HIGHER = 1, TOP_Y = 2, LOW_X = 3, SHOW = 4, SHOW_LAST_ROW = 5;
 
-ivec2 period;  // texels after which the land repeats
+ivec2 period;  // texels after which the terrain repeats
 ivec2 count;   // of the numbers transformed, along each axis
 ivec2 bits;    // log2(count)
 int rows;      // of `waves`
 int pitch;     // from one of its rows to the next
 vec4 v[16];
 
-// ── where things lie ─────────────────────────────────────────────────────────
+// ── where things lie ──
 
 int lowest_digit(int n) {
     return n < 8 ? n - 4 : n == 8 ? 4 : n - 8;
@@ -120,13 +128,14 @@ Sixteen along_y(int job, int p) {
     s.low = mine & ((1 << p) - 1);
     s.place = ((mine >> p) << (p + 4)) | s.low;
     int quarter = s.place >> (bits.y - 2);
-    int column = quarter < 2 ? (quarter == 0 ? columns.x : columns.y) : (quarter == 2 ? columns.z : columns.w);
+    ivec2 half_of_them = quarter < 2 ? columns.xy : columns.zw;
+    int column = (quarter & 1) == 0 ? half_of_them.x : half_of_them.y;
     s.base = (s.place & (rows - 1)) * pitch + column;
     s.apart = pitch << p;
     return s;
 }
 
-// ── the stages ───────────────────────────────────────────────────────────────
+// ── the stages ──
 
 vec2 near_roots[4], far_roots[4];
 
@@ -165,7 +174,10 @@ void top_y(int job) {
     ivec2 unused;
     ivec4 columns = columns_of(job - low * pairs, unused);
     find_roots(low, p);
-    for (int e = 0; e < 16; e++) v[e] = both_products(waves[(((e & 3) << p) | low) * pitch + columns[e >> 2]], root(e));
+    for (int e = 0; e < 16; e++) {
+        int row = ((e & 3) << p) | low;
+        v[e] = both_products(waves[row * pitch + columns[e >> 2]], root(e));
+    }
     transform16(v);
     // Conjugates: of Z[k] = R[k] + i S[k] and of Z[-k] = conj R[k] + i conj S[k].
     for (int i = 0; i < 4; i++) {
@@ -191,7 +203,8 @@ vec2 weighed(ivec2 frequency) {
     vec2 f = vec2(waves) * float(max(period.x, period.y)) / vec2(period);
     float squared = dot(f, f);
     float weight = squared > 0.0 ? power(squared, -0.5 * roughness) : 1.0;
-    return wave_number(waves, period, seed) * (weight * inversesqrt(float(period.x) * float(period.y)));
+    weight *= inversesqrt(float(period.x) * float(period.y));
+    return wave_number(waves, period, seed) * weight;
 }
 
 void draw(Sixteen s) {
@@ -199,13 +212,15 @@ void draw(Sixteen s) {
     int block = ~((1 << levels) - 1);
     for (int e = 0; e < 16; e++) {
         int l = frequency_of(s.place | (e & block) | block_number(e, levels), bits.y);
-        v[e] = vec4(weighed(ivec2(s.frequencies.x, l)), weighed(ivec2(s.frequencies.y, l))) * vec4(1.0, -1.0, 1.0, -1.0);
+        vec2 one = weighed(ivec2(s.frequencies.x, l));
+        vec2 other = weighed(ivec2(s.frequencies.y, l));
+        v[e] = vec4(one, other) * vec4(1.0, -1.0, 1.0, -1.0);
     }
     transform_blocks_back(v, levels);
     for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[e];
 }
 
-// ── heights ──────────────────────────────────────────────────────────────────
+// ── heights ──
 
 // A whole number that grows with a height.
 uint code_of(float height) {
@@ -250,14 +265,16 @@ void show(int row, int from, int at) {
     for (int j = 0; j < 4; j++) {
         int rows_on = int(from + j >= size.x) + int(from + j >= 2 * size.x);
         int x = from + j - rows_on * size.x;
-        found[j] = waves[(row + rows_on) * pitch + (x & (count.x - 1))] * vec4(1.0, -1.0, 1.0, -1.0);
+        int place = (row + rows_on) * pitch + (x & (count.x - 1));
+        found[j] = waves[place] * vec4(1.0, -1.0, 1.0, -1.0);
     }
     vec2 range = vec2(height_of(~bounds[0]), height_of(bounds[1]));
     int quarter = (rows >> 2) * size.x;
     int all_fours = (size.x * size.y + 3) >> 2;
     for (int g = 0; g < 4; g++) {
         if (at + g * quarter < all_fours) {
-            height[at + g * quarter] = normalised(vec4(found[0][g], found[1][g], found[2][g], found[3][g]), range);
+            vec4 four = vec4(found[0][g], found[1][g], found[2][g], found[3][g]);
+            height[at + g * quarter] = normalised(four, range);
         }
     }
 }

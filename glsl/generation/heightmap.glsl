@@ -1,4 +1,4 @@
-// generation/heightmap.glsl -- land from an elevation file: real, or painted.
+// generation/heightmap.glsl -- terrain from an elevation file: real, or painted.
 //
 //   gives    height: 0 at the file's lowest, 1 at its highest
 //   needs    nothing; the processor reads the file (playground/terrain/elevation.py)
@@ -11,9 +11,16 @@
 // another size than the file's it is resampled, corners on corners.
 #pragma source("elevation_file", output = "height:r32f")
 
-uniform sampler2D elevation;         //! file("sketches/data/jacksboro_fault_dem.npz") PNG, TIFF, NPY, NPZ, R16, RAW or HGT
-uniform ivec2 raw_size = ivec2(0);   //! label("Size of raw files") parts("width", "height") Width and height of an R16 or RAW file; 0: it is square
-uniform int packing = 0;             //! menu("grey", "rgb") Greys, or heights packed in three channels as R·65536 + G·256 + B
-uniform int no_data = 0;             //! menu("refuse", "fill") label("Gaps") A file with gaps is refused, or they are filled smoothly from their rims
-uniform int first_row = 0;           //! menu("north", "south") Which edge the file begins with: north as in images, south in arrays that `render --texture` wrote
-uniform vec2 metres = vec2(0.0);     //! unit("m") parts("black", "white") Elevations of the file's black and white; equal: as the file says
+uniform sampler2D elevation;         //! file("sketches/data/jacksboro_fault_dem.npz") PNG, TIFF,
+                                     //! NPY, NPZ, R16, RAW or HGT
+uniform ivec2 raw_size = ivec2(0);   //! label("Size of raw files") parts("width", "height") Width
+                                     //! and height of an R16 or RAW file; 0: it is square
+uniform int packing = 0;             //! menu("grey", "rgb") Greys, or heights packed in three
+                                     //! channels as R·65536 + G·256 + B
+uniform int no_data = 0;             //! menu("refuse", "fill") label("Gaps") A file with gaps is
+                                     //! refused, or they are filled smoothly from their rims
+uniform int first_row = 0;           //! menu("north", "south") Which edge the file begins with:
+                                     //! north as in images, south in arrays that `render
+                                     //! --texture` wrote
+uniform vec2 metres = vec2(0.0);     //! unit("m") parts("black", "white") Elevations of the file's
+                                     //! black and white; equal: as the file says

@@ -4,7 +4,8 @@
 //   needs    the time
 //   units    hours; hours a second
 //   source   none
-//   tested   tests/glsl/test_daylight.py: the sun moves with the time, and without a clock stands still
+//   tested   tests/glsl/test_daylight.py: the sun moves with the time, and without a clock stands
+//            still
 //
 // It is a pass of its own because what names the time runs for every picture, and all that
 // reads it as well.

@@ -2,7 +2,8 @@
 //
 //   gives    sky_towards, air_rise, air_towards, horizon_of, level_light
 //   needs    sky/dome.glsl; the output of lighting/daylight
-//   units    heights of the eye over the sea in kilometres; light without unit: what is seen is as bright as a white surface in as much light
+//   units    heights of the eye over the sea in kilometres; light without unit: what is seen is as
+//            bright as a white surface in as much light
 //   source   none: the order of texels in lighting/daylight/light
 //   tested   tests/glsl/test_air.py, against light worked out in each direction in float64
 #ifndef LIGHTING_DAYLIGHT_SKY
@@ -31,7 +32,8 @@ vec3 horizon_of(sampler2D daylight, float height) {
     float place = dome_between(height);
     int low = int(place);
     vec3 below = texelFetch(daylight, ivec2(7 + low, 0), 0).rgb;
-    return mix(below, texelFetch(daylight, ivec2(7 + min(low + 1, DOMES - 1), 0), 0).rgb, place - float(low));
+    return mix(below, texelFetch(daylight, ivec2(7 + min(low + 1, DOMES - 1), 0), 0).rgb,
+               place - float(low));
 }
 
 // What open level ground receives from sun and sky together.

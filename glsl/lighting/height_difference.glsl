@@ -3,28 +3,30 @@
 //   gives    light: red, green, blue; alpha the share of light, 0..1
 //   needs    lighting/sun.glsl, terrain/heightfield.glsl
 //   units    heights and softness without unit, 1 is the relief; reach in texels of the heights
-//   source   Belaiche 2010, section 3.5.1, where Reiter 1995 is cited for it (The Visual Computer 11, 6)
+//   source   Belaiche 2010, section 3.5.1, where Reiter 1995 is cited for it (The Visual Computer
+//            11, 6)
 //   tested   tests/glsl/test_height_difference.py, against NumPy and planes
 //
 // share = 1 - (h(towards the sun) - h(here)) / softness, cut to 0..1, and 1 where the place
-// towards the sun lies off the land. The sun's elevation plays no part: that is the method's
-// fault, and why a land that falls away from the sun is as bright as a level one.
+// towards the sun lies off the terrain. The sun's elevation plays no part: that is the method's
+// defect, and why a terrain that falls away from the sun is as bright as a level one.
 //
 // The thesis names no number for its softness, and brings no light to 0..1; its place is a
 // whole number of pixels away, here it is interpolated along the sun's azimuth. Its gain of 2
-// (section 5.4) would make all level land twice white: here it is 1.
+// (section 5.4) would make all level terrain twice white: here it is 1.
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f")
 
 uniform sampler2D height;                //! input
-uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north; this method knows no elevation
+#include "lighting/parameters/one_step.glsl"
 uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
-uniform float gain = 1.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
-uniform vec3 sky_colour = vec3(1.0);     //! colour group("Sky") Colour of the light from everywhere
-uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky") Light from everywhere, in shadow too
-uniform float softness = 0.05;           //! log_slider(0.001, 1) How much higher the place towards the sun may be before all light is gone. The less, the darker
-uniform float reach = 1.0;               //! slider(0, 16) step(0.5) unit("texels") How far away that place is, along the axis that the sun is nearer to
+uniform float gain = 1.0;                //! slider(0, 4) step(0.05) group("Sun")
+                                         //! The sun's light is multiplied by it
+#include "lighting/parameters/skylight.glsl"
+uniform float softness = 0.05;           //! log_slider(0.001, 1)
+                                         //! How much higher the place towards the sun may be
+                                         //! before all light is gone. The less, the darker
 
 float share_at(ivec2 grid, vec2 place) {
     vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);

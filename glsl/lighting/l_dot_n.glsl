@@ -15,18 +15,16 @@
 #pragma kernel(output = "light:rgba16f")
 
 uniform sampler2D height;                //! input
-uniform sampler2D daylight;              //! input("black")
-uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
-uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
-uniform vec3 sky_colour = vec3(1.0);     //! colour group("Sky") Colour of the light from everywhere
-uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky") Light from everywhere, in shadow too
-uniform int normal = 0;                  //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/sun.glsl"
+#include "lighting/parameters/sunlight.glsl"
+#include "lighting/parameters/skylight.glsl"
+#include "lighting/parameters/normal.glsl"
 
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
-    vec2 slope = relief * (matches_height ? slope_of_node(height, texel, metres, normal) : slope_at(height, place_on(grid, texel, size), metres, normal));
+    vec2 slope = relief * (matches_height ? slope_of_node(height, texel, metres, normal)
+                           : slope_at(height, place_on(grid, texel, size), metres, normal));
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     float received = gain * sun_on(normal_of_slope(slope), from.direction);
     return vec4(from.sun * received + from.sky * ambient, 1.0);

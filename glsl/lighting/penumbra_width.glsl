@@ -1,16 +1,18 @@
-// lighting/penumbra_width.glsl -- how wide the border of a shadow is, where the sun is partly seen.
+// lighting/penumbra_width.glsl -- how wide a shadow's border is, where the sun is partly seen.
 //
-//   gives    texels, metres: 0 where the sun is seen whole or not at all; share: metres over the widest, for maps
+//   gives    texels, metres: 0 where the sun is seen whole or not at all; share: metres over the
+//            widest, for maps
 //   needs    maths/land.glsl; the visible part of the sun, 0..1
 //   units    texels of the light map, metres on the map, a share without unit
 //   source   derived here
-//   tested   tests/glsl/test_penumbra_width.py, against the shadow of a wall worked out from its angles
+//   tested   tests/glsl/test_penumbra_width.py, against the shadow of a wall worked out from its
+//            angles
 //
 // The width is 1/|gradient of V|: how far it is from dark to light at the pace that V has here.
-// Along each axis the steeper of the two differences with the neighbours is taken, for at a penumbra's
-// rim one neighbour is beyond it and its V no longer falls or rises. A border narrower
+// Along each axis the steeper of the two differences with the neighbours is taken, for at a
+// penumbra's rim one neighbour is beyond it and its V no longer falls or rises. A border narrower
 // than a texel cannot be told from one of up to two; where V has no slope the width is the
-// land's own, along its diagonal.
+// terrain's own, along its diagonal.
 #include "maths/land.glsl"
 #pragma kernel(output = "texels:r32f, metres:r32f, share:r32f")
 

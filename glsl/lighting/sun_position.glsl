@@ -2,8 +2,8 @@
 //
 //   gives    days_from_2000, sun_course, sun_over, refraction, sun_position, sun_position_solar
 //   needs    maths/angle.glsl
-//   units    degrees; latitude north and longitude east of Greenwich positive; hours from midnight,
-//            of any number; azimuth clockwise from north; elevation of the disc's middle
+//   units    degrees; latitude north and longitude east of Greenwich positive; hours from
+//            midnight, of any number; azimuth clockwise from north; elevation of the disc's middle
 //   source   National Oceanic and Atmospheric Administration, "Solar Calculation Details", after
 //            Meeus 1998, "Astronomical Algorithms", chapters 25 and 28; its refraction by pieces
 //   tested   tests/glsl/test_sun_position.py, against the Astronomical Almanac's formulas in
@@ -40,7 +40,8 @@ vec2 sun_course(int days, float hours) {
     float eccentricity = 0.016708634 - 0.000042037 * centuries;
     vec2 once = cos_sin_degrees(anomaly);
     vec2 twice = cos_sin_degrees(2.0 * anomaly);
-    float centre = (1.914602 - 0.004817 * centuries) * once.y + (0.019993 - 0.000101 * centuries) * twice.y
+    float centre = (1.914602 - 0.004817 * centuries) * once.y
+            + (0.019993 - 0.000101 * centuries) * twice.y
                  + 0.000289 * cos_sin_degrees(3.0 * anomaly).y;
     vec2 nutation = cos_sin_degrees(node);
     float apparent = longitude + centre - 0.00569 - 0.00478 * nutation.y;
@@ -52,7 +53,8 @@ vec2 sun_course(int days, float hours) {
     vec2 mean_twice = cos_sin_degrees(2.0 * longitude);
     float ahead = y * mean_twice.y - 2.0 * eccentricity * once.y
                 + 4.0 * eccentricity * y * once.y * mean_twice.x
-                - 0.5 * y * y * cos_sin_degrees(4.0 * longitude).y - 1.25 * eccentricity * eccentricity * twice.y;
+                - 0.5 * y * y * cos_sin_degrees(4.0 * longitude).y
+                        - 1.25 * eccentricity * eccentricity * twice.y;
     return vec2(declination_sine, degrees(ahead));
 }
 
@@ -66,7 +68,8 @@ vec2 sun_over(float latitude, float declination_sine, float hour_angle) {
     float up = declination_sine * here.y + declination_cosine * hour.x * here.x;
     float level = length(vec2(east, north));
     // An arc tangent tells angles near the zenith apart, which an arc sine does not. Of two zeros
-    // it is undefined, and one compiler makes no number of it as soon as the first is known to be 0.
+    // it is undefined, and one compiler makes no number of it as soon as the first is known to be
+    // 0.
     float azimuth = east == 0.0 ? (north < 0.0 ? 180.0 : 0.0) : degrees(atan(east, north));
     return vec2(azimuth < 0.0 ? azimuth + 360.0 : azimuth, degrees(atan(up, max(level, 1e-7))));
 }
@@ -77,7 +80,8 @@ float refraction(float elevation) {
     float seconds = 0.0;
     if (elevation < -0.575) seconds = -20.774 / tangent;
     else if (elevation < 5.0) {
-        seconds = 1735.0 + elevation * (-518.2 + elevation * (103.4 + elevation * (-12.79 + elevation * 0.711)));
+        float high = 103.4 + elevation * (-12.79 + elevation * 0.711);
+        seconds = 1735.0 + elevation * (-518.2 + elevation * high);
     } else if (elevation < 85.0) {
         float inverse = 1.0 / tangent;
         seconds = inverse * (58.1 + inverse * inverse * (-0.07 + inverse * inverse * 0.000086));
@@ -85,7 +89,8 @@ float refraction(float elevation) {
     return seconds / 3600.0;
 }
 
-// Azimuth and elevation as seen through the air, by universal time; `place` is latitude and longitude.
+// Azimuth and elevation as seen through the air, by universal time; `place` is latitude and
+// longitude.
 vec2 sun_position(vec2 place, int year, int day, float hours) {
     vec2 course = sun_course(days_from_2000(year, day), hours);
     vec2 sun = sun_over(place.x, course.x, 15.0 * (hours - 12.0) + place.y + course.y);

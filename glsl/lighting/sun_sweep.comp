@@ -1,23 +1,23 @@
-// lighting/sun_sweep.comp -- the horizon towards the sun, each band of the land walked once.
+// lighting/sun_sweep.comp -- the horizon towards the sun, each band of the terrain swept once.
 //
-//   gives    horizon: tangents of the horizon's elevation, one a texel of the land
+//   gives    horizon: tangents of the horizon's elevation, one a texel of the terrain
 //   needs    lighting/daylight_reading.glsl, lighting/sun_sweep/band.glsl, maths/land.glsl
-//   units    rise over run; -10000 where no land stands towards the sun
+//   units    rise over run; -10000 where no terrain stands towards the sun
 //   source   see lighting/sun_sweep/band.glsl
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
 //   agrees   exactly: it does what the kernel beside it does, less often
 //
-// A thread has a band. Bands that begin beside the land enter it later.
+// A thread has a band. Bands that begin beside the terrain enter it later.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "maths/land.glsl"
-#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", buffers = "horizon:float:size.x * size.y", overwrites = "horizon", aligned = "4", agrees = "exact")
+#pragma compute(groups = "(size.x + size.y + 63) // 64, 1", local = "64, 1", \
+                buffers = "horizon:float:size.x * size.y", overwrites = "horizon", \
+                aligned = "4", agrees = "exact")
 
 uniform sampler2D height;              //! input
-uniform sampler2D daylight;            //! input("black")
-uniform vec2 sun = vec2(135.0, 25.0);  //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform int shape = 0;                 //! menu("point", "cone", "disc") group("Sweep") What stands for the sun
-uniform float spread = 0.0;            //! slider(0, 20) step(0.01) group("Sweep") Of a cone, its radius over its length; of a disc, its diameter in degrees
+#include "lighting/parameters/sun.glsl"
+#include "lighting/parameters/sun_shape.glsl"
 
 void main() {
     ivec2 grid = textureSize(height, 0);

@@ -3,7 +3,8 @@
 //   gives    cos_sin_degrees
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    degrees in; cosine and sine out
-//   source   derived here: an angle is a whole number of quarter turns and a rest within 45 degrees
+//   source   derived here: an angle is a whole number of quarter turns and a rest within 45
+//            degrees
 //   tested   tests/glsl/test_maths.py, against Python's own in float64
 //
 // The radians of 90 degrees are no float, so cos(radians(90.0)) is -4e-8, and a sun in the

@@ -1,6 +1,7 @@
-// maths/fourier.glsl -- Fourier transforms of sixteen numbers, or of blocks of them, that one thread holds.
+// maths/fourier.glsl -- Fourier transforms of sixteen numbers that one thread holds, or blocks.
 //
-//   gives    transform16, place16, transform_blocks, transform_blocks_back, block_number, both_products
+//   gives    transform16, place16, transform_blocks, transform_blocks_back, block_number,
+//            both_products
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    as the numbers: sums with exp(-2 pi i j k / count), not divided by anything
 //   source   Cooley and Tukey 1965, "An Algorithm for the Machine Calculation of Complex
@@ -13,10 +14,14 @@
 
 // exp(-2 pi i k / 16).
 const vec2 ROOTS_16[16] = vec2[16](
-    vec2(1.0, 0.0), vec2(0.923879533, -0.382683432), vec2(0.707106781, -0.707106781), vec2(0.382683432, -0.923879533),
-    vec2(0.0, -1.0), vec2(-0.382683432, -0.923879533), vec2(-0.707106781, -0.707106781), vec2(-0.923879533, -0.382683432),
-    vec2(-1.0, 0.0), vec2(-0.923879533, 0.382683432), vec2(-0.707106781, 0.707106781), vec2(-0.382683432, 0.923879533),
-    vec2(0.0, 1.0), vec2(0.382683432, 0.923879533), vec2(0.707106781, 0.707106781), vec2(0.923879533, 0.382683432));
+    vec2(1.0, 0.0), vec2(0.923879533, -0.382683432),
+    vec2(0.707106781, -0.707106781), vec2(0.382683432, -0.923879533),
+    vec2(0.0, -1.0), vec2(-0.382683432, -0.923879533),
+    vec2(-0.707106781, -0.707106781), vec2(-0.923879533, -0.382683432),
+    vec2(-1.0, 0.0), vec2(-0.923879533, 0.382683432),
+    vec2(-0.707106781, 0.707106781), vec2(-0.382683432, 0.923879533),
+    vec2(0.0, 1.0), vec2(0.382683432, 0.923879533),
+    vec2(0.707106781, 0.707106781), vec2(0.923879533, 0.382683432));
 
 // Both complex numbers of a pair times the same complex factor.
 vec4 both_products(vec4 pair, vec2 factor) {
@@ -72,7 +77,8 @@ void transform_blocks(inout vec4 v[16], int levels) {
 }
 
 int block_number(int place, int levels) {
-    int reversed = ((place & 1) << 3) | ((place & 2) << 1) | ((place & 4) >> 1) | ((place & 8) >> 3);
+    int reversed = ((place & 1) << 3) | ((place & 2) << 1)
+                 | ((place & 4) >> 1) | ((place & 8) >> 3);
     return reversed >> (4 - levels);
 }
 
@@ -87,7 +93,8 @@ void level_back(inout vec4 v[16], int span, bool wanted) {
     }
 }
 
-// Forward as well, but from numbers that stand as transform_blocks leaves them to numbers in order.
+// Forward as well, but from numbers that stand as transform_blocks leaves them to numbers in
+// order.
 void transform_blocks_back(inout vec4 v[16], int levels) {
     level_back(v, 1, levels > 0);
     level_back(v, 2, levels > 1);

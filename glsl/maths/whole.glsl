@@ -1,4 +1,4 @@
-// maths/whole.glsl -- division of whole numbers, exact, without the processor's slow integer division.
+// maths/whole.glsl -- exact division of whole numbers, without a slow integer division.
 //
 //   gives    quotient
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -10,7 +10,8 @@
 
 // floor(a / b) for a >= 0, b > 0 and a quotient below 2^21.
 int quotient(int a, int b) {
-    // Three roundings of 2^-24 and a division good to 2^-22 move a quotient below 2^21 by less than 1.
+    // Three roundings of 2^-24 and a division good to 2^-22 move a quotient below 2^21 by less
+    // than 1.
     int near = int(float(a) / float(b));
     int rest = a - near * b;
     return near + int(rest >= b) - int(rest < 0);

@@ -1,16 +1,22 @@
-// noise/columns.glsl -- octaves of Perlin noise along a column of texels, as one polynomial at a time.
+// noise/columns.glsl -- octaves of Perlin noise along a column of texels, as polynomials.
 //
-//   gives    Column, Rows, Span, octave_span, column_end, column_add, column_moved, column_height
+//   gives    perlin_across, Column, Rows, Span, octave_span, column_end, column_add, column_moved,
+//            column_height
 //   needs    noise/octaves.glsl
 //   units    places in cells of the first octave; rows of texels
-//   source   derived here from equation 1 of noise/gradient.glsl
+//   source   derived here from noise/gradient.glsl
 //   tested   tests/glsl/test_gradient_noise.py, against noise/octaves.glsl at every texel
 //
-// From south to north, between two lattice rows, an octave is a polynomial of degree 6. With
-// q = v - 1/2, the heights s and n that the southern and the northern row's planes have in the
-// middle, and the slopes ls and ln of those planes, equation 1 of noise/gradient.glsl is
+// Only for speed. For one place from west to east, all of Perlin's noise between two lattice
+// rows follows from two numbers a row, the blended height x on the row and the blended slope y
+// to the north; v is the place from the southern to the northern row, and f the fade:
 //
-//     s + ls q + (1/2 + 15/8 q - 5 q^3 + 6 q^5) ((n - s) + (ln - ls) q)              (1)
+//     noise(v) = mix(low.x + low.y v, high.x + high.y (v - 1), f(v))                 (1)
+//
+// That is a polynomial of degree 6. With q = v - 1/2, the heights s and n that the southern and
+// the northern row's planes have in the middle, and the slopes ls and ln of those planes, it is
+//
+//     s + ls q + (1/2 + 15/8 q - 5 q^3 + 6 q^5) ((n - s) + (ln - ls) q)              (2)
 //
 // The sum of octaves is such a polynomial too, from one lattice row of any of them to the
 // next. Hashes, gradients and floors are paid once for each such piece; a texel costs six
@@ -18,6 +24,16 @@
 #ifndef NOISE_COLUMNS
 #define NOISE_COLUMNS
 #include "noise/octaves.glsl"
+
+// What equation 1 needs of one lattice row, at the share u of a cell from west to east.
+vec2 perlin_across(uvec2 columns, uint row, float u) {
+    vec2 west = gradient_of(columns.x * row);
+    vec2 east = gradient_of(columns.y * row);
+    float fade = quintic(u);
+    float from = west.x * u;
+    float rise = east.x * (u - 1.0) - from;
+    return vec2(from + rise * fade, west.y + (east.y - west.y) * fade);
+}
 
 // Coefficients of t^0 .. t^3 and of t^4 .. t^6, t in rows.
 struct Column {
@@ -49,7 +65,8 @@ Span octave_span(Octaves o, int from, int to) {
 }
 
 float column_height(Column c, float t) {
-    return c.low.x + t * (c.low.y + t * (c.low.z + t * (c.low.w + t * (c.high.x + t * (c.high.y + t * c.high.z)))));
+    float high = c.high.x + t * (c.high.y + t * c.high.z);
+    return c.low.x + t * (c.low.y + t * (c.low.z + t * (c.low.w + t * high)));
 }
 
 // The same polynomial, counted from t on: Horner's scheme, each time one coefficient shorter.
@@ -92,14 +109,14 @@ Column column_add(Column c, Rows rows, float row, Octaves o, Span span) {
         uint seed = lattice_seed(o.seed, k);
         uvec2 columns = lattice_columns(int(cell.x), seed);
         uvec2 lines = lattice_rows(int(cell.y), seed);
-        vec4 south = perlin_across(columns, lines.x, part.x);
-        vec4 north = perlin_across(columns, lines.y, part.x);
+        vec2 south = perlin_across(columns, lines.x, part.x);
+        vec2 north = perlin_across(columns, lines.y, part.x);
         float s = south.x + 0.5 * south.y;
         float rise = north.x - 0.5 * north.y - s;
-        float turn = north.y - south.y;
+        float twist = north.y - south.y;
         Column piece = Column(
-            vec4(s + 0.5 * rise, south.y + 0.5 * turn + 1.875 * rise, 1.875 * turn, -5.0 * rise),
-            vec3(-5.0 * turn, 6.0 * rise, 6.0 * turn)
+            vec4(s + 0.5 * rise, south.y + 0.5 * twist + 1.875 * rise, 1.875 * twist, -5.0 * rise),
+            vec3(-5.0 * twist, 6.0 * rise, 6.0 * twist)
         );
         piece = column_moved(piece, part.y - 0.5);
         float pace = rows.step * frequency;

@@ -1,4 +1,4 @@
-// noise/finest.glsl -- the key of a point of a terrain that is made by halving, the same at every size.
+// noise/finest.glsl -- the key of a point of a halved terrain, the same at every size.
 //
 //   gives    FINEST_SIDE, finest_point
 //   needs    nothing: pure functions, no uniforms, no textures

@@ -1,4 +1,4 @@
-// noise/lattice.glsl -- random bits at the points of a lattice, cheaper than a hash for each point.
+// noise/lattice.glsl -- random bits at the points of a lattice, cheaper than a hash each.
 //
 //   gives    lattice_seed, lattice_columns, lattice_rows
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -31,13 +31,14 @@ uvec2 lattice_columns(int x, uint seed) {
     return lattice_mixed(uvec2(key, key + 0x9e3779b1u));
 }
 
-// The numbers of row y and of the next one; another multiplier, or the lattice would be its own mirror image.
+// The numbers of row y and of the next one; another multiplier, or the lattice would be its own
+// mirror image.
 uvec2 lattice_rows(int y, uint seed) {
     uint key = uint(y) * 0x85ebca77u + seed;
     return lattice_mixed(uvec2(key, key + 0x85ebca77u));
 }
 
-// A seed for one of several lattices of a land. Seeds need no mixing: a seed moves columns and
+// A seed for one of several lattices of a terrain. Seeds need no mixing: a seed moves columns and
 // rows by different steps through all there are, and steps that bring both to less than
 // 29 000 cells of another seed's do not exist. So seeds are windows that never overlap.
 uint lattice_seed(uint seed, int which) {

@@ -1,7 +1,7 @@
 // noise/octaves.glsl -- octaves of gradient noise added up: plain, ridged, billowing or warped.
 //
-//   gives    Octaves, octave, octave_weight, cells_a_metre, gain_of, octaves_plain,
-//            octaves_billow, octaves_ridged, octaves_warped, octaves_shaped
+//   gives    Octaves, octave, octave_weight, cells_a_metre, gain_of, octaves_sum, and the names
+//            of the choices
 //   needs    noise/gradient.glsl, noise/simplex.glsl, noise/lattice.glsl
 //   units    places in cells of the first octave; noise in x, its slopes in noise per such
 //            cell in y and z. The first octave lies in [-1, 1] (ridged: 0..1), each next one
@@ -16,7 +16,7 @@
 // points would meet at those of the first octave, where every octave is zero.
 //
 // A cell must be wider than a texel to be seen: an octave fades between two texels a cell and
-// one, and finer ones are left out. So at a larger size the same land gains detail, and at a
+// one, and finer ones are left out. So at a larger size the same terrain gains detail, and at a
 // smaller one it does not turn to noise.
 #ifndef NOISE_OCTAVES
 #define NOISE_OCTAVES
@@ -40,19 +40,21 @@ const int BY_HURST = 1;
 
 struct Octaves {
     int basis;         // PERLIN or SIMPLEX
-    int count;         // 0 gives flat land at 0
+    int count;         // 0 gives flat terrain at 0
     float lacunarity;  // cells of an octave to one of the octave before, above 1
     float gain;        // strength of an octave over the one before
     float texels;      // texels to a cell of the first octave, 2 or more
     uint seed;
 };
 
-// Cells to a metre in the first octave: `frequency` along the land's width, but none below two texels.
+// Cells to a metre in the first octave: `frequency` along the width, but none below
+// two texels.
 float cells_a_metre(float frequency, vec2 extent, vec2 spacing) {
     return min(frequency / extent.x, 0.5 / max(spacing.x, spacing.y));
 }
 
-// Strength of an octave over the one before; from a Hurst exponent as fractional Brownian motion has it.
+// Strength of an octave over the one before: given, or from a Hurst exponent H, as fractional
+// Brownian motion has it, lacunarity^-H.
 // anchor: gain
 float gain_of(int strength, float gain, float hurst, float lacunarity) {
     return strength == BY_HURST ? exp2(-hurst * log2(lacunarity)) : gain;
@@ -72,16 +74,34 @@ vec3 octave(vec2 place, Octaves o, int which, float frequency) {
     return vec3(noise.x, noise.yz * frequency);
 }
 
-// The sum itself. Loops ask at their end: software renderers run a body once too often for a
-// question at its head.
-vec3 octaves_plain(vec2 place, Octaves o) {
+// Billows: creases along the zeros of each octave, pointing down. Soft hills, sharp valleys.
+vec3 billow(vec3 noise) {
+    return (noise.x < 0.0 ? -2.0 : 2.0) * noise - vec3(1.0, 0.0, 0.0);
+}
+
+// Ridges: creases pointing up, and squared. What an octave adds is weighed by twice what the
+// octave before it gave there, so ridges are rough and valleys stay smooth.
+vec3 ridge(vec3 noise, vec3 before) {
+    vec3 weight = before.x < 0.5 ? 2.0 * before : vec3(1.0, 0.0, 0.0);
+    float crest = 1.0 - abs(noise.x);
+    vec2 fall = (noise.x < 0.0 ? 2.0 : -2.0) * crest * noise.yz;
+    return vec3(weight.x * crest * crest, weight.yz * crest * crest + weight.x * fall);
+}
+
+// The sum of octaves, plain, ridged or billowing. The loop asks at its end: software renderers
+// run a body once too often for a question at its head.
+vec3 octaves_added(int shape, vec2 place, Octaves o) {
     vec3 total = vec3(0.0);
+    vec3 before = vec3(1.0, 0.0, 0.0);
     float frequency = 1.0;
     float strength = 1.0;
     int k = 0;
     // anchor: sum
     do {
-        total += strength * octave_weight(o.texels / frequency) * octave(place, o, k, frequency);
+        vec3 noise = octave(place, o, k, frequency);
+        if (shape == BILLOW) noise = billow(noise);
+        if (shape == RIDGED) noise = before = ridge(noise, before);
+        total += strength * octave_weight(o.texels / frequency) * noise;
         frequency *= o.lacunarity;
         strength *= o.gain;
         k++;
@@ -90,61 +110,19 @@ vec3 octaves_plain(vec2 place, Octaves o) {
     return o.count > 0 ? total : vec3(0.0);
 }
 
-// Creases along the zeros of each octave, pointing down: soft hills between sharp valleys.
-vec3 octaves_billow(vec2 place, Octaves o) {
-    vec3 total = vec3(0.0);
-    float frequency = 1.0;
-    float strength = 1.0;
-    int k = 0;
-    do {
-        vec3 noise = octave(place, o, k, frequency);
-        float way = noise.x < 0.0 ? -2.0 : 2.0;
-        total += strength * octave_weight(o.texels / frequency) * (way * noise - vec3(1.0, 0.0, 0.0));
-        frequency *= o.lacunarity;
-        strength *= o.gain;
-        k++;
-    } while (k < o.count && frequency < o.texels);
-    return o.count > 0 ? total : vec3(0.0);
-}
-
-// Creases pointing up, and squared: sharp ridges. What an octave adds is weighed by twice what
-// the octave before it gave there, so ridges are rough and valleys stay smooth.
-vec3 octaves_ridged(vec2 place, Octaves o) {
-    vec3 total = vec3(0.0);
-    vec3 weight = vec3(1.0, 0.0, 0.0);
-    float frequency = 1.0;
-    float strength = 1.0;
-    int k = 0;
-    do {
-        vec3 noise = octave(place, o, k, frequency);
-        float crest = 1.0 - abs(noise.x);
-        vec2 fall = (noise.x < 0.0 ? 2.0 : -2.0) * crest * noise.yz;
-        vec3 ridge = vec3(weight.x * crest * crest, weight.yz * crest * crest + weight.x * fall);
-        total += strength * octave_weight(o.texels / frequency) * ridge;
-        weight = ridge.x < 0.5 ? 2.0 * ridge : vec3(1.0, 0.0, 0.0);
-        frequency *= o.lacunarity;
-        strength *= o.gain;
-        k++;
-    } while (k < o.count && frequency < o.texels);
-    return o.count > 0 ? total : vec3(0.0);
-}
-
 // The plain sum at a place that two more sums have moved, by up to about `warp` cells each way.
 vec3 octaves_warped(vec2 place, Octaves o, float warp) {
     Octaves other = o;
     // Seeds that no slider reaches.
     other.seed = o.seed + 0x51ed270bu;
-    vec3 east = octaves_plain(place, other);
+    vec3 east = octaves_added(PLAIN, place, other);
     other.seed = o.seed + 0xa3da4e16u;
-    vec3 north = octaves_plain(place, other);
-    vec3 moved = octaves_plain(place + warp * vec2(east.x, north.x), o);
+    vec3 north = octaves_added(PLAIN, place, other);
+    vec3 moved = octaves_added(PLAIN, place + warp * vec2(east.x, north.x), o);
     return vec3(moved.x, moved.yz + warp * (moved.y * east.yz + moved.z * north.yz));
 }
 
-vec3 octaves_shaped(int shape, vec2 place, Octaves o, float warp) {
-    if (shape == RIDGED) return octaves_ridged(place, o);
-    if (shape == BILLOW) return octaves_billow(place, o);
-    if (shape == WARPED) return octaves_warped(place, o, warp);
-    return octaves_plain(place, o);
+vec3 octaves_sum(int shape, vec2 place, Octaves o, float warp) {
+    return shape == WARPED ? octaves_warped(place, o, warp) : octaves_added(shape, place, o);
 }
 #endif

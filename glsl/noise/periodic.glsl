@@ -1,8 +1,8 @@
-// noise/periodic.glsl -- noise that returns to itself: a tile of it fits beside its copy on every side.
+// noise/periodic.glsl -- noise that returns to itself: a tile of it fits beside its copy.
 //
 //   gives    value_noise_periodic, gradient_noise_periodic, gradient_fbm_periodic,
 //            cells_periodic
-//   needs    noise/hash.glsl
+//   needs    noise/fade.glsl, noise/hash.glsl
 //   units    places in lattice cells, periods in whole lattice cells; value noise in
 //            [0, 1), gradient noise in [-1, 1], distances in cells
 //   source   gradient noise after Perlin 1985, "An Image Synthesizer" (SIGGRAPH), with the
@@ -15,6 +15,7 @@
 // the noise is exactly periodic, and nothing is blended near the tile's edge.
 #ifndef NOISE_PERIODIC
 #define NOISE_PERIODIC
+#include "noise/fade.glsl"
 #include "noise/hash.glsl"
 
 // A lattice point in 0..period-1; % alone keeps the sign of a negative point.
@@ -23,17 +24,14 @@ ivec2 lattice_wrapped(ivec2 point, ivec2 period) {
     return rest + period * ivec2(lessThan(rest, ivec2(0)));
 }
 
-// 0 to 1 with no slope and no bend at either end.
-vec2 lattice_fade(vec2 share) {
-    return share * share * share * (share * (share * 6.0 - 15.0) + 10.0);
-}
-
 // A random number at every lattice point, blended between.
 float value_noise_periodic(vec2 place, ivec2 period, uint seed) {
     ivec2 low = ivec2(floor(place));
-    vec2 share = lattice_fade(place - vec2(low));
-    float south = mix(random(lattice_wrapped(low, period), seed), random(lattice_wrapped(low + ivec2(1, 0), period), seed), share.x);
-    float north = mix(random(lattice_wrapped(low + ivec2(0, 1), period), seed), random(lattice_wrapped(low + 1, period), seed), share.x);
+    vec2 share = quintic(place - vec2(low));
+    float south = mix(random(lattice_wrapped(low, period), seed),
+                      random(lattice_wrapped(low + ivec2(1, 0), period), seed), share.x);
+    float north = mix(random(lattice_wrapped(low + ivec2(0, 1), period), seed),
+                      random(lattice_wrapped(low + 1, period), seed), share.x);
     return mix(south, north, share.y);
 }
 
@@ -46,15 +44,16 @@ float lattice_plane(ivec2 point, vec2 offset, ivec2 period, uint seed) {
 float gradient_noise_periodic(vec2 place, ivec2 period, uint seed) {
     ivec2 low = ivec2(floor(place));
     vec2 offset = place - vec2(low);
-    vec2 share = lattice_fade(offset);
-    float south = mix(lattice_plane(low, offset, period, seed),
-                      lattice_plane(low + ivec2(1, 0), offset - vec2(1.0, 0.0), period, seed), share.x);
-    float north = mix(lattice_plane(low + ivec2(0, 1), offset - vec2(0.0, 1.0), period, seed),
-                      lattice_plane(low + 1, offset - 1.0, period, seed), share.x);
-    return mix(south, north, share.y);
+    vec2 share = quintic(offset);
+    float p00 = lattice_plane(low, offset, period, seed);
+    float p10 = lattice_plane(low + ivec2(1, 0), offset - vec2(1.0, 0.0), period, seed);
+    float p01 = lattice_plane(low + ivec2(0, 1), offset - vec2(0.0, 1.0), period, seed);
+    float p11 = lattice_plane(low + 1, offset - 1.0, period, seed);
+    return mix(mix(p00, p10, share.x), mix(p01, p11, share.x), share.y);
 }
 
-// Octaves of gradient noise, each twice as fine and `gain` times as strong, over their summed strengths.
+// Octaves of gradient noise, each twice as fine and `gain` times as strong, over the sum of their
+// strengths.
 float gradient_fbm_periodic(vec2 place, ivec2 period, int octaves, float gain, uint seed) {
     float total = 0.0;
     float strength = 1.0;
@@ -69,7 +68,8 @@ float gradient_fbm_periodic(vec2 place, ivec2 period, int octaves, float gain, u
     return total / strengths;
 }
 
-// One random point in every cell: distances to the nearest and to the second, and a random number of the nearest.
+// One random point in every cell: distances to the nearest and to the second, and a random number
+// of the nearest.
 vec3 cells_periodic(vec2 place, ivec2 period, uint seed) {
     ivec2 low = ivec2(floor(place));
     vec3 found = vec3(1e9, 1e9, 0.0);

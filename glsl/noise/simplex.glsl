@@ -15,10 +15,10 @@
 #define NOISE_SIMPLEX
 #include "noise/gradient.glsl"
 
-const float SIMPLEX_SIDE = 0.81649658;    // sqrt(2/3): the length of a triangle's side in the skew's units
+const float SIMPLEX_SIDE = 0.81649658;    // sqrt(2/3): a triangle's side, in the skew's units
 const float SIMPLEX_SKEW = 0.36602540;    // (sqrt(3) - 1) / 2: makes squares of pairs of triangles
 const float SIMPLEX_UNSKEW = 0.21132487;  // (3 - sqrt(3)) / 6: and back
-const float SIMPLEX_SCALE = 100.0;        // one over the most that the gradients can give, 0.009996
+const float SIMPLEX_SCALE = 100.0;        // one over the gradients' most, 0.009996
 
 // What one corner adds: its noise, and its slopes.
 vec3 simplex_corner(uint bits, vec2 offset) {

@@ -1,4 +1,4 @@
-// sky/air.glsl -- what the air is made of: molecules, aerosol and ozone, and how they scatter light.
+// sky/air.glsl -- what the air is made of, and how it scatters light.
 //
 //   gives    Air, air_of, densities, extinction, SUN_RADIUS, phase_molecules, phase_aerosol
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -12,6 +12,8 @@
 //            Cornette and Shanks 1992, "Physically reasonable analytic expression for the
 //            single-scattering phase function", with g = 0.8
 //   tested   tests/glsl/test_air.py, against the whole spectrum in float64
+//
+// It is made of molecules, aerosol and ozone.
 //
 // Three wavelengths stand for the spectrum, and white is the sun outside the air, as with a
 // camera balanced for daylight. They, and ozone's coefficients, were fitted here: the sun's light
@@ -41,10 +43,11 @@ Air air_of(float turbidity) {
 }
 
 // How dense molecules, aerosol and ozone are at a height, 1 where their coefficients hold. Above
-// 60 km there is as good as no aerosol; were there less and less, its amounts would become so small
-// that some processors keep them and some do not.
+// 60 km there is as good as no aerosol; were there less and less, its amounts would become so
+// small that some processors keep them and some do not.
 vec3 densities(float height) {
-    return vec3(exp(-height / 8.0), exp(-min(height, 60.0) / 1.2), max(0.0, 1.0 - abs(height - 25.0) / 15.0));
+    return vec3(exp(-height / 8.0), exp(-min(height, 60.0) / 1.2),
+                max(0.0, 1.0 - abs(height - 25.0) / 15.0));
 }
 
 // What is taken from light by amounts of the three: densities per kilometre, or times kilometres.
@@ -60,6 +63,8 @@ float phase_molecules(float together) {
 float phase_aerosol(float together) {
     const float g = FORWARD;
     float base = 1.0 + g * g - 2.0 * g * together;
-    return 0.1193662 * (1.0 - g * g) / (2.0 + g * g) * (1.0 + together * together) / (base * sqrt(base));  // 3 / 8 pi
+    // 3 / 8 pi
+    return 0.1193662 * (1.0 - g * g) / (2.0 + g * g) * (1.0 + together * together)
+            / (base * sqrt(base));
 }
 #endif

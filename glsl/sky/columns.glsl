@@ -1,4 +1,4 @@
-// sky/columns.glsl -- how much air light crosses on its way in, from a table; so what is left of sunlight.
+// sky/columns.glsl -- how much air light crosses on its way in, from a table.
 //
 //   gives    column_start, column_at, risen, left_of_sunlight
 //   needs    sky/air.glsl, sky/shell.glsl; a table made by lighting/daylight/columns
@@ -7,6 +7,8 @@
 //   source   table's axes: Bruneton and Neyret 2008, "Precomputed Atmospheric Scattering",
 //            section 4, as in the 2017 revision; the disc's part above the horizon as there
 //   tested   tests/glsl/test_air.py, against integrals in float64
+//
+// It tells what is left of sunlight.
 //
 // Along x: how far the top of the air is, from straight up to the horizon. Along y: how far
 // the horizon is, from the ground to the top. Both vary fast just where the columns do.
@@ -24,11 +26,13 @@ vec2 column_start(vec2 share) {
     float least = AIR_HEIGHT - height;
     float way = mix(least, far + HORIZON_MOST, share.x);
     if (way < 1e-3) return vec2(height, 1.0);
-    float rise = (HORIZON_MOST * HORIZON_MOST - far * far - way * way) / (2.0 * (EARTH_RADIUS + height) * way);
+    float rise = (HORIZON_MOST * HORIZON_MOST - far * far - way * way)
+            / (2.0 * (EARTH_RADIUS + height) * way);
     return vec2(height, clamp(rise, -1.0, 1.0));
 }
 
-// The columns of molecules, aerosol and ozone from a height to the top, along a way that misses the ground.
+// The columns of molecules, aerosol and ozone from a height to the top, along a way that misses
+// the ground.
 vec3 column_at(sampler2D columns, float height, float rise) {
     float far = sqrt(max(height * (2.0 * EARTH_RADIUS + height), 0.0));
     float least = AIR_HEIGHT - height;
@@ -39,8 +43,10 @@ vec3 column_at(sampler2D columns, float height, float rise) {
     ivec2 low = ivec2(place);
     ivec2 high = min(low + 1, last);
     vec2 part = place - vec2(low);
-    vec3 south = mix(texelFetch(columns, low, 0).rgb, texelFetch(columns, ivec2(high.x, low.y), 0).rgb, part.x);
-    vec3 north = mix(texelFetch(columns, ivec2(low.x, high.y), 0).rgb, texelFetch(columns, high, 0).rgb, part.x);
+    vec3 south = mix(texelFetch(columns, low, 0).rgb,
+                     texelFetch(columns, ivec2(high.x, low.y), 0).rgb, part.x);
+    vec3 north = mix(texelFetch(columns, ivec2(low.x, high.y), 0).rgb,
+                     texelFetch(columns, high, 0).rgb, part.x);
     return mix(south, north, part.y);
 }
 

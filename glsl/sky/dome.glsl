@@ -1,12 +1,15 @@
-// sky/dome.glsl -- the table of the sky as seen from several heights: its axes, and reading it in any direction.
+// sky/dome.glsl -- the table of the sky as seen from several heights.
 //
 //   gives    DOMES, dome_height, dome_between, dome_start, dome_at
-//   needs    sky/air.glsl, sky/shell.glsl; a table made by lighting/daylight/dome, perhaps with rows of something else below
-//   units    directions are unit vectors, x east, y north, z up; heights of the eye over the sea in
-//            kilometres; light as in the table
+//   needs    sky/air.glsl, sky/shell.glsl; a table made by lighting/daylight/dome, perhaps with
+//            rows of something else below
+//   units    directions are unit vectors, x east, y north, z up; heights of the eye over the sea
+//            in kilometres; light as in the table
 //   source   made here; that the aerosol's phase is left to the reader: Bruneton and Neyret 2008,
 //            "Precomputed Atmospheric Scattering", section 4
 //   tested   tests/glsl/test_air.py, against light worked out in each direction in float64
+//
+// Here are its axes, and how it is read in any direction.
 //
 // The left half holds what molecules scatter, and all that was scattered more than once; the
 // right half what aerosol scatters, without its phase, which is too sharp for so few texels.
@@ -34,7 +37,8 @@ float dome_between(float height) {
     return float(DOMES - 1) * sqrt(clamp(height / HIGHEST_DOME, 0.0, 1.0));
 }
 
-// The sine of the elevation from a height, and the cosine of the azimuth from the sun's, both of a share 0..1.
+// The sine of the elevation from a height, and the cosine of the azimuth from the sun's, both of a
+// share 0..1.
 vec2 dome_start(vec2 share, float height) {
     float lowest = horizon_rise(height);
     return vec2(lowest + (1.0 - lowest) * share.y * share.y, 1.0 - 2.0 * share.x * share.x);
@@ -66,13 +70,15 @@ vec3 dome_at(sampler2D table, int foot, vec3 direction, vec3 sun, float height) 
     float level = length(direction.xy) * length(sun.xy);
     float aside = level > 1e-9 ? clamp(dot(direction.xy, sun.xy) / level, -1.0, 1.0) : 0.0;
     float lowest = horizon_rise(height);
-    vec2 share = sqrt(vec2(0.5 - 0.5 * aside, clamp((direction.z - lowest) / (1.0 - lowest), 0.0, 1.0)));
+    vec2 share = sqrt(vec2(0.5 - 0.5 * aside,
+                           clamp((direction.z - lowest) / (1.0 - lowest), 0.0, 1.0)));
     float phase = phase_aerosol(dot(direction, sun));
     int rows = (textureSize(table, 0).y - foot) / DOMES;
     float place = dome_between(height);
     int low = int(place);
     vec3 found = dome_of(table, foot + low * rows, rows, share, phase);
     if (place == float(low)) return found;
-    return mix(found, dome_of(table, foot + (low + 1) * rows, rows, share, phase), place - float(low));
+    return mix(found, dome_of(table, foot + (low + 1) * rows, rows, share, phase),
+               place - float(low));
 }
 #endif

@@ -1,4 +1,4 @@
-// sky/slab.glsl -- one step of a way through lit air: what it scatters once, and what it lets through.
+// sky/slab.glsl -- one step of a way through lit air.
 //
 //   gives    Slab, slab
 //   needs    sky/columns.glsl
@@ -8,6 +8,8 @@
 //            Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering
 //            Technique"
 //   tested   tests/glsl/test_air.py, against float64
+//
+// What it scatters once, and what it lets through.
 #ifndef SKY_SLAB
 #define SKY_SLAB
 #include "sky/columns.glsl"
@@ -22,17 +24,20 @@ struct Slab {
 };
 
 // `before` to `after` along a way from `from`; `together` is the cosine between way and sun.
-Slab slab(sampler2D columns, Air air, float from, float rise, float sun_rise, float together, float before, float after) {
+Slab slab(sampler2D columns, Air air, float from, float rise, float sun_rise, float together,
+          float before, float after) {
     float middle = 0.5 * (before + after);
     Slab found;
     found.height = clamp(height_along(from, rise, middle), 0.0, AIR_HEIGHT);
-    found.sun_rise = ((EARTH_RADIUS + from) * sun_rise + middle * together) / (EARTH_RADIUS + found.height);
+    found.sun_rise = ((EARTH_RADIUS + from) * sun_rise + middle * together)
+            / (EARTH_RADIUS + found.height);
     vec3 amounts = densities(found.height);
     vec3 taken = extinction(air, amounts);
     vec3 depth = taken * (after - before);
     found.left = exp(-depth);
     // (1 - e^-x) / x, whose quotient cancels where the air is thin.
-    vec3 mean = mix((1.0 - found.left) / max(depth, 1e-6), 1.0 - depth * (0.5 - depth / 6.0), vec3(lessThan(depth, vec3(1e-2))));
+    vec3 mean = mix((1.0 - found.left) / max(depth, 1e-6), 1.0 - depth * (0.5 - depth / 6.0),
+                    vec3(lessThan(depth, vec3(1e-2))));
     vec3 length_seen = mean * (after - before);
     vec3 by_molecules = length_seen * air.molecules * amounts.x;
     vec3 by_aerosol = length_seen * air.aerosol * (AEROSOL_ALBEDO * amounts.y);

@@ -3,8 +3,8 @@
 //   gives    NO_RANGE, widened, span_of
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    any
-//   source   derived here; a sum of n terms is off by at most n half steps of a float, as in Higham
-//            2002, "Accuracy and Stability of Numerical Algorithms", section 4.2
+//   source   derived here; a sum of n terms is off by at most n half steps of a float, as in
+//            Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 4.2
 //   tested   tests/glsl/test_normalise.py, against NumPy
 #ifndef TERRAIN_EXTREMES
 #define TERRAIN_EXTREMES
@@ -18,8 +18,8 @@ vec2 widened(vec2 range, vec2 other) {
     return vec2(other.x < range.x ? other.x : range.x, other.y > range.y ? other.y : range.y);
 }
 
-// What roundings alone make of equal numbers, over their size: sixteen steps of a float, as many as
-// 32 additions may make.
+// What roundings alone make of equal numbers, over their size: sixteen steps of a float, as many
+// as 32 additions may make.
 const float ROUNDINGS = 16.0 * 1.1920929e-7;
 
 // How far apart the lowest and the highest are; 0 if they are one number but for its roundings: to

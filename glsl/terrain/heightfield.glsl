@@ -1,7 +1,8 @@
 // terrain/heightfield.glsl -- heights and slopes anywhere on a texture of heights.
 //
 //   gives    height_at, height_on_line, slope_of_node, slope_at
-//   needs    maths/land.glsl; the texture comes as an argument, no uniform of its own
+//   needs    maths/land.glsl, maths/nodes.glsl; the texture comes as an argument, no uniform of
+//            its own
 //   units    places in texels of the texture, nodes on the edges; heights without unit;
 //            slopes in units of height per spacing's unit (times relief: metres over metres)
 //   source   the one-triangle slope: Belaiche 2010, section 3.5.3; the rest derived here
@@ -11,6 +12,7 @@
 #ifndef TERRAIN_HEIGHTFIELD
 #define TERRAIN_HEIGHTFIELD
 #include "maths/land.glsl"
+#include "maths/nodes.glsl"
 
 // The height between the four texels around a place.
 float height_at(sampler2D field, vec2 place) {
@@ -50,8 +52,10 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
     int row = way == ONE_TRIANGLE ? low.y : node.y;
     int column = way == ONE_TRIANGLE ? high.x : node.x;
     // anchor: slope
-    float east = texelFetch(field, ivec2(high.x, row), 0).r - texelFetch(field, ivec2(low.x, row), 0).r;
-    float north = texelFetch(field, ivec2(column, high.y), 0).r - texelFetch(field, ivec2(column, low.y), 0).r;
+    float east = texelFetch(field, ivec2(high.x, row), 0).r
+            - texelFetch(field, ivec2(low.x, row), 0).r;
+    float north = texelFetch(field, ivec2(column, high.y), 0).r
+            - texelFetch(field, ivec2(column, low.y), 0).r;
     // A grid one texel wide has no run, and no rise either.
     return vec2(east, north) / (vec2(max(high - low, ivec2(1))) * spacing);
     // end: slope
@@ -59,22 +63,13 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
 
 // The slope at a place: the nodes' slopes, interpolated.
 vec2 slope_at(sampler2D field, vec2 place, vec2 spacing, int way) {
-    ivec2 low = ivec2(place);
-    vec2 part = place - vec2(low);
-    // Loops that ask at their end: software renderers take both ways of an if, and go once
-    // through a loop that asks first before it knows that it is over. On a node this is one turn.
-    ivec2 turns = ivec2(part.x > 0.0 ? 2 : 1, part.y > 0.0 ? 2 : 1);
+    Nodes around = nodes_around(place);
     vec2 total = vec2(0.0);
-    int y = 0;
+    int k = 0;
     do {
-        int x = 0;
-        do {
-            float weight = (x == 1 ? part.x : 1.0 - part.x) * (y == 1 ? part.y : 1.0 - part.y);
-            total += weight * slope_of_node(field, low + ivec2(x, y), spacing, way);
-            x++;
-        } while (x < turns.x);
-        y++;
-    } while (y < turns.y);
+        total += weight_of(around, k) * slope_of_node(field, node_at(around, k), spacing, way);
+        k++;
+    } while (k < around.count);
     return total;
 }
 #endif

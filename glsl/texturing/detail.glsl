@@ -1,4 +1,4 @@
-// texturing/detail.glsl -- a small grey image of fine patterns: cracks, furrows, grains, a rough surface.
+// texturing/detail.glsl -- a small grey image of fine patterns: cracks, furrows, grains.
 //
 //   gives    detail: grey, about 0.5; what counts is its ratio to its own mean
 //   needs    noise/periodic.glsl
@@ -11,10 +11,11 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "detail:rgba16f")
 
-uniform uint seed = 1u;          //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform float cracks = 0.5;      //! slider(0, 1) step(0.01) How dark cracks are
 uniform float roughness = 0.6;   //! slider(0, 1) step(0.01) How uneven the surface is
-uniform float furrows = 0.25;    //! slider(0, 1) step(0.01) How deep furrows are, from west to east
+uniform float furrows = 0.25;    //! slider(0, 1) step(0.01)
+                                 //! How deep furrows are, from west to east
 uniform float grains = 0.4;      //! slider(0, 1) step(0.01) How strong single grains are
 
 const uint SALT = 0xeac5a27fu;  // CRC-32 of "texturing/detail"
@@ -27,7 +28,8 @@ vec4 kernel(ivec2 texel) {
     vec3 pieces = cells_periodic(place * 13.0 + 0.5 * bend, ivec2(13), number + 2u);
     float crack = 1.0 - smoothstep(0.0, 0.10, pieces.y - pieces.x);
     float rough = gradient_fbm_periodic(place * 16.0, ivec2(16), 5, 0.8, number + 4u);
-    float furrow = abs(gradient_noise_periodic(place * vec2(9.0, 60.0) + 0.4 * bend, ivec2(9, 60), number + 10u));
+    float furrow = abs(gradient_noise_periodic(place * vec2(9.0, 60.0) + 0.4 * bend, ivec2(9, 60),
+                                               number + 10u));
     float grain = value_noise_periodic(place * 90.0, ivec2(90), number + 11u) - 0.5;
     float level = 0.5 * (1.0 + 0.12 * (pieces.z - 0.5) + 3.4 * roughness * rough
                          + furrows * (1.2 * furrow - 0.25) + grains * 0.6 * grain);

@@ -1,4 +1,4 @@
-// texturing/endless_ground.glsl -- meadow, wood, rock, sand and snow on a part of an endless land.
+// texturing/endless_ground.glsl -- meadow, wood, rock, sand and snow on endless terrain.
 //
 //   gives    colour, linear light
 //   needs    terrain/heightfield.glsl, terrain/parts.glsl, noise/hash.glsl; a height 0..1
@@ -14,22 +14,34 @@
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D height;           //! input
-uniform ivec2 part = ivec2(0);      //! parts("east", "north") Which part of the land, counted east and north
-uniform int apron = 0;              //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part, in texels of the height
-uniform int patches = 64;           //! log_slider(4, 1024) unit("texels") Width of the widest patches
+uniform ivec2 part = ivec2(0);      //! parts("east", "north")
+                                    //! Which part of the terrain, counted east and north
+uniform int apron = 0;              //! slider(0, 1024) unit("texels")
+                                    //! Of the neighbours, so much around the part, in texels of
+                                    //! the height
+uniform int patches = 64;           //! log_slider(4, 1024) unit("texels")
+                                    //! Width of the widest patches
 uniform uint seed = 7u;             //! slider(0, 9999) Which patches
-uniform float sand_below = 12.0;    //! slider(-500, 9000) step(1) unit("m") group("Heights") The shore reaches up to here
-uniform float wood_below = 620.0;   //! slider(-500, 9000) step(1) unit("m") group("Heights") Trees grow up to here
-uniform float snow_from = 1000.0;   //! slider(-500, 9000) step(1) unit("m") group("Heights") Snow lies from here up
-uniform float bare_from = 30.0;     //! slider(0, 90) step(1) unit("degrees") group("Heights") Steeper than this, rock shows
-uniform float ragged = 140.0;       //! slider(0, 1000) step(1) unit("m") group("Heights") How far the patches move those heights
+uniform float sand_below = 12.0;    //! slider(-500, 9000) step(1) unit("m") group("Heights")
+                                    //! The shore reaches up to here
+uniform float wood_below = 620.0;   //! slider(-500, 9000) step(1) unit("m") group("Heights")
+                                    //! Trees grow up to here
+uniform float snow_from = 1000.0;   //! slider(-500, 9000) step(1) unit("m") group("Heights")
+                                    //! Snow lies from here up
+uniform float bare_from = 30.0;     //! slider(0, 90) step(1) unit("degrees") group("Heights")
+                                    //! Steeper than this, rock shows
+uniform float ragged = 140.0;       //! slider(0, 1000) step(1) unit("m") group("Heights")
+                                    //! How far the patches move those heights
 uniform vec3 meadow = vec3(0.120, 0.135, 0.048);  //! colour group("Colours") Grass
 uniform vec3 wood = vec3(0.036, 0.056, 0.026);    //! colour group("Colours") Trees
 uniform vec3 rock = vec3(0.205, 0.180, 0.155);    //! colour group("Colours") Rock
 uniform vec3 sand = vec3(0.420, 0.360, 0.240);    //! colour group("Colours") Sand
 uniform vec3 snow = vec3(0.800, 0.840, 0.900);    //! colour group("Colours") Snow
-uniform float contrast = 0.35;      //! slider(0, 1) step(0.01) group("Colours") How much lighter and darker all of them become in patches
-uniform int shown = 0;              //! menu("colours", "weights") group("Colours") The ground, or what each colour counts: rock red, wood green, snow blue
+uniform float contrast = 0.35;      //! slider(0, 1) step(0.01) group("Colours")
+                                    //! How much lighter and darker all of them become in patches
+uniform int shown = 0;              //! menu("colours", "weights") group("Colours")
+                                    //! The ground, or what each colour counts: rock red, wood
+                                    //! green, snow blue
 
 const uint SALT = 0xd657708du;  // CRC-32 of "texturing/endless_ground"
 
@@ -77,7 +89,9 @@ vec4 kernel(ivec2 texel) {
     vec2 place = place_on(grid, texel, size);
     float metres = base_elevation + relief * height_at(height, place);
     if (isnan(metres)) metres = 0.0;
-    float slope = degrees(atan(length(relief * slope_at(height, place, spacing_of(grid, extent), CENTRAL_DIFFERENCES))));
+    vec2 spacing_of_heights = spacing_of(grid, extent);
+    vec2 rise = relief * slope_at(height, place, spacing_of_heights, CENTRAL_DIFFERENCES);
+    float slope = degrees(atan(length(rise)));
     int finer = max((size.x - 1) / max(grid.x - 1, 1), 1);
     ivec2 node = node_of(texel, part, apron * finer, size);
     vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u + SALT);
@@ -86,10 +100,13 @@ vec4 kernel(ivec2 texel) {
     float level = metres + ragged * broad;
 
     // Each takes from all that were before it, so weights sum to 1.
-    float woods = over(0.55 * broad + 0.9 * fine, 0.02, 0.16) * (1.0 - over(level, wood_below, 90.0));
-    float rocks = max(over(slope + 16.0 * fine, bare_from, 5.0), over(level + 250.0 * fine, 0.5 * (wood_below + snow_from), 140.0) * 0.75);
+    float woods = over(0.55 * broad + 0.9 * fine, 0.02, 0.16)
+            * (1.0 - over(level, wood_below, 90.0));
+    float rocks = max(over(slope + 16.0 * fine, bare_from, 5.0),
+                      over(level + 250.0 * fine, 0.5 * (wood_below + snow_from), 140.0) * 0.75);
     float sands = 1.0 - over(metres + 14.0 * fine, sand_below, 7.0);
-    float snows = over(level + 120.0 * fine, snow_from, 60.0) * (1.0 - over(slope, bare_from + 14.0, 7.0));
+    float snows = over(level + 120.0 * fine, snow_from, 60.0)
+            * (1.0 - over(slope, bare_from + 14.0, 7.0));
     if (shown == 1) {
         float cover = 1.0 - snows;
         float bare = rocks * (1.0 - sands) * cover;

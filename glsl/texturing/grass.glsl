@@ -12,17 +12,19 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform int blades = 44;                      //! slider(4, 200) Blades across the tile
 uniform int clumps = 5;                       //! slider(1, 32) Clumps across the tile
 uniform vec3 tint = vec3(0.120, 0.165, 0.034);  //! colour A blade in the light
 uniform vec3 dry = vec3(0.235, 0.205, 0.075);   //! colour A dry blade
 uniform vec3 shade = vec3(0.026, 0.038, 0.010); //! colour The ground between the blades
-uniform float variety = 0.5;                  //! slider(0, 1) step(0.01) How much blades and clumps differ
+uniform float variety = 0.5;                  //! slider(0, 1) step(0.01)
+                                              //! How much blades and clumps differ
 
 const uint SALT = 0x0a9acb0au;  // CRC-32 of "texturing/grass"
 
-// How high the tallest blade stands over a place (0: no blade), how dry it is, how far along it is.
+// How high the tallest blade stands over a place (0: no blade), how dry it is, how far along it
+// is.
 vec3 tallest(vec2 place, ivec2 period, uint number, float blur) {
     vec3 found = vec3(0.0);
     ivec2 low = ivec2(floor(place));
@@ -55,10 +57,13 @@ vec4 kernel(ivec2 texel) {
     ivec2 coarse = ivec2(blades);
     ivec2 fine = ivec2(blades + blades / 2 + 1);
     // A blade's edge is never sharper than a texel.
-    vec3 front = tallest(place * vec2(coarse), coarse, number, float(blades) / float(min(size.x, size.y)) + 0.02);
-    vec3 behind = tallest(place * vec2(fine), fine, number + 4u, float(fine.x) / float(min(size.x, size.y)) + 0.02);
+    vec3 front = tallest(place * vec2(coarse), coarse, number,
+                         float(blades) / float(min(size.x, size.y)) + 0.02);
+    vec3 behind = tallest(place * vec2(fine), fine, number + 4u,
+                          float(fine.x) / float(min(size.x, size.y)) + 0.02);
     vec3 blade = front.x > 0.35 * behind.x ? front : vec3(0.75 * behind.x, behind.yz);
-    float clump = gradient_fbm_periodic(place * float(clumps), ivec2(clumps), 4, 0.55, number + 8u);
+    float clump = gradient_fbm_periodic(place * float(clumps), ivec2(clumps), 4, 0.55,
+                                        number + 8u);
     float dryness = smoothstep(0.55, 1.0, blade.y + variety * (0.9 * clump - 0.1));
     vec3 leaf = mix(tint, dry, dryness) * (1.0 + variety * (0.7 * (blade.y - 0.5) + 0.9 * clump));
     return vec4(mix(shade, leaf, smoothstep(0.05, 0.95, blade.x)), 1.0);

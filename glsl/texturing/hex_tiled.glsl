@@ -1,4 +1,4 @@
-// texturing/hex_tiled.glsl -- an image laid over the whole land in hexagons, each from another place of it: nothing repeats.
+// texturing/hex_tiled.glsl -- an image laid over the terrain in hexagons, without repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/angle.glsl, maths/land.glsl, texturing/hex_tiling.glsl,
@@ -6,6 +6,8 @@
 //   units    the image is as large as if it stood `repeats` times side by side from west to east
 //   source   see texturing/hex_tiling.glsl and texturing/kept_contrast.glsl
 //   tested   tests/glsl/test_texturing_hex.py: the correlation one tile away, mean and contrast
+//
+// Each hexagon shows another place of the image.
 //
 // It stands in the place of texturing/tiled, for one reading more. Where hexagons meet, two
 // or three copies are seen through one another; the sharper, the narrower that border.
@@ -17,12 +19,19 @@
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
-uniform float repeats = 24.0;    //! slider(1, 256) step(1) How often the image would stand side by side from west to east
-uniform float cells = 3.0;       //! slider(1, 8) step(0.1) Hexagons across the width of the image: the more, the smaller the pieces of it
-uniform float sharpness = 3.0;   //! slider(1, 16) step(0.1) How narrow the borders are where pieces pass into one another
-uniform float turn = 0.0;        //! angle(0, 180) How far chance turns each piece, either way. For images that look alike in every direction
+uniform float repeats = 24.0;    //! slider(1, 256) step(1)
+                                 //! How often the image would stand side by side from west to east
+uniform float cells = 3.0;       //! slider(1, 8) step(0.1)
+                                 //! Hexagons across the width of the image: the more, the smaller
+                                 //! the pieces of it
+uniform float sharpness = 3.0;   //! slider(1, 16) step(0.1)
+                                 //! How narrow the borders are where pieces pass into one another
+uniform float turn = 0.0;        //! angle(0, 180)
+                                 //! How far chance turns each piece, either way. For images that
+                                 //! look alike in every direction
 uniform uint seed = 1u;          //! slider(0, 9999) Which pieces
-uniform float detail = 1.0;      //! slider(0, 1) step(0.01) How much of the image's contrast is left. 0: its mean colour
+uniform float detail = 1.0;      //! slider(0, 1) step(0.01)
+                                 //! How much of the image's contrast is left. 0: its mean colour
 
 const uint SALT = 0x74014a9au;  // CRC-32 of "texturing/hex_tiled"
 
@@ -30,7 +39,8 @@ vec3 piece(ivec2 corner, vec2 tile, float level) {
     vec2 shift = random_pair(corner, seed + SALT);
     if (turn > 0.0) {
         // About the corner, so that a piece does not depend on how far it is from the origin.
-        vec2 middle = vec2(float(corner.x) + 0.5 * float(corner.y), 0.8660254 * float(corner.y)) / cells;
+        vec2 middle = vec2(float(corner.x) + 0.5 * float(corner.y), 0.8660254 * float(corner.y))
+                / cells;
         vec2 way = cos_sin_degrees(turn * random_signed(corner, seed + SALT + 0x51ed270bu));
         vec2 away = tile - middle;
         tile = vec2(dot(way, away), way.x * away.y - way.y * away.x);
@@ -47,7 +57,9 @@ vec4 kernel(ivec2 texel) {
     vec3 mean = textureLod(colour, vec2(0.5), 99.0).rgb;
     vec3 shown = mixed_with_contrast(
         hex_sharpened(copies.weights, sharpness),
-        piece(copies.corner[0], tile, level), piece(copies.corner[1], tile, level), piece(copies.corner[2], tile, level),
+        piece(copies.corner[0], tile, level),
+        piece(copies.corner[1], tile, level),
+        piece(copies.corner[2], tile, level),
         mean
     );
     return vec4(mix(mean, shown, detail), 1.0);

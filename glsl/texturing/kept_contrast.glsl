@@ -1,4 +1,4 @@
-// texturing/kept_contrast.glsl -- three images mixed without the loss of contrast that a mean brings.
+// texturing/kept_contrast.glsl -- three images mixed without loss of contrast.
 //
 //   gives    mixed_with_contrast
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -14,7 +14,8 @@
 #define TEXTURING_KEPT_CONTRAST
 
 vec3 mixed_with_contrast(vec3 weights, vec3 first, vec3 second, vec3 third, vec3 mean) {
-    vec3 deviation = weights.x * (first - mean) + weights.y * (second - mean) + weights.z * (third - mean);
+    vec3 deviation = weights.x * (first - mean) + weights.y * (second - mean)
+            + weights.z * (third - mean);
     return max(mean + deviation / length(weights), vec3(0.0));
 }
 #endif

@@ -12,12 +12,13 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform int clods = 6;                        //! slider(1, 64) Clods across the tile
 uniform vec3 tint = vec3(0.185, 0.122, 0.070);  //! colour Mud that is drying
 uniform vec3 wet = vec3(0.058, 0.037, 0.021);   //! colour Wet mud
 uniform float wetness = 0.4;                  //! slider(0, 1) step(0.01) How much of it is wet
-uniform float cracks = 0.5;                   //! slider(0, 1) step(0.01) How dark the cracks in dry mud are
+uniform float cracks = 0.5;                   //! slider(0, 1) step(0.01)
+                                              //! How dark the cracks in dry mud are
 uniform float roughness = 0.6;                //! slider(0, 1) step(0.01) How lumpy it is
 
 const uint SALT = 0x8dc1ce03u;  // CRC-32 of "texturing/mud"

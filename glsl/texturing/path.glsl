@@ -13,17 +13,19 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform int stones = 14;                      //! slider(2, 60) The largest stones across the tile
 uniform vec3 tint = vec3(0.235, 0.170, 0.110);  //! colour Trodden earth
 uniform vec3 stone = vec3(0.330, 0.300, 0.260); //! colour A pale stone
 uniform vec3 shade = vec3(0.060, 0.042, 0.028); //! colour The earth beside a stone
 uniform float gravel = 0.6;                   //! slider(0, 1) step(0.01) How many stones there are
-uniform float roughness = 0.5;                //! slider(0, 1) step(0.01) How uneven earth and stones are
+uniform float roughness = 0.5;                //! slider(0, 1) step(0.01)
+                                              //! How uneven earth and stones are
 
 const uint SALT = 0xfb71002cu;  // CRC-32 of "texturing/path"
 
-// The stone that reaches a place best: how far inside its rim that is, over its radius (below 0: outside), and a random number of it.
+// The stone that reaches a place best: how far inside its rim that is, over its radius (below 0:
+// outside), and a random number of it.
 vec2 nearest_stone(vec2 place, ivec2 period, float share, uint number) {
     vec2 found = vec2(-1e3, 0.0);
     ivec2 low = ivec2(floor(place));
@@ -42,14 +44,17 @@ vec2 nearest_stone(vec2 place, ivec2 period, float share, uint number) {
             // An egg: slimmer towards one end.
             turned.y *= 1.15 + 0.55 * shape.y + 0.35 * turned.x / radius;
             float inside = 1.0 - length(turned) / radius;
-            if (chance.x < share && inside > found.x) found = vec2(inside, random(key, number + 3u));
+            if (chance.x < share && inside > found.x) {
+                found = vec2(inside, random(key, number + 3u));
+            }
         }
     }
     return found;
 }
 
 // A layer of stones over what is there.
-vec3 with_stones(vec3 ground, vec2 place, int across, float share, float dent, float grit, float blur, uint number) {
+vec3 with_stones(vec3 ground, vec2 place, int across, float share, float dent, float grit,
+                 float blur, uint number) {
     vec2 nearest = nearest_stone(place * float(across), ivec2(across), share, number);
     float inside = nearest.x + dent;
     // Earth beside a stone is darker, up to a third of a radius away.
@@ -57,7 +62,8 @@ vec3 with_stones(vec3 ground, vec2 place, int across, float share, float dent, f
     float tone = 0.62 + 0.75 * nearest.y;
     vec3 hue = mix(stone, tint * 1.25, 0.6 * fract(nearest.y * 7.0));
     // A stone's top sees the whole sky, its rim half of it; half sunk, it is dusty there.
-    vec3 top = hue * tone * (0.62 + 0.38 * smoothstep(0.0, 0.55, inside)) * (1.0 + roughness * 0.9 * grit);
+    vec3 top = hue * tone * (0.62 + 0.38 * smoothstep(0.0, 0.55, inside))
+            * (1.0 + roughness * 0.9 * grit);
     return mix(beside, top, smoothstep(-blur, blur, inside));
 }
 
@@ -74,8 +80,11 @@ vec4 kernel(ivec2 texel) {
     float texels = float(min(size.x, size.y));
     float sharp = 2.5 * float(stones) / texels;
     float trodden = 0.55 + 0.9 * broad;
-    colour = with_stones(colour, place, stones * 4, gravel * (0.45 + trodden * 0.5), 0.25 * dent, grit, 4.0 * sharp + 0.05, number + 16u);
-    colour = with_stones(colour, place, stones * 2, gravel * 0.75 * trodden, 0.35 * dent, grit, 2.0 * sharp + 0.04, number + 24u);
-    colour = with_stones(colour, place, stones, gravel * 0.55 * trodden, 0.45 * dent, grit, sharp + 0.03, number + 32u);
+    colour = with_stones(colour, place, stones * 4, gravel * (0.45 + trodden * 0.5), 0.25 * dent,
+                         grit, 4.0 * sharp + 0.05, number + 16u);
+    colour = with_stones(colour, place, stones * 2, gravel * 0.75 * trodden, 0.35 * dent, grit,
+                         2.0 * sharp + 0.04, number + 24u);
+    colour = with_stones(colour, place, stones, gravel * 0.55 * trodden, 0.45 * dent, grit,
+                         sharp + 0.03, number + 32u);
     return vec4(clamp(colour, vec3(0.004), vec3(1.0)), 1.0);
 }

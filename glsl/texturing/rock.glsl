@@ -12,7 +12,7 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform int blocks = 6;                       //! slider(1, 64) Blocks across the tile
 uniform vec3 tint = vec3(0.27, 0.245, 0.215);   //! colour A face in the light
 uniform vec3 stain = vec3(0.19, 0.145, 0.10);   //! colour Weathered faces
@@ -35,7 +35,8 @@ vec4 kernel(ivec2 texel) {
     float crack = 1.0 - smoothstep(0.0, 0.16, large.y - large.x);
     float split = 1.0 - smoothstep(0.0, 0.20, small.y - small.x);
     float grain = gradient_fbm_periodic(bent * 4.0, period * 4, 6, 0.72, number + 16u);
-    float ridge = 1.0 - abs(gradient_fbm_periodic(bent * 2.0, period * 2, 5, 0.5, number + 22u)) * 3.2;
+    float ridge = 1.0 - abs(gradient_fbm_periodic(bent * 2.0, period * 2, 5, 0.5, number + 22u))
+            * 3.2;
     float patches = gradient_fbm_periodic(place, period, 4, 0.5, number + 27u);
     float weathered = smoothstep(-0.15, 0.25, patches + 0.25 * (large.z - 0.5));
     vec3 face = mix(tint, stain, 0.75 * weathered);

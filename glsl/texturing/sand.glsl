@@ -1,4 +1,4 @@
-// texturing/sand.glsl -- a seamless tile of sand: ripples across the wind, hollows between them, grains.
+// texturing/sand.glsl -- a seamless tile of sand: ripples across the wind, hollows, grains.
 //
 //   gives    colour, linear light
 //   needs    noise/periodic.glsl
@@ -13,12 +13,14 @@
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform uint seed = 1u;                       //! slider(0, 9999) Which tile
+#include "texturing/parameters/seed.glsl"
 uniform int ripples = 22;                     //! slider(2, 100) Ripples across the tile
 uniform vec3 tint = vec3(0.520, 0.385, 0.225);  //! colour Dry sand on a crest
 uniform vec3 shade = vec3(0.270, 0.175, 0.090); //! colour The depth of a trough
-uniform float height = 0.7;                   //! slider(0, 1) step(0.01) How much the wind has rippled it
-uniform float grain = 0.5;                    //! slider(0, 1) step(0.01) How coarse it looks close up
+uniform float height = 0.7;                   //! slider(0, 1) step(0.01)
+                                              //! How much the wind has rippled it
+uniform float grain = 0.5;                    //! slider(0, 1) step(0.01)
+                                              //! How coarse it looks close up
 
 const uint SALT = 0x505f1932u;  // CRC-32 of "texturing/sand"
 

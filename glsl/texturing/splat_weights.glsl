@@ -1,12 +1,15 @@
-// texturing/splat_weights.glsl -- weights of four layers that sum to 1, and the alphas that draw them one over the other.
+// texturing/splat_weights.glsl -- weights of four layers that sum to 1, and their alphas.
 //
-//   gives    weights_of_covers, weights_of_mask, weights_in_bytes, alpha_of_layer, weights_by_heights
+//   gives    weights_of_covers, weights_of_mask, weights_in_bytes, alpha_of_layer,
+//            weights_by_heights
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    weights, covers and alphas 0..1; heights of materials in any one unit
 //   source   Belaiche 2010, sections 2.5 and 2.6, whose formula is
 //            result = alpha texture + (1 - alpha) previous;                             (1)
 //            the alphas of given weights and the mixture by heights: derived here
 //   tested   tests/glsl/test_splat_weights.py, against (1) done step by step in float64
+//
+// An alpha draws its layer over those before it.
 #ifndef TEXTURING_SPLAT_WEIGHTS
 #define TEXTURING_SPLAT_WEIGHTS
 
@@ -20,7 +23,8 @@ vec4 weights_of_covers(vec3 covers) {
 }
 // end: covers
 
-// A mask as an image holds it, its four numbers in any proportion. Nothing at all is the first layer.
+// A mask as an image holds it, its four numbers in any proportion. Nothing at all is the first
+// layer.
 vec4 weights_of_mask(vec4 mask) {
     vec4 held = max(mask, 0.0);
     float total = held.x + held.y + held.z + held.w;
@@ -43,7 +47,8 @@ vec4 weights_in_bytes(vec4 weights) {
 // The alpha with which (1) must lay layer k, 0 to 3, over those before it: its share of what
 // has been laid so far. Later layers then hide as much of all of them alike.
 float alpha_of_layer(vec4 weights, int layer) {
-    float own = layer == 0 ? weights.x : layer == 1 ? weights.y : layer == 2 ? weights.z : weights.w;
+    float own = layer == 0 ? weights.x : layer == 1 ? weights.y : layer == 2 ? weights.z
+            : weights.w;
     float below = layer > 0 ? weights.x : 0.0;
     below += layer > 1 ? weights.y : 0.0;
     below += layer > 2 ? weights.z : 0.0;

@@ -1,4 +1,4 @@
-// texturing/swatches.glsl -- images side by side, to be looked at: as many as are wanted, in one row.
+// texturing/swatches.glsl -- images side by side in one row, to be looked at.
 //
 //   gives    colour, linear light
 //   needs    images of any size; what is not wired is white
@@ -17,7 +17,8 @@ uniform sampler2D sixth;   //! input("linear", "repeat", "mipmap", "white")
 uniform int begin = 0;            //! slider(0, 5) How many images are passed over
 uniform int count = 3;            //! slider(1, 6) How many are shown
 uniform int gap = 4;              //! slider(0, 64) Texels between them
-uniform float tiles = 1.0;        //! slider(1, 8) step(0.5) How often each repeats in its square: seams would show
+uniform float tiles = 1.0;        //! slider(1, 8) step(0.5)
+                                  //! How often each repeats in its square: seams would show
 uniform vec3 paper = vec3(0.8);   //! colour What is between them
 
 vec3 shown(sampler2D image, vec2 place, float texels) {
@@ -29,10 +30,12 @@ vec4 kernel(ivec2 texel) {
     float side = min(float(size.x - gap * (count - 1)) / float(count), float(size.y));
     float pitch = side + float(gap);
     // The row stands in the middle.
-    vec2 place = vec2(texel) + 0.5 - 0.5 * (vec2(size) - vec2(pitch * float(count) - float(gap), side));
+    vec2 place = vec2(texel) + 0.5 - 0.5 * (vec2(size)
+                                            - vec2(pitch * float(count) - float(gap), side));
     float column = floor(place.x / pitch);
     vec2 inside = vec2(place.x - column * pitch, place.y) / side;
-    bool outside = column < 0.0 || column >= float(count) || any(lessThan(inside, vec2(0.0))) || any(greaterThanEqual(inside, vec2(1.0)));
+    bool outside = column < 0.0 || column >= float(count) || any(lessThan(inside, vec2(0.0)))
+            || any(greaterThanEqual(inside, vec2(1.0)));
     if (outside) return vec4(paper, 1.0);
     int which = int(column) + begin;
     vec3 colour = paper;

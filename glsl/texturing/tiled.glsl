@@ -1,4 +1,4 @@
-// texturing/tiled.glsl -- an image laid over the whole land in tiles, without its repeats showing.
+// texturing/tiled.glsl -- an image laid over the terrain in tiles, without visible repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
@@ -8,14 +8,14 @@
 //            too fine, and less contrast about the same mean where less detail is wanted
 //
 // The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
-// many times over the land, whatever the size of either, and is read at the level of
+// many times over the terrain, whatever the size of either, and is read at the level of
 // detail where its texels are as large as this texture's: read at level 0, a fine image
 // in a small texture is a few texels picked at random.
 //
-// Section 5.5 finds that details of a texture are taken for the land's, and takes a texture of
+// Section 5.5 finds that details of a texture are taken for the terrain's, and takes a texture of
 // less detail for figures 5.10 and 5.11. Here that is the same image with less contrast about
 // its mean, which the last level of detail holds: so it works for a user's image too, and the
-// land keeps its colours.
+// terrain keeps its colours.
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
 #include "maths/land.glsl"
@@ -23,22 +23,28 @@
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
-uniform float repeats = 24.0;      //! slider(1, 256) step(1) How often the images stand side by side from west to east
-uniform float variety = 0.5;       //! slider(0, 1) step(0.01) How much of each image is read a second time, larger and turned, so that its repeats do not show
-uniform float detail = 1.0;        //! slider(0, 1) step(0.01) How much of each image's contrast is left. 0: its mean colour
+uniform float repeats = 24.0;      //! slider(1, 256) step(1)
+                                   //! How often the images stand side by side from west to east
+uniform float variety = 0.5;       //! slider(0, 1) step(0.01)
+                                   //! How much of each image is read a second time, larger and
+                                   //! turned, so that its repeats do not show
+uniform float detail = 1.0;        //! slider(0, 1) step(0.01)
+                                   //! How much of each image's contrast is left. 0: its mean
+                                   //! colour
 
 // 31 degrees: no whole turns bring it back onto the tiles.
 const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
 const float LARGER = 0.29;
 
 vec4 kernel(ivec2 texel) {
-    // Tiles are square on the ground, so a long land has more of them along its length.
+    // Tiles are square on the ground, so a long terrain has more of them along its length.
     vec2 tile = share_of_texel(texel, size) * repeats * vec2(1.0, extent.y / extent.x);
     float texels = float(max(size.x - 1, 1)) / repeats;
     float level = log2(float(textureSize(colour, 0).x) / texels);
     // A whole level: a blend of two would cost twice the reads and only blur.
     vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
-    vec3 again = textureLod(colour, TURNED * tile * LARGER, max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
+    vec3 again = textureLod(colour, TURNED * tile * LARGER,
+                            max(floor(level + log2(LARGER) + 0.5), 0.0)).rgb;
     vec3 shown = mix(once, again, 0.5 * variety);
     // The level after the last is the last: one texel, the mean.
     if (detail < 1.0) shown = mix(textureLod(colour, vec2(0.5), 99.0).rgb, shown, detail);

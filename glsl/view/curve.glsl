@@ -13,17 +13,23 @@
 #pragma kernel(output = "frame:rgba8")
 
 uniform sampler2D height;             //! input
-uniform int arranged = 0;             //! menu("stacked", "overlaid") A panel for each row, or all rows in one
+uniform int arranged = 0;             //! menu("stacked", "overlaid")
+                                      //! A panel for each row, or all rows in one
 uniform int rows = 0;                 //! slider(0, 32) Rows shown, from the first on; 0: all
 uniform float width = 1.5;            //! slider(0.5, 12) step(0.1) unit("pixels") Of the line
-uniform float lowest = 0.0;           //! slider(-4, 4) step(0.01) group("Range") The number at a panel's foot
-uniform float highest = 1.0;          //! slider(-4, 4) step(0.01) group("Range") The number at its top
-uniform float margin = 0.06;          //! slider(0, 0.4) step(0.01) group("Range") Left free at a panel's foot and top, over its height
+uniform float lowest = 0.0;           //! slider(-4, 4) step(0.01) group("Range")
+                                      //! The number at a panel's foot
+uniform float highest = 1.0;          //! slider(-4, 4) step(0.01) group("Range")
+                                      //! The number at its top
+uniform float margin = 0.06;          //! slider(0, 0.4) step(0.01) group("Range")
+                                      //! Left free at a panel's foot and top, over its height
 uniform vec3 line = vec3(0.02, 0.10, 0.32);   //! colour group("Colours") The first curve
-uniform vec3 line_last = vec3(0.45, 0.10, 0.03);  //! colour group("Colours") The last curve; those between are mixed
+uniform vec3 line_last = vec3(0.45, 0.10, 0.03);  //! colour group("Colours")
+                                                  //! The last curve; those between are mixed
 uniform vec3 ground = vec3(1.0);              //! colour group("Colours") Behind the curves
 uniform bool axis = true;             //! group("Axis") A line across each panel
-uniform float baseline = 0.0;         //! slider(-4, 4) step(0.01) group("Axis") The number it stands at
+uniform float baseline = 0.0;         //! slider(-4, 4) step(0.01) group("Axis")
+                                      //! The number it stands at
 uniform vec3 axis_colour = vec3(0.55);  //! colour group("Axis") Its colour
 
 float distance_to_segment(vec2 place, vec2 from, vec2 to) {
@@ -54,7 +60,10 @@ vec4 kernel(ivec2 texel) {
     int first = int(floor((place.x - reach) / pitch));
     int last = int(ceil((place.x + reach) / pitch));
     vec3 seen = ground;
-    if (axis) seen = mix(seen, axis_colour, cover(abs(place.y - (foot + (baseline - lowest) * rise)), 1.0));
+    if (axis) {
+        seen = mix(seen, axis_colour, cover(abs(place.y - (foot + (baseline - lowest) * rise)),
+                                            1.0));
+    }
     bool broken = false;
     int row_first = arranged == 0 ? panel : 0;
     int row_last = arranged == 0 ? panel : shown - 1;
@@ -67,7 +76,8 @@ vec4 kernel(ivec2 texel) {
             vec2 to = vec2(float(k) * pitch, clamp(foot + (value - lowest) * rise, -1e5, 1e5));
             bool number = is_number(value);
             if (linked && number) nearest = min(nearest, distance_to_segment(place, from, to));
-            broken = broken || (!number && k >= 0 && k < found.x && abs(to.x - place.x) <= max(0.5 * pitch, 0.5));
+            broken = broken || (!number && k >= 0 && k < found.x
+                                && abs(to.x - place.x) <= max(0.5 * pitch, 0.5));
             from = to;
             linked = number;
         }

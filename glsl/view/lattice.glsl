@@ -1,4 +1,4 @@
-// view/lattice.glsl -- the points of a small land as discs: grey by height, with a ring in the colour of their phase.
+// view/lattice.glsl -- the points of a small terrain as discs.
 //
 //   gives    frame, display-encoded
 //   needs    colour/encode.glsl
@@ -6,6 +6,8 @@
 //            spacings of the lattice, lines in pixels
 //   source   Belaiche 2010, figures 1.8 to 1.11, which show red, blue, green and orange points
 //   tested   tests/glsl/test_diamond_square.py, against the colours at the points
+//
+// They are grey by height, with a ring in the colour of their phase.
 //
 // A point of phase 0 is not known yet and is an empty circle. Phases from 1 have the five
 // colours in turn; beyond the fifth, the fourth and the fifth go on.
@@ -15,22 +17,28 @@
 uniform sampler2D height;      //! input
 uniform sampler2D phase;       //! input
 uniform float lowest = 0.0;    //! slider(-2, 2) step(0.01) group("Range") The height shown darkest
-uniform float highest = 1.0;   //! slider(-2, 2) step(0.01) group("Range") The height shown brightest
-uniform float radius = 0.3;    //! slider(0.05, 0.5) step(0.01) Of a disc with its ring, in spacings of the lattice
-uniform vec3 first = vec3(0.0, 0.0, 0.0);       //! colour group("Phases") Ring of the points that were given
+uniform float highest = 1.0;   //! slider(-2, 2) step(0.01) group("Range")
+                               //! The height shown brightest
+uniform float radius = 0.3;    //! slider(0.05, 0.5) step(0.01)
+                               //! Of a disc with its ring, in spacings of the lattice
+uniform vec3 first = vec3(0.0, 0.0, 0.0);       //! colour group("Phases")
+                                                //! Ring of the points that were given
 uniform vec3 second = vec3(0.78, 0.01, 0.01);   //! colour group("Phases") Ring of the second phase
 uniform vec3 third = vec3(0.01, 0.09, 0.78);    //! colour group("Phases") Ring of the third
 uniform vec3 fourth = vec3(0.0, 0.32, 0.02);    //! colour group("Phases") Ring of the fourth
 uniform vec3 fifth = vec3(1.0, 0.22, 0.0);      //! colour group("Phases") Ring of the fifth
 uniform vec3 paper = vec3(1.0, 1.0, 1.0);       //! colour Behind the points
-uniform vec3 line = vec3(0.6, 0.6, 0.6);        //! colour The lattice's lines, and points that are not known yet
+uniform vec3 line = vec3(0.6, 0.6, 0.6);        //! colour
+                                                //! The lattice's lines, and points that are not
+                                                //! known yet
 
 const float RING = 0.34;   // of the radius
 const float HOLLOW = 0.4;  // radius of an unknown point's circle, of a known one's
 
 vec3 colour_of(int number) {
     int shown = number <= 5 ? number : 4 + (number & 1);
-    return shown <= 1 ? first : shown == 2 ? second : shown == 3 ? third : shown == 4 ? fourth : fifth;
+    return shown <= 1 ? first : shown == 2 ? second : shown == 3 ? third : shown == 4 ? fourth
+            : fifth;
 }
 
 vec4 kernel(ivec2 texel) {

@@ -10,9 +10,12 @@
 #pragma kernel(output = "frame:rgba8")
 
 uniform sampler2D picture;       //! input
-uniform float exposure = 0.0;    //! slider(-8, 8) step(0.05) unit("stops") group("Picture") Twice the light for each
-uniform int tone = 0;            //! menu("none", "Reinhard", "film") group("Picture") How light above 1 is brought in: cut off, or bent
-uniform float white = 3.0;       //! slider(1, 16) step(0.1) group("Picture") Reinhard: the light that becomes white
+uniform float exposure = 0.0;    //! slider(-8, 8) step(0.05) unit("stops") group("Picture")
+                                 //! Twice the light for each
+uniform int tone = 0;            //! menu("none", "Reinhard", "film") group("Picture")
+                                 //! How light above 1 is brought in: cut off, or bent
+uniform float white = 3.0;       //! slider(1, 16) step(0.1) group("Picture")
+                                 //! Reinhard: the light that becomes white
 
 vec4 kernel(ivec2 texel) {
     vec3 light = max(texelFetch(picture, texel, 0).rgb, 0.0) * exp2(exposure);

@@ -1,11 +1,12 @@
-// view/sea.glsl -- a flat sea over the land that lies below its level.
+// view/sea.glsl -- a flat sea over the terrain that lies below its level.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, terrain/heightfield.glsl; a height 0..1; a frame with its depth to start from
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, terrain/heightfield.glsl;
+//            a height 0..1; a frame with its depth to start from
 //   units    metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
 //            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
-//   tested   tests/glsl/test_view.py: drowns the land below its level and no other
+//   tested   tests/glsl/test_view.py: drowns the terrain below its level and no other
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "terrain/heightfield.glsl"
@@ -15,11 +16,14 @@ uniform sampler2D height;  //! input
 uniform sampler2D daylight;  //! input("black")
 
 uniform bool sea = false;               //! group("Sea") Draw the sea
-uniform float sea_level = 0.0;          //! slider(-500, 9000) step(1) unit("m") group("Sea") Height of its surface, as elevations are counted
+uniform float sea_level = 0.0;          //! slider(-500, 9000) step(1) unit("m") group("Sea")
+                                        //! Height of its surface, as elevations are counted
 uniform vec3 water = vec3(0.015, 0.075, 0.11);  //! colour group("Sea") Deep water
-uniform float clarity = 12.0;           //! log_slider(0.1, 500) unit("m") group("Sea") Depth through which a third of the light comes back
+uniform float clarity = 12.0;           //! log_slider(0.1, 500) unit("m") group("Sea")
+                                        //! Depth through which a third of the light comes back
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") What it mirrors
-uniform int sky = 0;  //! menu("colours", "daylight") group("Sky") Whether it mirrors that colour, or the sky of lighting/daylight
+uniform int sky = 0;  //! menu("colours", "daylight") group("Sky")
+                      //! Whether it mirrors that colour, or the sky of lighting/daylight
 
 vec4 vertex(vec3 corner, out vec3 position) {
     position = vec3(corner.xy * extent, sea_level - base_elevation);

@@ -1,20 +1,28 @@
-// view/sky.glsl -- what is behind the land: three colours, or the sky of some daylight with the sun in it.
+// view/sky.glsl -- what is behind the terrain.
 //
 //   gives    frame, linear light
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl; the camera; daylight if there is any
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl; the camera; daylight if
+//            there is any
 //   units    colours linear
 //   source   the colours: none, a backdrop; the sky: see lighting/daylight/dome
 //   tested   tests/glsl/test_view.py: the horizon's colour at the horizon, overhead's above; and
 //            tests/glsl/test_daylight.py: the sky's colours and the sun's disc where they belong
+//
+// Three colours, or the sky of a daylight with the sun in it.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
 uniform sampler2D daylight;  //! input("black")
-uniform int sky = 0;         //! menu("colours", "daylight") group("Sky") What is behind the land: the colours below, or the sky of lighting/daylight if the sketch has it
+uniform int sky = 0;         //! menu("colours", "daylight") group("Sky")
+                             //! What is behind the terrain: the colours below, or the sky of
+                             //! lighting/daylight if the sketch has it
 uniform vec3 zenith = vec3(0.105, 0.245, 0.56);  //! colour group("Sky") Straight overhead
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);   //! colour group("Sky") Level with the eye
-uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky") Straight underfoot, where there is no land; under daylight, what it is in white light
+uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky")
+                                                  //! Straight underfoot, where there is no
+                                                  //! terrain; under daylight, what it is in white
+                                                  //! light
 
 // The sun is 47,000 times as bright as white paper in its light, far past what half floats
 // hold and smooth edges bear.
@@ -27,7 +35,8 @@ vec3 direction_of(vec2 pixel) {
 
 // How much of a pixel the sun's disc covers.
 float disc_in(vec3 towards, vec3 sun, float pixel, float height) {
-    return towards.z < horizon_rise(height) ? 0.0 : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
+    return towards.z < horizon_rise(height) ? 0.0
+            : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
 }
 
 vec3 daylight_in(vec3 towards, float pixel) {

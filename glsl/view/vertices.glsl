@@ -1,31 +1,37 @@
-// view/vertices.glsl -- where the vertices of mesh "land" stand: of a full grid, of tiles, or of tiles that morph.
+// view/vertices.glsl -- where the vertices of mesh "land" stand.
 //
-//   gives    share_of_vertex
-//   needs    view/geomipmap/tiles.glsl; eye, extent and relief; in a draw's vertex stage only
-//   units    shares 0..1 of the land's sides, east and north; nodes as in view/geomipmap/tiles.glsl
+//   gives    vertex_of_mesh, share_of_vertex
+//   needs    view/geomipmap/tiles.glsl, view/surface.glsl; clip_from_world, eye, extent and
+//            relief; in a draw's vertex stage only
+//   units    shares 0..1 of the terrain's sides, east and north; nodes as in
+//            view/geomipmap/tiles.glsl
 //   source   Strugar 2009, "Continuous Distance-Dependent Level of Detail for Rendering
 //            Heightmaps", Journal of Graphics, GPU, and Game Tools 14(4): one grid for every
 //            node of a quadtree, whose vertices slide with the distance; how far levels reach,
 //            and which way vertices slide, made here
 //   tested   tests/glsl/test_view_geomipmap.py, tests/glsl/test_view_morph.py
 //
+// They are those of a full grid, of tiles, or of tiles that morph.
+//
 // A morphing tile has 16 x 16 quads of 1, 2, 4 ... cells, as its level says. Between eight tenths
 // of the distance that its level reaches and all of it, each vertex that the next level lacks
 // slides to a neighbour that it has, so that there both levels are the same surface. It slides
 // towards the middle of the next level's fan, and so the triangles left are that fan. Neighbours
 // agree about every vertex they share, as each knows its own distance to the eye: no crack, no
-// stitching. Vertices stay on the land while they slide.
+// stitching. Vertices stay on the terrain while they slide.
 #ifndef VIEW_VERTICES
 #define VIEW_VERTICES
 #ifdef VERTEX_STAGE
 #include "view/geomipmap/tiles.glsl"
+#include "view/surface.glsl"
 
 // As START in playground/terrain/morph.py, which sees to it that no level begins to slide where
 // the one before ends. What rounds off must not keep a vertex from the end of its way.
 const float MORPH_START = 0.8;
 const float MORPH_END = 0.99;
 
-// `tile`: the node of its south-west corner, its level, and the distance in metres that it reaches.
+// `tile`: the node of its south-west corner, its level, and the distance in metres that it
+// reaches.
 vec2 morphed_share(sampler2D height, vec2 corner, vec4 tile) {
     ivec2 texels = textureSize(height, 0);
     vec2 cells = vec2(cells_of_tiles(texels));
@@ -46,6 +52,16 @@ vec2 share_of_vertex(sampler2D height, int detail, vec3 corner, vec4 tile) {
     if (detail == 0) return corner.xy;
     if (detail == 1) return share_of_node(tile.xy + corner.xy, textureSize(height, 0));
     return morphed_share(height, corner.xy, tile);
+}
+
+// A vertex in the picture; its place on the terrain, and a mark as of place_of_vertex.
+vec4 vertex_of_mesh(sampler2D height, int detail, vec3 corner, vec4 tile,
+                    float skirt, out vec3 position, out float mark) {
+    vec2 share = share_of_vertex(height, detail, corner, tile);
+    vec4 place = place_of_vertex(height, share, corner.z, extent, relief, skirt);
+    position = place.xyz;
+    mark = place.w;
+    return clip_from_world * vec4(position, 1.0);
 }
 #endif
 #endif

@@ -1,6 +1,7 @@
 // view/wires.glsl -- a mesh's edges by arithmetic, smooth at any distance.
 //
-//   gives    wires, wires_of_tile, colour_of_level; in a draw's fragment stage only
+//   gives    wires, wires_of_tile, wires_of_tiles, colour_of_level; in a draw's fragment stage
+//            only
 //   needs    derivatives
 //   units    places in cells of the mesh, widths in pixels
 //   source   made here: the distance to a line over its change from pixel to pixel
@@ -35,15 +36,27 @@ float wires_of_tile(vec2 place, int level, int coarser, float width) {
     vec4 along = dFdx(line), across = dFdy(line);
     vec4 change = max(sqrt(along * along + across * across), 1e-9);
     vec4 off = abs(fract(line + 0.5) - 0.5) / change;
-    vec4 cover = mix(clamp(0.5 * width + 0.5 - off, 0.0, 1.0), min(width * change, 1.0), smoothstep(0.25, 0.7, change));
-    // From the middle of a block to the middle of its side there is no edge where that middle is left out.
+    vec4 cover = mix(clamp(0.5 * width + 0.5 - off, 0.0, 1.0), min(width * change, 1.0),
+                     smoothstep(0.25, 0.7, change));
+    // From the middle of a block to the middle of its side there is no edge where that middle is
+    // left out.
     bvec2 odd = equal(mod(floor(cell + 0.5), 2.0), vec2(1.0));
-    bool upright = odd.x && (((coarser & 1) != 0 && cell.y < 1.0) || ((coarser & 4) != 0 && cell.y > last));
-    bool sideways = odd.y && (((coarser & 8) != 0 && cell.x < 1.0) || ((coarser & 2) != 0 && cell.x > last));
+    bool upright = odd.x && (((coarser & 1) != 0 && cell.y < 1.0)
+                             || ((coarser & 4) != 0 && cell.y > last));
+    bool sideways = odd.y && (((coarser & 8) != 0 && cell.x < 1.0)
+                              || ((coarser & 2) != 0 && cell.x > last));
     if (upright) cover.x = 0.0;
     if (sideways) cover.y = 0.0;
     cover = 1.0 - cover;
     return level == 4 ? whole : 1.0 - cover.x * cover.y * cover.z * cover.w;
+}
+
+// The edges of a pixel's tile, by what view/land.glsl knows of it: the place in the tile, its
+// level, and how it is joined to its neighbours.
+float wires_of_tiles(vec4 net, bool morphs) {
+    // A tile that morphs has all of its triangles at any level; those that vanish have no pixels.
+    int level = morphs ? 0 : int(net.z + 0.5);
+    return wires_of_tile(net.xy, level, morphs ? 0 : int(net.w + 0.5), 1.0);
 }
 
 // Blue where the mesh is finest, then green, yellow, orange, red and, of tiles that morph, purple.

@@ -45,7 +45,7 @@ class Exported:
     warnings: tuple[str, ...] = ()  # what was lost
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Job:
     """An export that nothing speaks against, so far as can be told before a texel is made."""
 
@@ -88,7 +88,10 @@ def export(
 
     Raises ``PlaygroundError`` for any mistake in what is asked, or a file that cannot be written.
     """
-    form, found = Form(texture, kind, bits, span, grid, light), opened(sketch)
+    form, found = (
+        Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light),
+        opened(sketch),
+    )
     check(Path(path), form)
     if engine is not None:
         return run(engine, prepare(engine, found, Path(path), form, time=time, steps=steps))
@@ -116,7 +119,14 @@ def prepare(
         kind = kind or kind_of(plan, texture)
     else:
         texture, kind = height_of(plan), kind or HEIGHT
-    return Job(sketch, path, replace(form, bits=bits_for(path, kind, form)), plan, texture, kind)
+    return Job(
+        sketch=sketch,
+        path=path,
+        form=replace(form, bits=bits_for(path, kind, form)),
+        plan=plan,
+        texture=texture,
+        kind=kind,
+    )
 
 
 def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> Job:
@@ -130,7 +140,9 @@ def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> Job:
     light = seen(plan, "light") if form.light else ""
     if form.light and not light:
         raise SketchError(f"sketch {sketch.name} has no light to bake in")
-    return Job(sketch, path, form, plan, texture, kind, height, light)
+    return Job(
+        sketch=sketch, path=path, form=form, plan=plan, texture=texture, kind=kind, height=height, light=light
+    )
 
 
 def run(engine: Engine, job: Job) -> Exported:

@@ -22,7 +22,7 @@ from playground.errors import DataError, ParameterError, nearest
 from playground.paths import shown
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Form:
     """What to export and how; where a field has its default, the usual is done."""
 

@@ -28,7 +28,7 @@ USUAL_SIZE = (1280, 720)
 MOST_FRAMES = 1_000_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Film:
     """A sketch at so many times, one after another."""
 
@@ -72,7 +72,7 @@ def film_of(
         raise ParameterError(
             f"{seconds:g} s at {float(rate):g} pictures a second: expected 1 to {MOST_FRAMES} pictures"
         )
-    return Film(found, count, rate, size, start, steps)
+    return Film(sketch=found, count=count, fps=rate, size=size, start=start, steps=steps)
 
 
 @contextmanager

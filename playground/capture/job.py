@@ -28,7 +28,7 @@ from playground.sketch.model import Sketch
 PICTURE, PICTURES, FILM, SHEET = KINDS = ("picture", "pictures", "film", "sheet")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Job:
     """What is to be captured, and where to."""
 

@@ -1,27 +1,17 @@
-"""A capture at work in a process of its own, as whoever started it sees it: how far, and what came of it."""
+"""Run a capture in a worker process, and tell whoever started it how far it is and what came of it."""
 
 from __future__ import annotations
 
-import queue
-import shutil
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 from playground.capture.job import Job
-from playground.engine.sandbox_process import Doing, Process
+from playground.errors import PlaygroundError
+from playground.process.messages import Answer, Cancelled, UnexpectedError
+from playground.process.worker import Launch, Worker, WorkerDied
 
 _GRACE = 10.0  # [s] that a job may take to stop by itself
-_MODULE = "playground.capture.job_child"
-
-
-@dataclass(frozen=True)
-class Progress(Doing):
-    """How far a job is."""
-
-    done: int = 0
-    of: int = 0
 
 
 @dataclass(frozen=True)
@@ -34,64 +24,74 @@ class Finished:
     notes: tuple[str, ...] = ()
 
 
-class Working:
-    """One job at work; ask ``poll`` now and then."""
+class JobProcess:
+    """One job at work; call ``poll`` now and then."""
 
     def __init__(self, job: Job, *, software: bool = False, driver: str = "auto") -> None:
         self.job = job
         self.started = time.monotonic()
         self._stopped_at: float | None = None
-        self._folder = Path(tempfile.mkdtemp(prefix="playground-capture-"))
-        self._stop = self._folder / "stop"
-        renderer = "software" if software else "usual"
-        self._process: Process[Finished] = Process(_MODULE, [renderer, driver, str(self._stop)])
-        self._process.hand_over(job)
+        # It outlives its parent until its next part is done, to remove the files that it has begun.
+        launch = Launch(
+            handler="playground.capture.job_handler", options=(software, driver), ends_with_parent=False
+        )
+        self._worker = Worker(launch)
+        self._worker.submit(job)
         self._finished: Finished | None = None
 
     @property
     def progress(self) -> tuple[int, int]:
         """How many parts are done, and of how many; (0, 0) while it begins."""
-        doing = self._process.doing
-        return (doing.done, doing.of) if isinstance(doing, Progress) else (0, 0)
+        progress = self._worker.progress
+        return progress if isinstance(progress, tuple) else (0, 0)
 
     @property
     def stopping(self) -> bool:
-        """Whether it was asked to stop."""
+        """Whether ``stop`` was called."""
         return self._stopped_at is not None
 
     def stop(self) -> None:
-        """Ask it to stop; what it has begun it takes away."""
+        """Cancel it; it removes what it has begun."""
         if self._stopped_at is None and self._finished is None:
             self._stopped_at = time.monotonic()
-            self._stop.touch()
+            self._worker.cancel()
 
-    def poll(self) -> Finished | None:
-        """Return how it ended, None while it goes on; never waits."""
+    def poll(self, timeout: float = 0.0) -> Finished | None:
+        """Return how it ended, None while it continues; waits ``timeout`` seconds at the most."""
         if self._finished is not None:
             return self._finished
         try:
-            answer = self._process.answers.get_nowait()
-        except queue.Empty:
-            late = self._stopped_at is not None and time.monotonic() - self._stopped_at > _GRACE
-            if not late:
-                return None
-            self._finish(Finished(None, stopped=True))
+            answer = self._worker.poll(timeout)
+        except WorkerDied as died:
+            self._finished = Finished(None, f"the capture {died.report.cause()}")
             return self._finished
-        if answer is None:
-            answer = Finished(None, f"the capture {self._process.cause_of_death()}")
-        self._finish(answer)
+        if answer is not None:
+            self._finish(_finished(answer))
+        elif self._stopped_at is not None and time.monotonic() - self._stopped_at > _GRACE:
+            self._finish(Finished(None, stopped=True))
         return self._finished
 
     def close(self) -> None:
-        """Stop it and wait until it has taken away what it has begun; kill it if that takes too long."""
+        """Stop it and wait until it has removed what it has begun; kill it if that takes too long."""
         self.stop()
-        end = time.monotonic() + _GRACE
-        while self.poll() is None and time.monotonic() < end:
-            time.sleep(0.01)
-        if self._finished is None:
-            self._finish(Finished(None, stopped=True))
+        while self.poll(timeout=0.1) is None:
+            pass
 
-    def _finish(self, answer: Finished) -> None:
-        self._finished = answer
-        self._process.kill()
-        shutil.rmtree(self._folder, ignore_errors=True)
+    def _finish(self, finished: Finished) -> None:
+        self._finished = finished
+        self._worker.end(kill=True)
+
+
+def _finished(answer: Answer) -> Finished:
+    try:
+        found = answer.get()
+    except Cancelled:
+        return Finished(None, stopped=True)
+    except PlaygroundError as error:
+        return Finished(None, str(error))
+    except MemoryError:
+        return Finished(None, "there is not enough memory for a picture of that size")
+    except UnexpectedError as error:
+        return Finished(None, f"a bug of the playground itself, {error.summary}")
+    assert isinstance(found, Finished)
+    return found

@@ -127,7 +127,7 @@ def render_sequence(
     if not wanted or min(wanted) < 0 or max(wanted) >= MOST_FRAMES:
         raise ParameterError(f"pictures are numbered from 0 to {MOST_FRAMES - 1}; at least one was expected")
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
-    film = Film(opened(sketch), max(wanted) + 1, rate, size)
+    film = Film(sketch=opened(sketch), count=max(wanted) + 1, fps=rate, size=size)
     if engine is not None:
         return write_sequence(engine, film, pattern, numbers=wanted, resume=resume)
     with headless() as made:

@@ -1,17 +1,24 @@
-"""What commands share: their options, how arguments are read, the words of their help."""
+"""What commands share: their options, how arguments are read, how help is written."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from playground.errors import ParameterError, PlaygroundError
+from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.sketch.model import DRIVERS, LARGEST_SIDE, Shot, Sketch
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+
+T = TypeVar("T")
+Number = TypeVar("Number", int, float)
 
 FAILED = 1
 """Exit status of ``check`` and ``doctor`` that found something."""
@@ -19,14 +26,20 @@ FAILED = 1
 
 @dataclass(frozen=True, slots=True)
 class Renderer:
-    """Which renderer was asked for before the command."""
+    """Which renderer the user chose."""
 
     software: bool = False
     device: int | None = None
 
     def or_else(self, software: bool, device: str = "") -> Renderer:
-        """Return what was asked for before or after the command."""
+        """Return what was chosen before or after the command's name."""
         return Renderer(self.software or software, read_device(device) if device else self.device)
+
+    def open_engine(self, **options: Any) -> Engine:
+        """Open a headless engine on it; the options are those of ``playground.api.headless``."""
+        from playground.api import headless
+
+        return headless(software=self.software, device=self.device, **options)
 
 
 def help_text(text: str, *examples: str) -> str:
@@ -34,9 +47,43 @@ def help_text(text: str, *examples: str) -> str:
     return f"{text}\n\n\b\nExamples:\n" + "\n".join(f"  {example}" for example in examples)
 
 
-def either(words: Sequence[str]) -> str:
+def either(names: Sequence[str]) -> str:
     """Return "a, b or c"."""
-    return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+
+
+def command_group(name: str, text: str, short: str) -> typer.Typer:
+    """Return an empty group of commands that prints its help where none of them is named."""
+    app = typer.Typer(
+        name=name, help=text, short_help=short, invoke_without_command=True, rich_markup_mode="rich"
+    )
+
+    @app.callback()
+    def print_help(ctx: typer.Context) -> None:
+        if ctx.invoked_subcommand is None:
+            print(ctx.get_help())
+
+    return app
+
+
+# ── options ──────────────────────────────────────────────────────────────────
+
+
+def option(names: str, metavar: str, text: str, complete: Callable[[str], list[str]] | None = None) -> Any:
+    """Declare an option with a value, by its names parted by spaces; its default is not shown."""
+    return typer.Option(
+        *names.split(), help=text, metavar=metavar, show_default=False, autocompletion=complete
+    )
+
+
+def flag(name: str, text: str) -> Any:
+    """Declare an option without a value."""
+    return typer.Option(name, help=text, metavar="")
+
+
+def argument(metavar: str, text: str, complete: Callable[[str], list[str]] | None = None) -> Any:
+    """Declare a positional argument; its default is not shown."""
+    return typer.Argument(help=text, metavar=metavar, show_default=False, autocompletion=complete)
 
 
 def complete_sketch(incomplete: str) -> list[str]:
@@ -59,6 +106,20 @@ def complete_driver(incomplete: str) -> list[str]:
     return [name for name in DRIVERS if name.startswith(incomplete)]
 
 
+def complete_lesson(incomplete: str) -> list[str]:
+    """Return the lessons that complete a word."""
+    from playground.lessons.library import lesson_files
+
+    return [name for name in lesson_files() if name.startswith(incomplete)]
+
+
+def complete_language(incomplete: str) -> list[str]:
+    """Return the codes of languages that complete a word."""
+    from playground.lessons.library import LANGUAGES
+
+    return [code for code in LANGUAGES if code.startswith(incomplete)]
+
+
 def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the parameters, as ``path=``, that complete a word."""
     from playground.sketch.catalogue import settable
@@ -73,69 +134,81 @@ def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
 
 SketchArgument = Annotated[
     str,
-    typer.Argument(
-        help="A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
-        " a shader."
-        " Without it, the default sketch.",
-        metavar="SKETCH",
-        show_default=False,
-        autocompletion=complete_sketch,
+    argument(
+        "SKETCH",
+        "A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
+        " a shader. Without it, the default sketch.",
+        complete_sketch,
     ),
 ]
-SizeOption = Annotated[
-    str | None, typer.Option("--size", help="Size in pixels, as 1280x720.", metavar="WxH", show_default=False)
-]
+SizeOption = Annotated[str | None, option("--size", "WxH", "Size in pixels, as 1280x720.")]
 SetOption = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
-        help="Set a parameter, as light.sun=250,12, or the land, as size=513. May be repeated.",
+        help="Set a parameter, as light.sun=250,12, or the terrain, as size=513. May be repeated.",
         metavar="PATH=VALUE",
         show_default=False,
         autocompletion=complete_setting,
     ),
 ]
-TimeOption = Annotated[str, typer.Option("--time", help="Time in seconds.", metavar="T", show_default=False)]
+PresetOption = Annotated[str, option("--preset", "NAME", "Begin with a preset.")]
+TimeOption = Annotated[str, option("--time", "T", "Time in seconds.")]
 StepsOption = Annotated[
     list[str] | None,
-    typer.Option(
-        "--steps",
-        help="Stop a repeated pass after so many turns. May be repeated.",
-        metavar="PASS=TURNS",
-        show_default=False,
-    ),
+    option("--steps", "PASS=COUNT", "Stop a repeated pass after so many iterations. May be repeated."),
 ]
 DriverOption = Annotated[
-    str,
-    typer.Option(
-        "--driver",
-        help=f"What runs the kernels: {either(DRIVERS)}.",
-        metavar="NAME",
-        show_default=False,
-        autocompletion=complete_driver,
-    ),
+    str, option("--driver", "NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)
 ]
-PlainOption = Annotated[
-    bool,
-    typer.Option("--plain", metavar="", help="Run every technique in its plain form, no fast variant."),
+PlainOption = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]
+SoftwareOption = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
+DeviceOption = Annotated[str, option("--device", "N", "Render on this EGL device, from 0.")]
+JsonOption = Annotated[bool, flag("--json", "Print JSON, for programs.")]
+LanguageOption = Annotated[
+    str, option("--lang", "CODE", "Language: en or fr; that of the system by default.", complete_language)
 ]
-SoftwareOption = Annotated[
-    bool, typer.Option("--software", metavar="", help="Draw with the processor (Mesa llvmpipe).")
-]
-DeviceOption = Annotated[
-    str, typer.Option("--device", help="Draw on this EGL device, from 0.", metavar="N", show_default=False)
-]
-JsonOption = Annotated[bool, typer.Option("--json", metavar="", help="Print JSON, for programs.")]
+
+
+# ── their values ─────────────────────────────────────────────────────────────
+
+
+def read_option(name: str, text: str, read: Callable[[str], T | None], expected: str) -> T | None:
+    """Return the value of an option, None where it is absent.
+
+    Raises ``ParameterError`` where ``read`` returns None or raises ``ValueError``.
+    """
+    if not text:
+        return None
+    try:
+        found = read(text)
+    except (ValueError, ZeroDivisionError):
+        found = None
+    if found is None:
+        raise ParameterError(f"{name} {text}: expected {expected}")
+    return found
+
+
+def within(low: Number, high: Number) -> Callable[[str], Number | None]:
+    """Return a reader of numbers between two bounds, both included: of digits only, where they are whole."""
+
+    def read(text: str) -> Number | None:
+        if isinstance(low, int) and not text.isdecimal():
+            return None
+        found = type(low)(text)
+        return found if low <= found <= high else None
+
+    return read
 
 
 def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
-    """Return the turns of ``--steps`` by pass; raise ``ParameterError``."""
+    """Return the iterations of ``--steps`` by pass; raise ``ParameterError``."""
     found: dict[str, int] = {}
     for text in texts or ():
-        path, _, turns = text.partition("=")
-        if not path.strip() or not turns.strip().isdecimal():
+        path, _, count = text.partition("=")
+        if not path.strip() or not count.strip().isdecimal():
             raise ParameterError(f"--steps {text}: expected a pass and a whole number, as height=9")
-        found[path.strip()] = int(turns)
+        found[path.strip()] = int(count)
     return found
 
 
@@ -152,15 +225,7 @@ def read_pixels(text: str | None, most: int = LARGEST_SIDE) -> tuple[int, int] |
 
 def read_seconds(text: str) -> float | None:
     """Return the seconds of ``--time``; raise ``ParameterError``."""
-    if not text:
-        return None
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = float("nan")
-    if not abs(seconds) < 1e9:
-        raise ParameterError(f"--time {text}: expected a number of seconds, as 2.5")
-    return seconds
+    return read_option("--time", text, within(-1e9, 1e9), "a number of seconds, as 2.5")
 
 
 def read_driver(text: str) -> str:
@@ -172,9 +237,7 @@ def read_driver(text: str) -> str:
 
 def read_device(text: str) -> int | None:
     """Return the number of ``--device``; raise ``ParameterError``."""
-    if text and not (text.isdecimal() and len(text) < 4):
-        raise ParameterError(f"--device {text}: expected the number of an EGL device, from 0")
-    return int(text) if text else None
+    return read_option("--device", text, within(0, 999), "the number of an EGL device, from 0")
 
 
 def read_values(settings: Sequence[str] | None) -> dict[str, object]:
@@ -203,7 +266,7 @@ def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, obj
         try:
             parameter = resolve(sketch.graph, path)[0].parameter
         except PlaygroundError:
-            continue  # the land's own, or a mistake that with_values explains
+            continue  # the terrain's own, or a mistake that with_values explains
         text = str(value)
         if parameter.widget.kind != "file" or not text:
             continue
@@ -216,7 +279,7 @@ def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, obj
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A sketch as it was asked for: its values, when, how many turns, and how large where a shot says so."""
+    """A sketch at a moment: its values, when, after how many iterations, how large where a shot says so."""
 
     sketch: Sketch
     time: float
@@ -234,7 +297,7 @@ def moment_of(
     steps: dict[str, int] | None = None,
     time: float | None = None,
 ) -> Moment:
-    """Begin with a shot, where one is named, then a preset, then single values; later words count.
+    """Begin with a shot, where one is named, then a preset, then single values; later ones win.
 
     Raises ``SketchError`` or ``ParameterError`` for what the sketch does not have.
     """
@@ -246,9 +309,34 @@ def moment_of(
     if values:
         sketch = sketch.with_values(with_whole_paths(sketch, values))
     usual = promised.time if promised is not None else 0.0
-    turns = dict(promised.steps) if promised is not None else {}
+    stops = dict(promised.steps) if promised is not None else {}
     size = promised.size if promised is not None else None
-    return Moment(sketch, usual if time is None else time, turns | (steps or {}), size, promised)
+    return Moment(sketch, usual if time is None else time, stops | (steps or {}), size, promised)
+
+
+def output_file(output: str, usual: str, endings: Sequence[str], what: str) -> AbstractContextManager[Path]:
+    """Open the path of a file to write: the one that was given, or a new name like ``usual`` in this folder.
+
+    Raises ``DataError`` where it could not be written, before anything is computed for it; ``what`` begins
+    the sentence, as "a picture is".
+    """
+    if not output:
+        from playground.images.files import new_name
+
+        return new_name(usual)
+    path = Path(output).expanduser()
+    if path.is_dir():
+        raise DataError("is a folder; expected the name of a file to write", file=output)
+    if path.suffix.lower() not in endings:
+        raise DataError(f"{what} written to a name ending in {either(endings)}", file=output)
+    check_parent(path, output)
+    return nullcontext(path)
+
+
+def check_parent(path: Path, output: str) -> None:
+    """Raise ``DataError`` where the folder that a file is to be written into is not there."""
+    if not path.expanduser().parent.is_dir():
+        raise DataError(f"there is no folder '{path.parent}' to write into", file=output)
 
 
 def quoted(text: str) -> str:

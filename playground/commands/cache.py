@@ -1,13 +1,11 @@
-"""Expensive land that is kept on disk: say what there is, and remove it."""
+"""Expensive terrain that is cached on disk: list it, and remove it."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from playground.commands.arguments import JsonOption, help_text
+from playground.commands.arguments import JsonOption, command_group, help_text
 from playground.errors import counted
 from playground.terminal import print_json, print_table
 
@@ -15,69 +13,62 @@ if TYPE_CHECKING:
     from playground.engine.disk_cache import Listed
 
 HELP = help_text(
-    "Expensive land that live keeps on disk, so that a sketch reopens at once.\n\n"
+    "Expensive terrain that live caches on disk, so that a sketch reopens at once.\n\n"
     "It is found by what it was made from (texts, values, files, the renderer's build), so none of it is ever"
-    " out of date, and to remove it costs nothing but time. At most 1 GiB is kept, what was used last;"
-    " the environment variable PLAYGROUND_CACHE says another size, as 500M, or 0 to keep nothing.",
+    " out of date, and to remove it costs nothing but time. At most 1 GiB is cached, what was used last;"
+    " the environment variable PLAYGROUND_CACHE sets another size, as 500M, or 0 to cache nothing.",
     "playground cache show",
     "playground cache clear",
     "PLAYGROUND_CACHE=4G playground live my-land",
 )
 SHOW_HELP = help_text(
-    "Say where land is kept, how much there is, and of which passes; what was used last comes first.",
+    "Show where terrain is cached, how much there is, and of which passes; what was used last comes first.",
     "playground cache show",
     "playground cache show --json",
 )
 CLEAR_HELP = help_text(
-    "Remove all land that is kept; other files of the cache folder stay.\n\n"
-    "Windows that are open lose nothing, and go on keeping what they make.",
+    "Remove all cached terrain; other files of the cache folder stay.\n\n"
+    "Windows that are open lose nothing, and go on caching what they compute.",
     "playground cache clear",
 )
 
-app = typer.Typer(
-    name="cache",
-    help=HELP,
-    short_help="Show or remove the expensive land that is kept on disk.",
-    invoke_without_command=True,
-    rich_markup_mode="rich",
-)
-
-
-@app.callback()
-def _group(ctx: typer.Context) -> None:
-    if ctx.invoked_subcommand is None:
-        print(ctx.get_help())
+app = command_group("cache", HELP, "Show or remove the expensive terrain that is cached on disk.")
 
 
 @app.command("show", help=SHOW_HELP)
 def show(as_json: JsonOption = False) -> None:
-    """Say where land is kept, how much there is, and of which passes."""
+    """Show where terrain is cached, how much there is, and of which passes."""
     from playground.engine.disk_cache import limit_in, listed, place
 
     folder, limit = place(), limit_in()
     found = listed(folder)
+    total: dict[str, Any] = {
+        "folder": str(folder),
+        "bytes": sum(each.bytes for each in found),
+        "most_bytes": limit,
+    }
     if as_json:
-        print_json(_as_json(str(folder), limit, found))
+        print_json({**total, "files": [_as_json(each) for each in found]})
         return
-    print(kept_text(str(folder), len(found), sum(each.bytes for each in found), limit))
+    print(usage_text(**total, files=len(found)))
     if found:
-        headings = ("sketch: pass", "texels", "size", "made in", "used")
-        print_table("Land that is kept, used last first", headings, [_row(each) for each in found])
+        headings = ("sketch: pass", "texels", "size", "computed in", "used")
+        print_table("Cached terrain, used last first", headings, [_row(each) for each in found])
 
 
 @app.command("clear", help=CLEAR_HELP)
 def clear_() -> None:
-    """Remove all land that is kept."""
+    """Remove all cached terrain."""
     from playground.engine.disk_cache import clear, place
 
     number, size = clear(place())
     print(f"{counted(number, 'file')} removed, {in_bytes(size)}")
 
 
-def kept_text(folder: str, number: int, size: int, limit: int) -> str:
-    """Return in words how much is kept, of how much, and where."""
-    bound = f"of at most {in_bytes(limit)}" if limit else "(PLAYGROUND_CACHE has nothing kept)"
-    return f"{counted(number, 'file')}, {in_bytes(size)} {bound}, in {folder}"
+def usage_text(*, folder: str, files: int, bytes: int, most_bytes: int) -> str:
+    """Describe how much is cached, of how much, and where."""
+    bound = f"of at most {in_bytes(most_bytes)}" if most_bytes else "(PLAYGROUND_CACHE turns caching off)"
+    return f"{counted(files, 'file')}, {in_bytes(bytes)} {bound}, in {folder}"
 
 
 def in_bytes(size: int) -> str:
@@ -108,18 +99,14 @@ def _ago(seconds: float) -> str:
     return "just now"
 
 
-def _as_json(folder: str, limit: int, found: list[Listed]) -> dict[str, object]:
-    files = [
-        {
-            "file": each.path.name,
-            "bytes": each.bytes,
-            "used": each.used,
-            "made_for": each.kept.made_for if each.kept else None,
-            "size": list(each.kept.size) if each.kept else None,
-            "outputs": dict(each.kept.outputs) if each.kept else None,
-            "cost_ms": each.kept.cost if each.kept else None,
-        }
-        for each in found
-    ]
-    total = sum(each.bytes for each in found)
-    return {"folder": folder, "bytes": total, "most_bytes": limit, "files": files}
+def _as_json(each: Listed) -> dict[str, object]:
+    stored = each.kept
+    return {
+        "file": each.path.name,
+        "bytes": each.bytes,
+        "used": each.used,
+        "made_for": stored.made_for if stored else None,
+        "size": list(stored.size) if stored else None,
+        "outputs": dict(stored.outputs) if stored else None,
+        "cost_ms": stored.cost if stored else None,
+    }

@@ -1,4 +1,4 @@
-"""Check shaders and sketches in the trial child."""
+"""Check shaders and sketches in the sandbox process."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from playground.commands.arguments import (
     PlainOption,
     Renderer,
     SoftwareOption,
+    flag,
     help_text,
 )
 from playground.errors import Diagnostic, counted
@@ -40,29 +41,27 @@ HELP = help_text(
 def check(
     ctx: typer.Context,
     paths: Annotated[list[Path], typer.Argument(help="Files, and folders to search.", metavar="PATH...")],
-    as_json: Annotated[
-        bool, typer.Option("--json", metavar="", help="Print one JSON object a file, a line each.")
-    ] = False,
+    as_json: Annotated[bool, flag("--json", "Print one JSON object a file, a line each.")] = False,
     plain: PlainOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files
-    from playground.engine.sandbox import Trial
+    from playground.engine.sandbox import Sandbox
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)
     failed, skipped = 0, False
-    told: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
+    reported: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (
-        Trial(software=renderer.software, device=renderer.device) as trial,
+        Sandbox(software=renderer.software, device=renderer.device) as sandbox,
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, trial, root, plain=plain)
-            report = replace(report, warnings=tuple(w for w in report.warnings if w not in told))
-            told |= set(report.warnings)
+            report = check_file(path, sandbox, root, plain=plain)
+            report = replace(report, warnings=tuple(w for w in report.warnings if w not in reported))
+            reported |= set(report.warnings)
             failed += not report.ok
             skipped |= bool(report.skipped)
             if as_json:
@@ -71,15 +70,11 @@ def check(
                 _print_report(report)
             advance()
     if not as_json:
-        warned = f", {counted(len(told), 'warning')}" if told else ""
-        said = f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{warned}"
-        print(f"{said}{_why_skipped(skipped)}")
+        warned = f", {counted(len(reported), 'warning')}" if reported else ""
+        why = "; compute was skipped, because this context has no compute shaders" if skipped else ""
+        print(f"{counted(len(files), 'file')} checked, {failed or 'none'} failed{warned}{why}")
     if failed:
         raise typer.Exit(FAILED)
-
-
-def _why_skipped(skipped: bool) -> str:
-    return "; compute was skipped, because this context has no compute shaders" if skipped else ""
 
 
 def _print_report(report: FileReport) -> None:

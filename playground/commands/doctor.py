@@ -17,7 +17,7 @@ from playground.commands.arguments import (
     SoftwareOption,
     help_text,
 )
-from playground.commands.cache import kept_text
+from playground.commands.cache import usage_text
 from playground.terminal import complain, print_json
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 HELP = help_text(
     "Say what this machine offers, and what to do where something is missing.\n\n"
-    "The OpenGL context, its limits, the display, the packages, the land kept on disk."
+    "The OpenGL context, its limits, the display, the packages, the terrain cached on disk."
     " Exit status 1 when no context opens.",
     "playground doctor",
     "playground doctor --software",
@@ -69,7 +69,7 @@ def _findings(health: Health) -> Iterator[tuple[str, str]]:
         yield "vendor", info.vendor
         yield "driver", info.version
         yield "compute shaders", "yes" if info.compute else "no: they need OpenGL 4.3; everything else works"
-        yield "software renderer", "yes: the processor draws" if info.software else "no"
+        yield "software renderer", "yes: the CPU renders" if info.software else "no"
         for name, value in health.limits.items():
             yield f"most {name}", str(value)
     yield "display", health.display or "none: live needs one, render does not"
@@ -78,12 +78,12 @@ def _findings(health: Health) -> Iterator[tuple[str, str]]:
     yield "playground", __version__
     for name, version in health.packages.items():
         yield name, version or "missing"
-    kept = _cache()
-    yield "land kept on disk", kept_text(kept["folder"], kept["files"], kept["bytes"], kept["most_bytes"])
+    cached = _cache()
+    yield "terrain cached on disk", usage_text(**cached)
 
 
 class _Cache(TypedDict):
-    """What is kept of expensive land."""
+    """What is cached of expensive terrain."""
 
     folder: str
     files: int

@@ -1,4 +1,4 @@
-"""Export a sketch's land for other programs."""
+"""Export a sketch's terrain for other programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from playground.capture.extensions import KINDS, MESHES, USUAL_GRID, VALUES
 from playground.commands.arguments import (
     DeviceOption,
     DriverOption,
+    Moment,
     PlainOption,
+    PresetOption,
     Renderer,
     SetOption,
     SketchArgument,
@@ -20,35 +22,38 @@ from playground.commands.arguments import (
     StepsOption,
     TimeOption,
     either,
+    flag,
     help_text,
     moment_of,
+    option,
     read_driver,
+    read_option,
     read_seconds,
     read_steps,
     read_values,
+    within,
 )
 from playground.errors import ParameterError
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
     from playground.capture.export_options import Form
-    from playground.sketch.model import Sketch
 
 
 HELP = help_text(
-    "Export a sketch's land for other programs, and print the paths of the files.\n\n"
+    "Export a sketch's terrain for other programs, and print the paths of the files.\n\n"
     "Without --texture, .png, .tif, .r16, .raw, .r32, .exr and .npy hold the heights: metres above sea"
-    " level as floats, or 16-bit numbers from the lowest to the highest, and what those stand for is said."
-    " With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is the"
-    " north's.\n\n"
-    ".glb (glTF) and .obj hold the land as a mesh with its texture, in metres: x east, y up, z south,"
-    " the land's middle at x = z = 0, sea level at y = 0.",
+    " level as floats, or 16-bit numbers from the lowest to the highest, and a note says which heights those"
+    " are. With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is"
+    " the north's.\n\n"
+    ".glb (glTF) and .obj hold the terrain as a mesh with its texture, in metres: x east, y up, z south,"
+    " the terrain's middle at x = z = 0, sea level at y = 0.",
     "playground export jacksboro",
-    "playground export jacksboro --to land.png --to land.tif",
-    "playground export diamond_square --set size=1025 --to land.r16",
+    "playground export jacksboro --to terrain.png --to terrain.tif",
+    "playground export diamond_square --set size=1025 --to terrain.r16",
     "playground export jacksboro --texture colour --to ground.webp",
-    "playground export jacksboro --to land.glb --light --grid 257",
-    "playground export jacksboro --preset evening --light --to land.obj",
+    "playground export jacksboro --to terrain.glb --light --grid 257",
+    "playground export jacksboro --preset evening --light --to terrain.obj",
 )
 
 
@@ -57,77 +62,53 @@ def export(
     sketch: SketchArgument = "",
     to: Annotated[
         list[str] | None,
-        typer.Option(
-            "-o",
-            "--to",
-            help=f"A file to write, ending in {either([*VALUES, *MESHES])}. May be repeated."
+        option(
+            "-o --to",
+            "FILE",
+            f"A file to write, ending in {either([*VALUES, *MESHES])}. May be repeated."
             " Without it, a .glb of a new name in this folder.",
-            metavar="FILE",
-            show_default=False,
         ),
     ] = None,
     texture: Annotated[
         str,
-        typer.Option(
+        option(
             "--texture",
-            help="Write this pass's texture instead of the heights, or drape it over the mesh.",
-            metavar="PASS",
-            show_default=False,
+            "PASS",
+            "Write this pass's texture instead of the heights, or drape it over the mesh.",
         ),
     ] = "",
     kind: Annotated[
         str,
-        typer.Option(
+        option(
             "--as",
-            help=f"What the texture holds: {either(KINDS)}. Without it, as its name tells:"
+            "KIND",
+            f"What the texture holds: {either(KINDS)}. Without it, by its name:"
             " height; colour and light; anything else.",
-            metavar="KIND",
-            show_default=False,
         ),
     ] = "",
     bits: Annotated[
-        str,
-        typer.Option(
-            "--bits",
-            help="Bits of a number, 8, 16 or 32, where the format has a choice.",
-            metavar="N",
-            show_default=False,
-        ),
+        str, option("--bits", "N", "Bits of a number, 8, 16 or 32, where the format has a choice.")
     ] = "",
     span: Annotated[
         str,
-        typer.Option(
-            "--range",
-            help="What 0 and the largest whole number stand for, in metres for heights.",
-            metavar="LOW,HIGH",
-            show_default=False,
+        option(
+            "--range", "LOW,HIGH", "What 0 and the largest whole number stand for, in metres for heights."
         ),
     ] = "",
     grid: Annotated[
         str,
-        typer.Option(
+        option(
             "--grid",
-            help=f"Vertices of a mesh's longer side. Without it, one for each texel, up to {USUAL_GRID}.",
-            metavar="N",
-            show_default=False,
+            "N",
+            f"Vertices of a mesh's longer side. Without it, one for each texel, up to {USUAL_GRID}.",
         ),
     ] = "",
     light: Annotated[
-        bool,
-        typer.Option(
-            "--light", metavar="", help="Bake the light into a mesh's texture, and ask for no other light."
-        ),
+        bool, flag("--light", "Bake the light into a mesh's texture, and ask for no other light.")
     ] = False,
     settings: SetOption = None,
-    shot: Annotated[
-        str,
-        typer.Option(
-            "--shot", help="Export the land of a shot of the sketch.", metavar="NAME", show_default=False
-        ),
-    ] = "",
-    preset: Annotated[
-        str, typer.Option("--preset", help="Begin with a preset.", metavar="NAME", show_default=False)
-    ] = "",
+    shot: Annotated[str, option("--shot", "NAME", "Export the terrain of a shot of the sketch.")] = "",
+    preset: PresetOption = "",
     steps: StepsOption = None,
     time: TimeOption = "",
     driver: DriverOption = "auto",
@@ -135,35 +116,32 @@ def export(
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
-    """Write what was asked for, and print the files' paths."""
+    """Write the terrain or a texture to files, and print the files' paths."""
     from playground.capture.export_options import Form
     from playground.sketch.load import load
 
-    form = Form(texture, kind, _whole("--bits", bits), _span(span), _whole("--grid", grid), light)
-    values, turns, seconds = read_values(settings), read_steps(steps), read_seconds(time)
+    form = Form(
+        texture=texture,
+        kind=kind,
+        bits=_read_whole("--bits", bits),
+        span=_read_span(span),
+        grid=_read_whole("--grid", grid),
+        light=light,
+    )
+    values, stops, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)
     moment = moment_of(
-        load(sketch).plainly(plain), shot=shot, preset=preset, values=values, steps=turns, time=seconds
+        load(sketch).plainly(plain), shot=shot, preset=preset, values=values, steps=stops, time=seconds
     )
-    _write(
-        moment.sketch, to or [], form, moment.time, moment.steps, runs_by, ctx.obj.or_else(software, device)
-    )
+    _write(moment, to or [], form, runs_by, ctx.obj.or_else(software, device))
 
 
-def _write(
-    sketch: Sketch,
-    names: list[str],
-    form: Form,
-    seconds: float,
-    turns: dict[str, int],
-    driver: str,
-    renderer: Renderer,
-) -> None:
-    from playground.api import headless
+def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
     from playground.capture.export import prepare, run
     from playground.capture.export_options import check
     from playground.images.files import new_name
 
+    sketch = moment.sketch
     with ExitStack() as stack:
         paths = [Path(name).expanduser() for name in names]
         _refuse_twins(paths)
@@ -173,11 +151,9 @@ def _write(
         for path in paths:
             check(path, form)
         stack.enter_context(busy(f"exporting {sketch.name}"))
-        engine = stack.enter_context(
-            headless(software=renderer.software, device=renderer.device, driver=driver)
-        )
-        # Every file is thought of before the first is written.
-        jobs = [prepare(engine, sketch, path, form, time=seconds, steps=turns) for path in paths]
+        engine = stack.enter_context(renderer.open_engine(driver=driver))
+        # Every file is prepared before the first is written.
+        jobs = [prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps) for path in paths]
         for job in jobs:
             done = run(engine, job)
             note(f"{done.path.name}: {done.said}")
@@ -199,17 +175,13 @@ def _refuse_twins(paths: list[Path]) -> None:
         taken |= files.keys()
 
 
-def _whole(option: str, text: str) -> int:
-    if text and not (text.isdecimal() and 0 < int(text) < 10**6):
-        raise ParameterError(f"{option} {text}: expected a whole number above 0")
-    return int(text or 0)
+def _read_whole(name: str, text: str) -> int:
+    return read_option(name, text, within(1, 10**6 - 1), "a whole number above 0") or 0
 
 
-def _span(text: str) -> tuple[float, float] | None:
-    if not text:
-        return None
-    try:
+def _read_span(text: str) -> tuple[float, float] | None:
+    def read(text: str) -> tuple[float, float]:
         low, high = (float(part) for part in text.split(","))
-    except ValueError:
-        raise ParameterError(f"--range {text}: expected two numbers, as 0,2500") from None
-    return low, high
+        return low, high
+
+    return read_option("--range", text, read, "two numbers, as 0,2500")

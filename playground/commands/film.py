@@ -1,4 +1,4 @@
-"""Videos, numbered pictures and sweeps, as ``render`` is asked for them."""
+"""Videos, numbered pictures and sweeps, as ``render`` makes them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.commands.arguments import Moment, Renderer
-from playground.errors import DataError, ParameterError, counted
+from playground.commands.arguments import Moment, Renderer, output_file, read_option
+from playground.errors import ParameterError, counted
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import note, progress
 
@@ -22,9 +22,9 @@ SWEEP_FPS = Fraction(4)
 _FRAMES = re.compile(r"(\d{1,7})(?:\.\.(\d{1,7}))?")
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What ``render`` was asked for besides one picture; "" and None where it was not."""
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """What ``render`` is to make besides one picture; "" and None where it is not."""
 
     video: str = ""
     seconds: float | None = None
@@ -37,183 +37,163 @@ class Asked:
 
     @property
     def many(self) -> bool:
-        """Whether more than one picture is asked for."""
+        """Whether more than one picture is to be made."""
         return bool(self.video or self.frames is not None or self.sweeps)
 
     def check(self, output: str, texture: str, profile: bool) -> None:
-        """Raise ``ParameterError`` for words that do not go together."""
-        wrong = (
-            (self.seconds is not None and not self.video, "--seconds needs --video FILE"),
-            (bool(self.quality) and not self.video, "--quality needs --video FILE"),
-            (
-                self.fps is not None and not self.video and self.frames is None,
-                "--fps needs --video or --frames",
-            ),
-            (self.resume and self.frames is None, "--resume needs --frames FIRST..LAST"),
-            (self.steps is not None and not self.sweeps, "-n needs --sweep PATH=FROM..TO"),
-            (
-                bool(self.video) and self.frames is not None,
-                "--video and --frames: a film is one file, or many",
-            ),
-            (bool(self.video and output), "--video says which file to write; -o is for another kind"),
-            (
-                bool(self.sweeps) and self.frames is not None,
-                "--sweep and --frames: a sweep is a sheet, or with --video a film",
-            ),
-            (
-                bool(self.sweeps) and self.seconds is not None,
-                "--seconds is for a film by time; a sweep has as many pictures as values",
-            ),
-            (self.many and bool(texture), "--texture is for one pass's values, not for films and sweeps"),
-            (self.many and profile, "--profile is for one picture"),
-            (self.many and output == "-", "-o - is for one picture"),
-        )
-        for is_wrong, sentence in wrong:
+        """Raise ``ParameterError`` for options that do not go together."""
+        video, framed, swept = bool(self.video), self.frames is not None, bool(self.sweeps)
+        timed = self.seconds is not None
+        wrong = {
+            "--seconds needs --video FILE": timed and not video,
+            "--quality needs --video FILE": self.quality and not video,
+            "--fps needs --video or --frames": self.fps is not None and not video and not framed,
+            "--resume needs --frames FIRST..LAST": self.resume and not framed,
+            "-n needs --sweep PATH=FROM..TO": self.steps is not None and not swept,
+            "--video and --frames: a film is one file, or many": video and framed,
+            "--video says which file to write; -o is for another kind": video and output,
+            "--sweep and --frames: a sweep is a sheet, or with --video a film": swept and framed,
+            "--seconds is for a film by time; a sweep has as many pictures as values": swept and timed,
+            "--texture is for one pass's values, not for films and sweeps": self.many and texture,
+            "--profile is for one picture": self.many and profile,
+            "-o - is for one picture": self.many and output == "-",
+        }
+        for sentence, is_wrong in wrong.items():
             if is_wrong:
                 raise ParameterError(sentence)
 
 
-def read_number(text: str, option: str, example: str) -> float | None:
-    """Return the positive number of an option, None where it is absent; raise ``ParameterError``."""
-    if not text:
-        return None
-    try:
-        found = float(text)
-    except ValueError:
-        found = 0.0
-    if not 0.0 < found < 1e7:
-        raise ParameterError(f"{option} {text}: expected a number above 0, as {example}")
-    return found
+@dataclass(frozen=True, slots=True)
+class SeriesJob:
+    """A series, of which moment of a sketch it is, and where and by what it is drawn."""
+
+    series: Series
+    moment: Moment
+    output: str
+    size: tuple[int, int] | None
+    renderer: Renderer
+    driver: str
+
+    @contextmanager
+    def drawing(self, verb: str, total: int) -> Iterator[tuple[Engine, Callable[[], None]]]:
+        """Open the engine, and show the progress of so many pictures."""
+        with (
+            self.renderer.open_engine(driver=self.driver) as engine,
+            progress(f"{verb} {self.moment.sketch.name}", total) as done,
+        ):
+            yield engine, done
+
+    def check_video(self, pixels: tuple[int, int], fps: Fraction) -> str:
+        """Return the quality of the video; raise where none can be written like that."""
+        from playground.capture.video import QUALITY, check_video
+
+        quality = self.series.quality or QUALITY
+        check_video(Path(self.series.video).expanduser(), pixels, fps, quality)
+        return quality
 
 
 def read_fps(text: str) -> Fraction | None:
     """Return the pictures a second of ``--fps``, as 30, 23.976 or 30000/1001; raise ``ParameterError``."""
-    if not text:
-        return None
-    try:
+
+    def read(text: str) -> Fraction | None:
         found = Fraction(text).limit_denominator(1001)
-    except (ValueError, ZeroDivisionError):
-        found = Fraction(0)
-    if not Fraction(1, 60) <= found <= 1000:
-        raise ParameterError(f"--fps {text}: expected pictures a second, 1/60 to 1000, as 30 or 30000/1001")
-    return found
+        return found if Fraction(1, 60) <= found <= 1000 else None
+
+    return read_option("--fps", text, read, "pictures a second, 1/60 to 1000, as 30 or 30000/1001")
 
 
 def read_frames(text: str) -> range | None:
     """Return the numbers of ``--frames``, as 0..299; raise ``ParameterError``."""
-    if not text:
-        return None
-    match = _FRAMES.fullmatch(text.strip())
-    if match is None or int(match.group(2) or match.group(1)) < int(match.group(1)):
-        raise ParameterError(f"--frames {text}: expected FIRST..LAST, as 0..299")
-    return range(int(match.group(1)), int(match.group(2) or match.group(1)) + 1)
+
+    def read(text: str) -> range | None:
+        match = _FRAMES.fullmatch(text.strip())
+        found = range(int(match[1]), int(match[2] or match[1]) + 1) if match else None
+        return found or None
+
+    return read_option("--frames", text, read, "FIRST..LAST, as 0..299")
 
 
-def read_count(text: str) -> int | None:
-    """Return the values of ``-n``; raise ``ParameterError``."""
-    if not text:
-        return None
-    if not (text.isdecimal() and len(text) < 6 and int(text) >= 2):
-        raise ParameterError(f"-n {text}: expected a whole number from 2, as 12")
-    return int(text)
+def make_series(job: SeriesJob) -> None:
+    """Make a video, numbered pictures or a sheet, and print the paths of what was written."""
+    if job.series.sweeps:
+        _make_sweep(job)
+    elif job.series.frames is not None:
+        _make_frames(job, job.series.frames)
+    else:
+        _make_video(job)
 
 
-def make_many(
-    asked: Asked,
-    moment: Moment,
-    output: str,
-    size: tuple[int, int] | None,
-    renderer: Renderer,
-    driver: str,
-) -> None:
-    """Make a video, pictures or a sheet, and print the paths of what was written."""
-    if asked.sweeps:
-        _make_sweep(asked, moment, output, size, renderer, driver)
-        return
-    from playground.capture.film import FPS, Film, film_of, write_film
+def _make_frames(job: SeriesJob, numbers: range) -> None:
+    from playground.capture.film import FPS, Film
+    from playground.capture.sequence import check_pattern, write_sequence
 
-    sketch, fps, pixels = moment.sketch, asked.fps or Fraction(FPS), size or moment.size or DEFAULT_PICTURE
-    if asked.frames is not None:
-        from playground.capture.sequence import check_pattern, write_sequence
-
-        pattern = _pattern(output, sketch.name)
-        check_pattern(pattern)
-        film = Film(sketch, asked.frames[-1] + 1, fps, pixels, moment.time, moment.steps)
-        with _drawing(f"drawing {sketch.name}", len(asked.frames), renderer, driver) as (engine, done):
-            found = write_sequence(
-                engine, film, pattern, numbers=asked.frames, resume=asked.resume, done=done
-            )
-        if found.kept:
-            note(f"{counted(len(found.kept), 'picture')} kept, {len(found.drawn)} drawn")
-        for path in sorted(found.drawn + found.kept):
-            print(path)
-        return
-    from playground.capture.video import QUALITY, check_video
-
-    film = film_of(sketch, seconds=asked.seconds, fps=fps, size=pixels, start=moment.time, steps=moment.steps)
-    quality = asked.quality or QUALITY
-    check_video(Path(asked.video).expanduser(), pixels, fps, quality)
-    with _drawing(f"filming {sketch.name}", film.count, renderer, driver) as (engine, done), _stoppable():
-        print(write_film(engine, film, asked.video, quality=quality, done=done, say=note))
+    moment = job.moment
+    pattern = _pattern(job.output, moment.sketch.name)
+    check_pattern(pattern)
+    pixels = job.size or moment.size or DEFAULT_PICTURE
+    fps = job.series.fps or Fraction(FPS)
+    film = Film(
+        sketch=moment.sketch,
+        count=numbers[-1] + 1,
+        fps=fps,
+        size=pixels,
+        start=moment.time,
+        steps=moment.steps,
+    )
+    with job.drawing("drawing", len(numbers)) as (engine, done):
+        found = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
+    if found.kept:
+        note(f"{counted(len(found.kept), 'picture')} kept, {len(found.drawn)} drawn")
+    for path in sorted(found.drawn + found.kept):
+        print(path)
 
 
-def _make_sweep(
-    asked: Asked,
-    moment: Moment,
-    output: str,
-    size: tuple[int, int] | None,
-    renderer: Renderer,
-    driver: str,
-) -> None:
+def _make_video(job: SeriesJob) -> None:
+    from playground.capture.film import FPS, film_of, write_film
+
+    series, moment = job.series, job.moment
+    pixels, fps = job.size or moment.size or DEFAULT_PICTURE, series.fps or Fraction(FPS)
+    film = film_of(
+        moment.sketch, seconds=series.seconds, fps=fps, size=pixels, start=moment.time, steps=moment.steps
+    )
+    quality = job.check_video(pixels, fps)
+    with job.drawing("filming", film.count) as (engine, done), _noting_stop():
+        print(write_film(engine, film, series.video, quality=quality, done=done, say=note))
+
+
+def _make_sweep(job: SeriesJob) -> None:
     from playground.capture import sheet, sweep
-    from playground.capture.video import QUALITY, check_video
 
+    series, moment = job.series, job.moment
     sketch = moment.sketch.at(moment.time)
     if moment.steps:
         raise ParameterError("--steps is for one picture or a film by time, not for a sweep")
-    found = [sweep.read_sweep(sketch, text, asked.steps or sweep.USUAL_STEPS) for text in asked.sweeps]
+    found = [sweep.read_sweep(sketch, text, series.steps or sweep.USUAL_STEPS) for text in series.sweeps]
     rows = sweep.swept(sketch, found)
     count = sum(map(len, rows))
-    if asked.video:
-        pixels, fps, quality = size or DEFAULT_PICTURE, asked.fps or SWEEP_FPS, asked.quality or QUALITY
-        check_video(Path(asked.video).expanduser(), pixels, fps, quality)
-        with _drawing(f"sweeping {sketch.name}", count, renderer, driver) as (engine, done), _stoppable():
-            print(
-                sheet.write_sweep_film(
-                    engine,
-                    rows,
-                    asked.video,
-                    fps=fps,
-                    size=pixels,
-                    time=moment.time,
-                    quality=quality,
-                    done=done,
-                    say=note,
-                )
+    if series.video:
+        pixels, fps = job.size or DEFAULT_PICTURE, series.fps or SWEEP_FPS
+        quality = job.check_video(pixels, fps)
+        with job.drawing("sweeping", count) as (engine, done), _noting_stop():
+            path = sheet.write_sweep_film(
+                engine,
+                rows,
+                series.video,
+                fps=fps,
+                size=pixels,
+                time=moment.time,
+                quality=quality,
+                done=done,
+                say=note,
             )
-        return
-    from playground.images.files import new_name
-
-    pixels = size or sheet.USUAL_SIZE
-    if output:
-        path = _checked_png(output)
-        with _drawing(f"sweeping {sketch.name}", count, renderer, driver) as (engine, done):
-            print(sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, say=note))
+            print(path)
         return
     with (
-        new_name(f"{sketch.name}-sweep.png") as path,
-        _drawing(f"sweeping {sketch.name}", count, renderer, driver) as (engine, done),
+        output_file(job.output, f"{sketch.name}-sweep.png", (".png",), "a sheet is") as path,
+        job.drawing("sweeping", count) as (engine, done),
     ):
-        print(sheet.write_sheet(engine, rows, path, size=pixels, time=moment.time, done=done, say=note))
-
-
-def _checked_png(output: str) -> Path:
-    path = Path(output).expanduser()
-    if path.suffix.lower() != ".png" or path.is_dir():
-        raise DataError("a sheet is written to a name ending in .png", file=output)
-    if not path.parent.is_dir():
-        raise DataError(f"there is no folder '{path.parent}' to write into", file=output)
-    return path
+        size = job.size or sheet.USUAL_SIZE
+        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, say=note))
 
 
 def _pattern(output: str, name: str) -> str:
@@ -224,21 +204,8 @@ def _pattern(output: str, name: str) -> str:
 
 
 @contextmanager
-def _drawing(
-    text: str, total: int, renderer: Renderer, driver: str
-) -> Iterator[tuple[Engine, Callable[[], None]]]:
-    from playground.api import headless
-
-    with (
-        headless(software=renderer.software, device=renderer.device, driver=driver) as engine,
-        progress(text, total) as done,
-    ):
-        yield engine, done
-
-
-@contextmanager
-def _stoppable() -> Iterator[None]:
-    """Say what is left of a video that was interrupted."""
+def _noting_stop() -> Iterator[None]:
+    """Note what is left of a video that was interrupted."""
     from playground.capture.video import Stopped
 
     try:

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from playground.commands.arguments import (
     FAILED,
     JsonOption,
+    LanguageOption,
     Renderer,
     SoftwareOption,
+    argument,
+    command_group,
+    complete_language,
+    complete_lesson,
+    flag,
     help_text,
+    option,
 )
+from playground.commands.live import check_display, open_window
 from playground.errors import PlaygroundError, SketchError, counted, nearest
 from playground.terminal import complain, note, painted, print_json, print_table, progress
 
@@ -39,21 +46,21 @@ LIST_HELP = help_text(
 )
 OPEN_HELP = help_text(
     "Open a lesson beside the live window, with the sketch that it ends with.\n\n"
-    "Its figures are the window's picture, its sliders act on it; its faults are put into a copy, no file"
+    "Its figures are the window's picture, its sliders act on it; its bugs are put into a copy, no file"
     " is written. Next time it opens at the page where you were.",
     "playground lesson open diamond_square",
     "playground lesson open shadows --lang fr",
 )
 STATUS_HELP = help_text(
-    "Say which translations have gone stale.\n\n"
+    "List the translations that are out of date.\n\n"
     "A translation holds a hash of each English block that it was made from. Listed are the blocks whose"
     " English has changed since, or is new. Exit status 1 where there are any.",
     "playground lesson status",
     "playground lesson status --json",
 )
 CHECK_HELP = help_text(
-    "Check lessons: what they name, what they keep to, what they claim.\n\n"
-    "Draws every deliberate fault, which must show, and computes every number, which must be as claimed."
+    "Check lessons: what they name, the rules of lessons, what they claim.\n\n"
+    "Draws every deliberate bug, which must be visible, and computes every number, which must be as claimed."
     " Exit status 1 when anything is wrong.",
     "playground lesson check",
     "playground lesson check diamond_square shadows",
@@ -63,68 +70,24 @@ PICTURES_HELP = help_text(
     "playground lesson pictures diamond_square -o pictures",
 )
 TRANSLATED_HELP = help_text(
-    "Note that a translation says what the English says today.\n\n"
+    "Mark a translation as up to date with today's English.\n\n"
     "Writes the hashes of the English blocks into it. It must have as many blocks, of the same kinds.",
     "playground lesson translated diamond_square --lang fr",
 )
-
 BUILD_HELP = help_text(
     "Build the lessons as a book, a folder of pages that need no network, or as notebooks.\n\n"
     "In English and French, or in the language of --lang. Built again into the same folder, pages and"
-    " pictures that are no more are removed, and nothing else is touched.",
+    " pictures that no longer exist are removed, and nothing else is touched.",
     "playground lesson build -o book",
     "playground lesson build -o livre --lang fr",
     "playground lesson build diamond_square -o one-lesson",
     "playground lesson build --notebooks -o notebooks",
 )
 
-app = typer.Typer(
-    name="lesson",
-    help=HELP,
-    short_help="Lessons on terrain: read them, build them as a book or notebooks.",
-    invoke_without_command=True,
-    rich_markup_mode="rich",
-)
+app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
 
-
-def complete_lesson(incomplete: str) -> list[str]:
-    """Complete the name of a lesson."""
-    from playground.lessons.library import lesson_files
-
-    return [name for name in lesson_files() if name.startswith(incomplete)]
-
-
-def complete_language(incomplete: str) -> list[str]:
-    """Complete the code of a language."""
-    from playground.lessons.library import LANGUAGES
-
-    return [code for code in LANGUAGES if code.startswith(incomplete)]
-
-
-def _language_option(says: str) -> Any:
-    return typer.Option(
-        "--lang", help=says, metavar="CODE", show_default=False, autocompletion=complete_language
-    )
-
-
-LanguageOption = Annotated[str, _language_option("Language: en or fr; that of the system by default.")]
-LanguagesOption = Annotated[str, _language_option("Language: en or fr; both by default.")]
-TranslationOption = Annotated[str, _language_option("Language of the translation: fr.")]
-NameArgument = Annotated[
-    str, typer.Argument(help="A lesson.", metavar="NAME", autocompletion=complete_lesson)
-]
-NamesArgument = Annotated[
-    list[str] | None,
-    typer.Argument(
-        help="Lessons; all by default.", metavar="NAME", show_default=False, autocompletion=complete_lesson
-    ),
-]
-
-
-@app.callback()
-def _group(ctx: typer.Context) -> None:
-    if ctx.invoked_subcommand is None:
-        print(ctx.get_help())
+NameArgument = Annotated[str, argument("NAME", "A lesson.", complete_lesson)]
+NamesArgument = Annotated[list[str] | None, argument("NAME", "Lessons; all by default.", complete_lesson)]
 
 
 @app.command("list", help=LIST_HELP)
@@ -134,17 +97,7 @@ def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
 
     found = summaries(read_language(lang))
     if as_json:
-        rows = [
-            {
-                "number": one.number,
-                "name": one.name,
-                "title": one.title,
-                "goal": one.goal,
-                "minutes": one.minutes,
-            }
-            for one in found
-        ]
-        print_json(rows)
+        print_json([asdict(one) for one in found])
         return
     table = [(str(one.number), one.name, one.title, f"{one.minutes} min") for one in found]
     print_table("Lessons (playground lesson open NAME)", ("", "lesson", "title", "time"), table)
@@ -155,20 +108,19 @@ def open_(
     ctx: typer.Context, name: NameArgument, lang: LanguageOption = "", software: SoftwareOption = False
 ) -> None:
     """Open a lesson beside the live window."""
-    from playground.commands.live import check_display, open_window
+    from playground.lessons.document import read_document
     from playground.lessons.library import lesson_file
-    from playground.lessons.read import part
 
     language = read_language(lang)
-    sketch = str(part(lesson_file(name)).front.table.get("sketch", ""))
+    sketch = str(read_document(lesson_file(name)).front.table.get("sketch", ""))
     renderer: Renderer = ctx.obj.or_else(software)
     check_display(renderer)
-    open_window(sketch, None, renderer, "auto", {}, lesson=name, language=language)
+    open_window(sketch, None, renderer, lesson=name, language=language)
 
 
 @app.command("status", help=STATUS_HELP)
 def status(as_json: JsonOption = False) -> None:
-    """Say which translations have gone stale."""
+    """List the translations that are out of date."""
     from playground.lessons.library import LANGUAGES, SOURCE
     from playground.lessons.read import summaries
     from playground.lessons.status import status_of
@@ -178,15 +130,15 @@ def status(as_json: JsonOption = False) -> None:
     if as_json:
         print_json([one.as_json() for one in found])
     else:
-        rows = [(one.name, one.language, one.word, "; ".join(one.sentences)) for one in found]
+        rows = [(one.name, one.language, one.state, "; ".join(one.sentences)) for one in found]
         print_table("Translations", ("lesson", "language", "state", "what"), rows)
-    if any(one.word != "current" for one in found):
+    if any(one.state != "current" for one in found):
         raise typer.Exit(FAILED)
 
 
 @app.command("check", help=CHECK_HELP)
 def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOption = False) -> None:
-    """Check lessons: what they name, what they keep to, what they claim."""
+    """Check lessons: what they name, the rules of lessons, what they claim."""
     from playground.lessons.library import LANGUAGES
     from playground.lessons.read import read_lesson
     from playground.lessons.rules import broken_rules, wrong_pictures
@@ -212,7 +164,7 @@ def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOpt
                 wrong += len(found)
             advance()
     if wrong:
-        note(f"{counted(wrong, 'thing')} to mend")
+        note(f"{counted(wrong, 'thing')} to fix")
         raise typer.Exit(FAILED)
     print(painted(f"{counted(len(chosen), 'lesson')}: well", "32", sys.stdout))
 
@@ -221,7 +173,7 @@ def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOpt
 def pictures(
     ctx: typer.Context,
     name: NameArgument,
-    output: Annotated[Path, typer.Option("-o", "--output", help="The folder.", metavar="FOLDER")] = Path(),
+    output: Annotated[Path, option("-o --output", "FOLDER", "The folder; this one by default.")] = Path(),
     software: SoftwareOption = False,
 ) -> None:
     """Draw every picture of a lesson into a folder."""
@@ -244,12 +196,12 @@ def build(
     ctx: typer.Context,
     names: NamesArgument = None,
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="The folder of the book.", metavar="FOLDER")
+        Path, option("-o --output", "FOLDER", "The folder of the book; book by default.")
     ] = Path("book"),
-    lang: LanguagesOption = "",
-    notebooks: Annotated[
-        bool, typer.Option("--notebooks", metavar="", help="Write Jupyter notebooks, not pages.")
-    ] = False,
+    lang: Annotated[
+        str, option("--lang", "CODE", "Language: en or fr; both by default.", complete_language)
+    ] = "",
+    notebooks: Annotated[bool, flag("--notebooks", "Write Jupyter notebooks, not pages.")] = False,
     software: SoftwareOption = False,
 ) -> None:
     """Build the lessons as a book, or as notebooks."""
@@ -272,17 +224,23 @@ def build(
 
 
 @app.command("translated", help=TRANSLATED_HELP)
-def translated(name: NameArgument, lang: TranslationOption = "") -> None:
-    """Note that a translation says what the English says today."""
+def translated(
+    name: NameArgument,
+    lang: Annotated[
+        str, option("--lang", "CODE", "Language of the translation: fr.", complete_language)
+    ] = "",
+) -> None:
+    """Mark a translation as up to date with today's English."""
+    from playground.lessons.document import read_document
     from playground.lessons.library import SOURCE, lesson_file
-    from playground.lessons.read import part, read_lesson
+    from playground.lessons.read import read_lesson
     from playground.lessons.translate import mark
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
         raise SketchError("say which translation: --lang fr")
     path = lesson_file(name, lang)
-    mark(read_lesson(name), part(lesson_file(name)), part(path), lang)
+    mark(read_lesson(name), read_document(lesson_file(name)), read_document(path), lang)
     print(shown(path))
 
 
@@ -302,7 +260,7 @@ def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Eng
 
 
 def read_language(text: str) -> str:
-    """Return the language that is asked for, or the system's; raise ``SketchError`` for one there is not."""
+    """Return the language that an option names, or the system's; raise ``SketchError`` for an unknown one."""
     from playground.lessons.library import LANGUAGES, preferred_language
 
     if text and text not in LANGUAGES:
@@ -319,10 +277,6 @@ def _chosen(names: list[str] | None) -> list[str]:
     return names or [one.name for one in summaries(SOURCE)]
 
 
-@contextmanager
-def _engine(ctx: typer.Context, software: bool) -> Iterator[Engine]:
-    from playground.api import headless
-
+def _engine(ctx: typer.Context, software: bool) -> Engine:
     renderer: Renderer = ctx.obj.or_else(software)
-    with headless(software=renderer.software, device=renderer.device) as engine:
-        yield engine
+    return renderer.open_engine()

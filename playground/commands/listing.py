@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from playground.commands.arguments import JsonOption, complete_listed, help_text
+from playground.commands.arguments import JsonOption, argument, complete_listed, help_text
 from playground.errors import SketchError
 from playground.terminal import note, painted, print_indented, print_json, print_rows, print_table
 
@@ -27,15 +25,7 @@ HELP = help_text(
 
 
 def list_(
-    what: Annotated[
-        str,
-        typer.Argument(
-            help="What to list; everything by default.",
-            metavar="WHAT",
-            show_default=False,
-            autocompletion=complete_listed,
-        ),
-    ] = "",
+    what: Annotated[str, argument("WHAT", "What to list; everything by default.", complete_listed)] = "",
     as_json: JsonOption = False,
 ) -> None:
     """List sketches, techniques, parameters."""

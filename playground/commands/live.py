@@ -5,54 +5,34 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from playground.commands.arguments import (
     DriverOption,
+    LanguageOption,
     PlainOption,
     Renderer,
     SetOption,
     SizeOption,
     SketchArgument,
     SoftwareOption,
+    complete_lesson,
+    flag,
     help_text,
+    option,
     read_driver,
     read_pixels,
     read_values,
     with_whole_paths,
 )
-from playground.commands.lesson import LanguageOption, complete_lesson
 from playground.errors import ContextError, PlaygroundError
 from playground.terminal import complain
 
-FreshOption = Annotated[
-    bool, typer.Option("--fresh", metavar="", help="Forget what was set by hand the last time.")
-]
-NoCacheOption = Annotated[
-    bool,
-    typer.Option(
-        "--no-cache",
-        metavar="",
-        help="Make all land anew, and keep none on disk (see playground cache).",
-    ),
-]
-
-LessonOption = Annotated[
-    str,
-    typer.Option(
-        "--lesson",
-        metavar="NAME",
-        show_default=False,
-        help="Open a lesson beside it.",
-        autocompletion=complete_lesson,
-    ),
-]
-
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
-    " What was set by hand, the camera and the time are there again the next time.",
+    " Your edits, the camera and the time are restored the next time.",
     "playground live",
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
@@ -71,22 +51,25 @@ def live(
     driver: DriverOption = "auto",
     plain: PlainOption = False,
     software: SoftwareOption = False,
-    fresh: FreshOption = False,
-    lesson: LessonOption = "",
+    fresh: Annotated[bool, flag("--fresh", "Forget your edits of the last time.")] = False,
+    lesson: Annotated[
+        str, option("--lesson", "NAME", "Open a lesson beside the sketch.", complete_lesson)
+    ] = "",
     lang: LanguageOption = "",
-    no_cache: NoCacheOption = False,
+    no_cache: Annotated[
+        bool, flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache).")
+    ] = False,
 ) -> None:
     """Open a sketch in a window."""
     renderer: Renderer = ctx.obj.or_else(software)
-    pixels = read_pixels(size)
-    values = read_values(settings)
+    pixels, values = read_pixels(size), read_values(settings)
     check_display(renderer)
     open_window(
         sketch,
         pixels,
         renderer,
-        read_driver(driver),
-        values,
+        driver=read_driver(driver),
+        values=values,
         plain=plain,
         fresh=fresh,
         lesson=lesson,
@@ -96,7 +79,7 @@ def live(
 
 
 def check_display(renderer: Renderer) -> None:
-    """Raise ``ContextError`` where no window can be opened, or not by what is asked for."""
+    """Raise ``ContextError`` where no window can be opened, or not on the chosen renderer."""
     from playground.gpu.doctor import where_to_show
 
     if renderer.device is not None:
@@ -111,40 +94,26 @@ def open_window(
     sketch: str,
     size: tuple[int, int] | None,
     renderer: Renderer,
-    driver: str,
-    values: dict[str, object],
     *,
-    plain: bool = False,
-    fresh: bool = False,
-    lesson: str = "",
-    language: str = "",
-    beside: bool = False,
+    values: dict[str, object] | None = None,
     no_cache: bool = False,
+    **options: Any,
 ) -> None:
-    """Open a window and stay until it is closed."""
+    """Open a window and stay until it is closed; ``options`` are those of ``playground.live.app.run``."""
     from playground.engine.disk_cache import limit_in
 
-    keeps = 0 if no_cache else limit_in()
+    limit = (
+        0 if no_cache else limit_in()
+    )  # a wrong value in the environment is an error before a window opens
     from playground.live.app import run
 
     if values:
         from playground.sketch.load import load
 
-        with suppress(PlaygroundError):  # what is wrong with the sketch, the window shows
+        with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
             values = with_whole_paths(load(sketch), values)
     status = run(
-        sketch,
-        size=size,
-        software=renderer.software,
-        driver=driver,
-        values=values,
-        plain=plain,
-        fresh=fresh,
-        lesson=lesson,
-        language=language,
-        beside=beside,
-        keeps=keeps,
-        tell=complain,
+        sketch, size=size, software=renderer.software, values=values, keeps=limit, tell=complain, **options
     )
     if status:
         raise typer.Exit(status)

@@ -6,8 +6,9 @@ import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,6 +21,7 @@ from playground.commands.arguments import (
     SketchArgument,
     SoftwareOption,
     help_text,
+    option,
     read_pixels,
 )
 from playground.errors import DataError, counted
@@ -51,20 +53,11 @@ def mutants(
     ctx: typer.Context,
     sketch: SketchArgument = "",
     shot: Annotated[
-        str,
-        typer.Option(
-            "--shot",
-            help="The shot to break; without it, of each mutant the one that shows it.",
-            metavar="NAME",
-            show_default=False,
-        ),
+        str, option("--shot", "NAME", "The shot to break; without it, of each mutant the one that shows it.")
     ] = "",
     size: SizeOption = None,
     only: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--mutant", help="Draw this one only; may be repeated.", metavar="NAME", show_default=False
-        ),
+        list[str] | None, option("--mutant", "NAME", "Draw this one only; may be repeated.")
     ] = None,
     count: Annotated[
         int,
@@ -73,20 +66,13 @@ def mutants(
         ),
     ] = 0,
     pictures: Annotated[
-        Path | None,
-        typer.Option(
-            "--pictures",
-            help="Write every mutant's picture into this folder.",
-            metavar="DIR",
-            show_default=False,
-        ),
+        Path | None, option("--pictures", "DIR", "Write every mutant's picture into this folder.")
     ] = None,
     as_json: JsonOption = False,
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
-    from playground.api import headless
     from playground.shots.mutants.repeatability import again
     from playground.shots.mutants.suite import Bench, named, shot_of
     from playground.sketch.load import load
@@ -100,7 +86,7 @@ def mutants(
         _make(pictures)
     results: list[Result] = []
     redrawn: list[Redrawn] = []
-    with headless(software=renderer.software, device=renderer.device) as engine:
+    with renderer.open_engine() as engine:
         bench = Bench(engine, loaded, shot, pixels)
         expected = bench.unbroken(first)
         with progress("mutants", len(chosen)) as advance:
@@ -110,9 +96,8 @@ def mutants(
         info = engine.info
     if pictures is not None:
         _write(pictures, bench.expected, results)
-    where: dict[str, Any] = {"software": renderer.software, "device": renderer.device}
     with progress("drawn again", count) if count else nullcontext(lambda: None) as advance:
-        for drawn in again(loaded, first, expected, info, count, **where):
+        for drawn in again(loaded, first, expected, info, count, **asdict(renderer)):
             redrawn.append(drawn)
             advance()
     if as_json:

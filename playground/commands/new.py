@@ -1,13 +1,11 @@
-"""Make a fresh sketch folder."""
+"""Make a new sketch folder."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from playground.commands.arguments import help_text, quoted
+from playground.commands.arguments import argument, help_text, quoted
 from playground.terminal import note
 
 HELP = help_text(
@@ -20,12 +18,10 @@ HELP = help_text(
 def new(
     name: Annotated[
         str,
-        typer.Argument(
-            help="The folder to make; letters, digits, - and _.", metavar="NAME", show_default=False
-        ),
+        argument("NAME", "The folder to make; letters, digits, - and _."),
     ],
 ) -> None:
-    """Make a fresh sketch folder."""
+    """Make a new sketch folder."""
     from playground.templates import make_sketch
 
     folder = make_sketch(Path(name).expanduser())

@@ -6,9 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from playground.commands.arguments import SketchArgument, help_text
+from playground.commands.arguments import SketchArgument, help_text, option, output_file
 from playground.errors import DataError
 from playground.terminal import busy, note
 
@@ -23,39 +21,25 @@ HELP = help_text(
     "playground pack my-land",
     "playground pack my-land -o lesson-3.zip",
     "playground live lesson-3.zip",
-    "playground render lesson-3.zip -o land.png",
+    "playground render lesson-3.zip -o terrain.png",
 )
 
 
 def pack(
     sketch: SketchArgument = "",
     output: Annotated[
-        str,
-        typer.Option(
-            "-o",
-            "--output",
-            help="The zip to write. Without it, a new name in this folder.",
-            metavar="FILE",
-            show_default=False,
-        ),
+        str, option("-o --output", "FILE", "The zip to write. Without it, a new name in this folder.")
     ] = "",
 ) -> None:
     """Pack a sketch into one zip."""
     from playground.capture import pack as packing
-    from playground.images.files import new_name
     from playground.sketch.load import load
     from playground.sketch.unpack import ENDING, read_pack, said_of
 
     loaded = load(sketch)
-    if output:
-        path = Path(output).expanduser()
-        if path.suffix.lower() != ENDING or path.is_dir():
-            raise DataError(f"a pack is written to a name ending in {ENDING}", file=output)
-        with busy(f"packing {loaded.name}"):
-            packing.pack(loaded, path, _references(loaded))
-    else:
-        with new_name(f"{loaded.name}{ENDING}") as path, busy(f"packing {loaded.name}"):
-            packing.pack(loaded, path, _references(loaded))
+    usual = f"{loaded.name}{ENDING}"
+    with output_file(output, usual, (ENDING,), "a pack is") as path, busy(f"packing {loaded.name}"):
+        packing.pack(loaded, path, _references(loaded))
     print(path)
     note(said_of(read_pack(path)))
 

@@ -6,7 +6,7 @@ import os
 import re
 import sys
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -23,8 +23,11 @@ from playground.commands.arguments import (
     SoftwareOption,
     StepsOption,
     TimeOption,
+    complete_driver,
+    flag,
     help_text,
     moment_of,
+    option,
     quoted,
     read_device,
     read_driver,
@@ -37,15 +40,17 @@ from playground.errors import ParameterError
 from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
-    from playground.reduce.initial_case import Question
+    from playground.reduce.failures import Finding
+    from playground.reduce.initial_case import Beginning, Question
+    from playground.reduce.output import Account
     from playground.reduce.search import Search, State
 
 HELP = help_text(
     "Shrink a sketch that fails to the smallest that still fails in the same way.\n\n"
     "Passes, parameters, sizes, lines and parts of expressions are taken out as long as it fails. What"
     " failing means is chosen by an option; without one, what the compiler refuses, a crash, NaN and"
-    " a difference between the two drivers are looked for in turn. What is left goes into a folder, with"
-    " a text for a report to the driver's makers. Ctrl-C keeps the smallest so far.",
+    " a difference between the two drivers are looked for, in that order. What is left goes into a folder,"
+    " with a text for a report to the driver's makers. Ctrl-C keeps the smallest so far.",
     "playground reduce my-land                         # whatever fails",
     "playground reduce my-land --nan --pass height     # NaN or infinity in one pass",
     "playground reduce my-land --shot morning          # off its reference",
@@ -55,7 +60,7 @@ HELP = help_text(
     "playground reduce my-land --crash --limit 600 -o for-the-report",
     "playground reduce my-land --command 'playground render . -o out.png && ./is-good out.png'",
 )
-_FRAME = (64, 36)  # pixels, of a picture for which nobody asks another
+_FRAME = (64, 36)  # pixels, of a picture without --size and --shot
 _EVERY = 5.0  # [s] between lines of progress where there is no terminal
 
 
@@ -63,91 +68,51 @@ def reduce(
     ctx: typer.Context,
     sketch: SketchArgument = "",
     output: Annotated[
-        str,
-        typer.Option(
-            "-o",
-            "--output",
-            help="The folder to write. Without it, NAME-reduced in this folder.",
-            metavar="FOLDER",
-            show_default=False,
-        ),
+        str, option("-o --output", "FOLDER", "The folder to write. Without it, NAME-reduced in this folder.")
     ] = "",
     shot: Annotated[
         str,
-        typer.Option(
-            "--shot",
-            help="A shot that is off its reference; with another option, the moment to look at.",
-            metavar="NAME",
-            show_default=False,
-        ),
+        option("--shot", "NAME", "A shot that is off its reference; with another option, the moment to use."),
     ] = "",
-    drivers: Annotated[bool, typer.Option("--drivers", metavar="", help="The two drivers differ.")] = False,
+    drivers: Annotated[bool, flag("--drivers", "The two drivers differ.")] = False,
     against: Annotated[
         list[str] | None,
-        typer.Option(
-            "--against",
-            help="It differs where this is set in the environment. May be repeated.",
-            metavar="ENV=VALUE",
-            show_default=False,
-        ),
+        option("--against", "ENV=VALUE", "It differs where this is set in the environment. May be repeated."),
     ] = None,
-    against_device: Annotated[
-        str,
-        typer.Option(
-            "--against-device", help="It differs on this EGL device.", metavar="N", show_default=False
-        ),
-    ] = "",
-    nan: Annotated[bool, typer.Option("--nan", metavar="", help="A value is NaN or infinite.")] = False,
+    against_device: Annotated[str, option("--against-device", "N", "It differs on this EGL device.")] = "",
+    nan: Annotated[bool, flag("--nan", "A value is NaN or infinite.")] = False,
     anywhere: Annotated[
         bool,
-        typer.Option(
-            "--anywhere",
-            metavar="",
-            help="With --nan: let it turn up at other texels. Smaller, but it may be another NaN.",
-        ),
+        flag("--anywhere", "With --nan: let it turn up at other texels. Smaller, but maybe another NaN."),
     ] = False,
     error: Annotated[
         str,
-        typer.Option(
-            "--error",
-            help="The compiler refuses with a message that this regular expression finds.",
-            metavar="REGEX",
-            show_default=False,
-        ),
+        option("--error", "REGEX", "The compiler refuses with a message that this regular expression finds."),
     ] = "",
-    crash: Annotated[bool, typer.Option("--crash", metavar="", help="The driver crashes.")] = False,
-    hang: Annotated[
-        bool, typer.Option("--hang", metavar="", help="A candidate takes over --timeout.")
-    ] = False,
+    crash: Annotated[bool, flag("--crash", "The driver crashes.")] = False,
+    hang: Annotated[bool, flag("--hang", "A candidate takes over --timeout.")] = False,
     command: Annotated[
         str,
-        typer.Option(
+        option(
             "--command",
-            help="A command, run where sketch.toml lies: 0 is good, 125 no answer, others up to 127 fail.",
-            metavar="COMMAND",
-            show_default=False,
+            "COMMAND",
+            "A command, run where sketch.toml is: 0 is good, 125 no answer, others up to 127 fail.",
         ),
     ] = "",
-    path: Annotated[
-        str,
-        typer.Option("--pass", help="Look at this pass only.", metavar="PASS", show_default=False),
-    ] = "",
+    path: Annotated[str, option("--pass", "PASS", "Look at this pass only.")] = "",
     tolerance: Annotated[
         float, typer.Option("--tolerance", help="How far apart two sides may be.", metavar="X", min=0.0)
     ] = 0.0,
     driver: Annotated[
         str,
-        typer.Option(
+        option(
             "--driver",
-            help="What runs the kernels: auto, fragment or compute. Without it, each is tried.",
-            metavar="NAME",
-            show_default=False,
+            "NAME",
+            "What runs the kernels: auto, fragment or compute. Without it, each is tried.",
+            complete_driver,
         ),
     ] = "",
-    limit: Annotated[
-        str,
-        typer.Option("--limit", help="Stop after so many seconds.", metavar="SECONDS", show_default=False),
-    ] = "",
+    limit: Annotated[str, option("--limit", "SECONDS", "Stop after so many seconds.")] = "",
     tries: Annotated[
         int, typer.Option("--tries", help="Stop after so many tries; 0: never.", metavar="N", min=0)
     ] = 0,
@@ -156,10 +121,7 @@ def reduce(
         typer.Option("--timeout", help="Seconds that one candidate may take.", metavar="SECONDS", min=0.1),
     ] = 10.0,
     plain: Annotated[
-        bool,
-        typer.Option(
-            "--plain", metavar="", help="Also write the shader as the driver sees it, if that still fails."
-        ),
+        bool, flag("--plain", "Also write the shader as the driver sees it, if that still fails.")
     ] = False,
     settings: SetOption = None,
     size: SizeOption = None,
@@ -173,53 +135,63 @@ def reduce(
     from playground.sketch.load import load
 
     kinds = {
-        "--drivers": drivers,
-        "--against": bool(against or against_device),
-        "--nan": nan,
-        "--error": bool(error),
-        "--crash": crash,
-        "--hang": hang,
-        "--command": bool(command),
+        "drivers": drivers,
+        "against": bool(against or against_device),
+        "nan": nan,
+        "error": bool(error),
+        "crash": crash,
+        "hang": hang,
+        "command": bool(command),
     }
-    chosen = [option for option, given in kinds.items() if given]
-    if len(chosen) > 1:
-        raise ParameterError(f"{' and '.join(chosen)}: only one thing can be what fails")
-    kind = chosen[0].removeprefix("--") if chosen else "shot" if shot else ""
+    kind = _kind([name for name, given in kinds.items() if given], shot)
     renderer: Renderer = ctx.obj.or_else(software, device)
+    if kind == "shot" and (settings or size or time or steps):
+        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
+    loaded = load(sketch)
     moment = moment_of(
-        load(sketch),
+        loaded,
         shot=shot,
         values=read_values(settings),
         steps=read_steps(steps),
         time=read_seconds(time),
     )
-    if kind == "shot" and (settings or size or time or steps):
-        raise ParameterError("--shot is compared as it stands; leave out --set, --size, --time and --steps")
     question = Question(
-        load(sketch) if kind == "shot" else moment.sketch,
-        kind,
-        shot if kind == "shot" else "",
-        read_pixels(size) or moment.size or _FRAME,
-        moment.time,
-        moment.steps,
-        path,
-        read_driver(driver) if driver else "",
-        _pattern(error),
-        command,
-        _environment(against),
-        read_device(against_device),
-        tolerance,
-        anywhere,
-        renderer.software,
-        renderer.device,
-        timeout,
+        sketch=loaded if kind == "shot" else moment.sketch,
+        kind=kind,
+        shot=shot if kind == "shot" else "",
+        frame=read_pixels(size) or moment.size or _FRAME,
+        time=moment.time,
+        steps=moment.steps,
+        path=path,
+        driver=read_driver(driver) if driver else "",
+        pattern=_pattern(error),
+        command=command,
+        environment=_environment(against),
+        other_device=read_device(against_device),
+        tolerance=tolerance,
+        anywhere=anywhere,
+        software=renderer.software,
+        device=renderer.device,
+        limit=timeout,
     )
+    _check_options(kind, anywhere=anywhere, plain=plain)
+    folder = Path(output).expanduser() if output else Path(f"{question.sketch.name}-reduced")
+    _reduce(question, folder, read_seconds(limit) or 0.0, tries, plain)
+
+
+def _kind(chosen: Sequence[str], shot: str) -> str:
+    """Return what failing means, "" where it is to be found out; raise ``ParameterError`` for two."""
+    if len(chosen) > 1:
+        options = " and ".join(f"--{name}" for name in chosen)
+        raise ParameterError(f"{options}: only one thing can be what fails")
+    return chosen[0] if chosen else "shot" if shot else ""
+
+
+def _check_options(kind: str, *, anywhere: bool, plain: bool) -> None:
     if anywhere and kind != "nan":
         raise ParameterError("--anywhere is for --nan")
     if plain and kind not in ("", "error", "crash", "hang"):
         raise ParameterError("--plain is for what the compiler refuses or dies of: --error, --crash, --hang")
-    folder = Path(output).expanduser() if output else Path(f"{question.sketch.name}-reduced")
-    _reduce(question, folder, read_seconds(limit) or 0.0, tries, plain)
 
 
 def _pattern(text: str) -> str:
@@ -241,18 +213,18 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
-    from playground.reduce.initial_case import Bench
-    from playground.reduce.output import Account, claim, plain_texts, to_reproduce, write_folder
+    """Shrink the sketch, and write what is left of it into the folder."""
+    from playground.reduce.initial_case import CandidateBench
+    from playground.reduce.output import claim, plain_texts, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
-    with Bench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as tell:
         beginning = bench.begin()
-        probe = beginning.probe
-        found = beginning.finding
-        # A refusal's word is its message; of the rest, what is told says where and how much.
-        note(found.word if found.messages else f"{found.word}: {found.told}")
-        search = Search(beginning.case, beginning.finding, probe, seconds=limit, tries=tries, tell=tell)
+        probe, found = beginning.probe, beginning.finding
+        # The message of a refusal is its kind; of the rest, the details say where and how much.
+        note(found.kind if found.messages else f"{found.kind}: {found.details}")
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, tell=tell)
         stopped = False
         try:
             search.run()
@@ -262,22 +234,9 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         if finding is None:
             note("what is left does not fail every time: say so where you report it")
             finding = search.finding
-        shader = plain_texts(search.best, probe, finding, bench.workers[0]) if plain else {}
-        finding = replace(finding, told=finding.told.replace(f"{probe.folder}{os.sep}", ""))
-    account = Account(
-        f"playground {' '.join(map(quoted, sys.argv[1:]))}",
-        question.sketch.name,
-        beginning.case,
-        search.best,
-        finding,
-        beginning.renderers,
-        ({}, question.environment),
-        search.tries,
-        search.state.seconds,
-        search.finished,
-        to_reproduce(question, folder, search.best, probe.fault),
-    )
-    for path in write_folder(folder, account, shader):
+        shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
+        finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
+    for path in write_folder(folder, _account(question, beginning, search, finding, folder), shader):
         print(path)
     if plain and not shader:
         note("the plain shader does not fail in the same way, so none is written")
@@ -286,14 +245,39 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         raise typer.Exit(130)
 
 
+def _account(
+    question: Question, beginning: Beginning, search: Search, finding: Finding, folder: Path
+) -> Account:
+    """Return what the text in the folder says."""
+    from playground.reduce.output import Account, to_reproduce
+
+    return Account(
+        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        sketch=question.sketch.name,
+        before=beginning.case,
+        after=search.best,
+        finding=finding,
+        renderers=beginning.renderers,
+        environments=({}, question.environment),
+        tries=search.tries,
+        seconds=search.state.seconds,
+        finished=search.finished,
+        reproduce=to_reproduce(question, folder, search.best, beginning.probe.failure),
+    )
+
+
 def _summary(before: int, search: Search) -> str:
     state = search.state
-    rate = search.tries / state.seconds if state.seconds else 0.0
     end = "nothing more goes" if search.finished else "stopped; it may be shortened further"
     return (
         f"{before} lines to {state.lines} in {search.tries} tries, {state.seconds:.1f} s"
-        f" ({rate:.0f} a second); {end}"
+        f" ({_rate(state):.0f} a second); {end}"
     )
+
+
+def _rate(state: State) -> float:
+    """Return how many candidates are tried each second."""
+    return state.tries / state.seconds if state.seconds else 0.0
 
 
 @contextmanager
@@ -302,8 +286,7 @@ def _shown() -> Iterator[Callable[[State], None]]:
     last = clock.monotonic()
 
     def line(state: State) -> str:
-        rate = state.tries / state.seconds if state.seconds else 0.0
-        return f"{state.what}: {state.lines} lines left, {state.tries} tries, {rate:.0f} a second"
+        return f"{state.what}: {state.lines} lines left, {state.tries} tries, {_rate(state):.0f} a second"
 
     if sys.stderr.isatty():
         with console_for(sys.stderr).status("looking for what fails …") as status:

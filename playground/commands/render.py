@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,6 +15,7 @@ from playground.commands.arguments import (
     DriverOption,
     Moment,
     PlainOption,
+    PresetOption,
     Renderer,
     SetOption,
     SizeOption,
@@ -23,15 +24,20 @@ from playground.commands.arguments import (
     StepsOption,
     TimeOption,
     either,
+    flag,
     help_text,
     moment_of,
+    option,
+    output_file,
     read_driver,
+    read_option,
     read_pixels,
     read_seconds,
     read_steps,
     read_values,
+    within,
 )
-from playground.commands.film import Asked, make_many, read_count, read_fps, read_frames, read_number
+from playground.commands.film import Series, SeriesJob, make_series, read_fps, read_frames
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
@@ -43,7 +49,7 @@ if TYPE_CHECKING:
     from playground.sketch.model import Sketch
 
 
-_MOST_HIDDEN = 3  # defaults without effect that are told one by one
+_MOST_HIDDEN = 3  # defaults without effect that are listed one by one
 
 HELP = help_text(
     "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
@@ -55,7 +61,7 @@ HELP = help_text(
     + either([f"{ending} ({what})" for ending, what in VALUE_ENDINGS.items()])
     + ".",
     "playground render",
-    "playground render jacksboro -o land.png --size 1920x1080",
+    "playground render jacksboro -o terrain.png --size 1920x1080",
     "playground render jacksboro --set light.sun=250,12",
     "playground render jacksboro --shot morning -o morning.png",
     "playground render jacksboro --texture height -o height.npy",
@@ -72,9 +78,9 @@ HELP = help_text(
 )
 
 
-@dataclass(frozen=True)
-class Picture:
-    """What ``render`` was asked for."""
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What ``render`` is to render."""
 
     sketch: str = ""
     output: str = ""
@@ -88,7 +94,20 @@ class Picture:
     profile: bool = False
     steps: dict[str, int] | None = None
     plain: bool = False
-    asked: Asked | None = None  # more than one picture
+    series: Series = field(default_factory=Series)  # more than one picture
+
+    def moment(self) -> Moment:
+        """Load the sketch, and set it as requested."""
+        from playground.sketch.load import load
+
+        return moment_of(
+            load(self.sketch).plainly(self.plain),
+            shot=self.shot,
+            preset=self.preset,
+            values=self.values,
+            steps=self.steps,
+            time=self.time,
+        )
 
 
 def render(
@@ -96,12 +115,10 @@ def render(
     sketch: SketchArgument = "",
     output: Annotated[
         str,
-        typer.Option(
-            "-o",
-            "--output",
-            help="The file to write, or - for standard output. Without it, a new name in this folder.",
-            metavar="FILE",
-            show_default=False,
+        option(
+            "-o --output",
+            "FILE",
+            "The file to write, or - for standard output. Without it, a new name in this folder.",
         ),
     ] = "",
     size: SizeOption = None,
@@ -109,170 +126,102 @@ def render(
     settings: SetOption = None,
     driver: DriverOption = "auto",
     plain: PlainOption = False,
-    shot: Annotated[
-        str, typer.Option("--shot", help="Render a shot of the sketch.", metavar="NAME", show_default=False)
-    ] = "",
-    preset: Annotated[
-        str, typer.Option("--preset", help="Begin with a preset.", metavar="NAME", show_default=False)
-    ] = "",
+    shot: Annotated[str, option("--shot", "NAME", "Render a shot of the sketch.")] = "",
+    preset: PresetOption = "",
     texture: Annotated[
-        str,
-        typer.Option(
-            "--texture",
-            help="Write this pass's own values, not the picture.",
-            metavar="PASS",
-            show_default=False,
-        ),
+        str, option("--texture", "PASS", "Write this pass's own values, not the picture.")
     ] = "",
     steps: StepsOption = None,
-    profile: Annotated[
-        bool, typer.Option("--profile", metavar="", help="Print the milliseconds of each pass.")
-    ] = False,
+    profile: Annotated[bool, flag("--profile", "Print the milliseconds of each pass.")] = False,
     video: Annotated[
         str,
-        typer.Option(
+        option(
             "--video",
-            help=f"Write a video: {either([f'{e} ({what})' for e, what in VIDEO_ENDINGS.items()])}.",
-            metavar="FILE",
-            show_default=False,
+            "FILE",
+            f"Write a video: {either([f'{e} ({what})' for e, what in VIDEO_ENDINGS.items()])}.",
         ),
     ] = "",
     seconds: Annotated[
-        str,
-        typer.Option(
-            "--seconds",
-            help="With --video: how long. Without it, to the last keyframe.",
-            metavar="S",
-            show_default=False,
-        ),
+        str, option("--seconds", "S", "With --video: how long. Without it, to the last keyframe.")
     ] = "",
     fps: Annotated[
-        str,
-        typer.Option(
-            "--fps",
-            help="Pictures a second of --video and --frames: 30 unless told, 4 of a sweep.",
-            metavar="N",
-            show_default=False,
-        ),
+        str, option("--fps", "N", "Pictures a second of --video and --frames: 30 by default, 4 of a sweep.")
     ] = "",
     quality: Annotated[
-        str,
-        typer.Option(
-            "--quality",
-            help="With --video: low, medium, high or best; high unless told.",
-            metavar="NAME",
-            show_default=False,
-        ),
+        str, option("--quality", "NAME", "With --video: low, medium, high or best; high by default.")
     ] = "",
     frames: Annotated[
         str,
-        typer.Option(
-            "--frames",
-            help="Write these pictures as PNG files, named by -o, as frames/%05d.png.",
-            metavar="FIRST..LAST",
-            show_default=False,
+        option(
+            "--frames", "FIRST..LAST", "Write these pictures as PNG files, named by -o, as frames/%05d.png."
         ),
     ] = "",
-    resume: Annotated[
-        bool, typer.Option("--resume", metavar="", help="With --frames: keep good files that are there.")
-    ] = False,
+    resume: Annotated[bool, flag("--resume", "With --frames: keep good files that are there.")] = False,
     sweep: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--sweep",
-            help="A picture for each value of a parameter, on one sheet. May be given twice.",
-            metavar="PATH=FROM..TO",
-            show_default=False,
+            "PATH=FROM..TO",
+            "A picture for each value of a parameter, on one sheet. May be given twice.",
         ),
     ] = None,
-    count: Annotated[
-        str,
-        typer.Option(
-            "-n", help="With --sweep: values of a range; 9 unless told.", metavar="N", show_default=False
-        ),
-    ] = "",
+    count: Annotated[str, option("-n", "N", "With --sweep: values of a range; 9 by default.")] = "",
     software: SoftwareOption = False,
     device: DeviceOption = "",
 ) -> None:
     """Render a sketch to a file and print its path."""
-    asked = Asked(
-        video,
-        read_number(seconds, "--seconds", "10"),
-        read_fps(fps),
-        quality,
-        read_frames(frames),
-        resume,
-        tuple(sweep or ()),
-        read_count(count),
+    series = Series(
+        video=video,
+        seconds=read_option("--seconds", seconds, within(1e-6, 1e7), "a number above 0, as 10"),
+        fps=read_fps(fps),
+        quality=quality,
+        frames=read_frames(frames),
+        resume=resume,
+        sweeps=tuple(sweep or ()),
+        steps=read_option("-n", count, within(2, 99_999), "a whole number from 2, as 12"),
     )
-    asked.check(output, texture, profile)
-    picture = Picture(
-        sketch,
-        output,
-        read_pixels(size, LARGEST_PICTURE),
-        read_seconds(time),
-        read_values(settings),
-        read_driver(driver),
-        shot,
-        preset,
-        texture,
-        profile,
-        read_steps(steps),
-        plain,
-        asked,
+    series.check(output, texture, profile)
+    request = Request(
+        sketch=sketch,
+        output=output,
+        size=read_pixels(size, LARGEST_PICTURE),
+        time=read_seconds(time),
+        values=read_values(settings),
+        driver=read_driver(driver),
+        shot=shot,
+        preset=preset,
+        texture=texture,
+        profile=profile,
+        steps=read_steps(steps),
+        plain=plain,
+        series=series,
     )
-    make_picture(picture, ctx.obj.or_else(software, device))
+    make_picture(request, ctx.obj.or_else(software, device))
 
 
-def make_picture(picture: Picture, renderer: Renderer) -> None:
-    """Render what was asked for to its file, and print the file's path."""
-    from playground.sketch.load import load
-
-    moment = moment_of(
-        load(picture.sketch).plainly(picture.plain),
-        shot=picture.shot,
-        preset=picture.preset,
-        values=picture.values,
-        steps=picture.steps,
-        time=picture.time,
-    )
-    _say_hidden_defaults(moment.sketch)
-    if picture.asked is not None and picture.asked.many:
-        make_many(picture.asked, moment, picture.output, picture.size, renderer, picture.driver)
+def make_picture(request: Request, renderer: Renderer) -> None:
+    """Render what is requested to its file, and print the file's path."""
+    moment = request.moment()
+    _note_hidden_defaults(moment.sketch)
+    if request.series.many:
+        make_series(SeriesJob(request.series, moment, request.output, request.size, renderer, request.driver))
         return
-    sketch = moment.sketch
-    size = picture.size or moment.size or DEFAULT_PICTURE
-
-    from playground.api import headless
     from playground.engine.error_place import told_at
 
     with (
-        told_at(sketch, moment.shot) if moment.shot and not picture.steps else nullcontext(),
-        _target(picture, sketch) as target,
-        headless(software=renderer.software, device=renderer.device, driver=picture.driver) as engine,
+        told_at(moment.sketch, moment.shot) if moment.shot and not request.steps else nullcontext(),
+        _target(request, moment.sketch) as target,
+        renderer.open_engine(driver=request.driver) as engine,
     ):
-        from playground.capture.large import is_large
-
-        if not picture.texture and is_large(engine, sketch, size):
-            if picture.profile:
-                raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
-            if picture.output != "-" and target.suffix.lower() != ".png":
-                raise DataError(
-                    "a picture this large is drawn in parts, and written as .png", file=picture.output
-                )
-            _draw_large(engine, moment, size, target, picture.output == "-")
-        else:
-            with busy(f"rendering {sketch.name}"):
-                _draw(engine, picture, moment, size, target)
-            _say_not_finite(engine)
-        if picture.profile:
+        _draw(engine, request, moment, target)
+        if request.profile:
             _print_profile(engine)
-    if picture.output != "-":
+    if request.output != "-":
         print(target)
 
 
-def _say_hidden_defaults(sketch: Sketch) -> None:
-    """Say which defaults of the sketch's own kernels have no effect, for its own files set them over."""
+def _note_hidden_defaults(sketch: Sketch) -> None:
+    """Note which defaults of the sketch's own kernels have no effect, because its own files override them."""
     from playground.sketch.shadowed import shadowed_by_files
 
     hidden = shadowed_by_files(sketch)
@@ -280,23 +229,40 @@ def _say_hidden_defaults(sketch: Sketch) -> None:
         note(str(one))
     if len(hidden) > _MOST_HIDDEN:
         more = counted(len(hidden) - _MOST_HIDDEN, "more default")
-        note(f"{more} that a set stands over: playground check lists them")
+        note(f"{more} that a set overrides: playground check lists them")
 
 
-def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    sketch, time, steps = moment.sketch, moment.time, moment.steps
-    if picture.profile:
-        _prepare_profile(engine, sketch, picture.texture, size, time, steps)
-    if picture.texture:
-        from playground.images.files import write_values
+def _draw(engine: Engine, request: Request, moment: Moment, target: Path) -> None:
+    """Draw the picture, or read the texture, and write it: in parts where it is too large for one frame."""
+    from playground.capture.large import is_large
 
-        values = engine.read(sketch, picture.texture, size=size, time=time, steps=steps)
-        clamped = write_values(target, values)
-        if clamped:
-            note(clamped)
+    size = request.size or moment.size or DEFAULT_PICTURE
+    if not request.texture and is_large(engine, moment.sketch, size):
+        _check_large(request, target)
+        _draw_large(engine, moment, size, target)
         return
-    frame = engine.render(sketch, size=size, time=time, steps=steps)
-    if picture.output == "-":
+    at: dict[str, Any] = {"size": size, "time": moment.time, "steps": moment.steps}
+    with busy(f"rendering {moment.sketch.name}"):
+        if request.profile:
+            _prepare_profile(engine, moment.sketch, request.texture, at)
+        if request.texture:
+            _write_texture(engine, moment.sketch, request.texture, target, at)
+        else:
+            _write_frame(engine, moment.sketch, target, at)
+    _note_not_finite(engine)
+
+
+def _write_texture(engine: Engine, sketch: Sketch, texture: str, target: Path, at: dict[str, Any]) -> None:
+    from playground.images.files import write_values
+
+    clamped = write_values(target, engine.read(sketch, texture, **at))
+    if clamped:
+        note(clamped)
+
+
+def _write_frame(engine: Engine, sketch: Sketch, target: Path, at: dict[str, Any]) -> None:
+    frame = engine.render(sketch, **at)
+    if target.name == "-":
         from playground.images.files import encode_png
 
         sys.stdout.buffer.write(encode_png(frame.array))
@@ -304,67 +270,54 @@ def _draw(engine: Engine, picture: Picture, moment: Moment, size: tuple[int, int
         frame.save(target, say=note)
 
 
-def _say_not_finite(engine: Engine) -> None:
-    """Say which pass made NaN or infinity, if any did: the picture may show nothing of it."""
+def _note_not_finite(engine: Engine) -> None:
+    """Note which pass made NaN or infinity, if any did: the picture may show nothing of it."""
     found = [one for one in engine.not_finite_by_pass() if one is not None]
     if found:
         more = f" (first of {len(found)} passes)" if len(found) > 1 else ""
         note(f"{found[0]}{more}")
 
 
-def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path, piped: bool) -> None:
+def _check_large(request: Request, target: Path) -> None:
+    if request.profile:
+        raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+    if target.name != "-" and target.suffix.lower() != ".png":
+        raise DataError("a picture this large is drawn in parts, and written as .png", file=request.output)
+
+
+def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
     from playground.capture.large import count_tiles, pack_large, write_large
 
     with progress(f"rendering {moment.sketch.name} in parts", count_tiles(size)) as done:
-        if piped:
-            pack_large(
-                engine,
-                moment.sketch,
-                sys.stdout.buffer,
-                size,
-                time=moment.time,
-                steps=moment.steps,
-                done=done,
-            )
+        at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
+        if target.name == "-":
+            pack_large(engine, moment.sketch, sys.stdout.buffer, size, **at)
         else:
-            write_large(engine, moment.sketch, target, size, time=moment.time, steps=moment.steps, done=done)
+            write_large(engine, moment.sketch, target, size, **at)
 
 
-def _target(picture: Picture, sketch: Sketch) -> AbstractContextManager[Path]:
+def _target(request: Request, sketch: Sketch) -> AbstractContextManager[Path]:
     """Open the file to write; refuse what could not be written before anything is drawn."""
-    endings = tuple(VALUE_ENDINGS) if picture.texture else PICTURE_ENDINGS
-    if picture.output == "-":
-        if picture.texture:
+    endings = tuple(VALUE_ENDINGS) if request.texture else PICTURE_ENDINGS
+    if request.output == "-":
+        if request.texture:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
         if isinstance(sys.stdout, Nowhere):
             raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
-    if not picture.output:
-        parts = [sketch.name, picture.shot, picture.texture.replace(":", "-")]
-        from playground.images.files import new_name
-
-        return new_name("-".join(filter(None, parts)) + endings[0])
-    path = Path(picture.output).expanduser()
-    if path.is_dir():
-        raise DataError("is a folder; expected the name of a file to write", file=picture.output)
-    if path.suffix.lower() not in endings:
-        what = "values are" if picture.texture else "a picture is"
-        raise DataError(f"{what} written to a name ending in {either(endings)}", file=picture.output)
-    if not path.parent.is_dir():
-        raise DataError(f"there is no folder '{path.parent}' to write into", file=picture.output)
-    return nullcontext(path)
+    parts = [sketch.name, request.shot, request.texture.replace(":", "-")]
+    usual = "-".join(filter(None, parts)) + endings[0]
+    return output_file(request.output, usual, endings, "values are" if request.texture else "a picture is")
 
 
-def _prepare_profile(
-    engine: Engine, sketch: Sketch, texture: str, size: tuple[int, int], time: float, steps: dict[str, int]
-) -> None:
+def _prepare_profile(engine: Engine, sketch: Sketch, texture: str, at: dict[str, Any]) -> None:
     """Draw once unmeasured, so that the measured frame compiles nothing, then forget every texture."""
     if texture:
-        engine.texture(sketch, texture, size=size, time=time, steps=steps)
+        engine.texture(sketch, texture, **at)
     else:
-        engine.draw(sketch, size=size, time=time, steps=steps)
+        engine.draw(sketch, **at)
     engine.ctx.finish()
     engine.cache.clear()
     engine.runs.clear()
@@ -375,15 +328,15 @@ def _print_profile(engine: Engine) -> None:
     from rich.table import Table
 
     plan = engine.plan
-    table = Table(title="one frame, every pass run anew, nothing compiled", title_justify="left")
+    table = Table(title="one frame, every pass run again, nothing compiled", title_justify="left")
     table.add_column("pass", overflow="fold")
-    for heading in ("texels", "turns", "ms"):
+    for heading in ("texels", "iterations", "ms"):
         table.add_column(heading, justify="right")
     for path, milliseconds in engine.times.items():
         step = plan.step(path) if plan is not None else None
         if step is not None:
-            turns = engine.runs[path] * step.repeat
-            table.add_row(path, f"{step.size[0]} x {step.size[1]}", str(turns), f"{milliseconds:.2f}")
+            iterations = engine.runs[path] * step.repeat
+            table.add_row(path, f"{step.size[0]} x {step.size[1]}", str(iterations), f"{milliseconds:.2f}")
     table.add_section()
     table.add_row("together", "", "", f"{sum(engine.times.values()):.2f}")
     console = console_for(sys.stderr)

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from playground.commands import mutants, shots_results
-from playground.commands.arguments import JsonOption, complete_sketch, help_text
+from playground.commands.arguments import JsonOption, argument, command_group, complete_sketch, help_text
 from playground.terminal import print_json, print_table
 
 if TYPE_CHECKING:
@@ -32,29 +30,16 @@ LIST_HELP = help_text(
     "playground shots list jacksboro --json",
 )
 
-app = typer.Typer(
-    name="shots",
-    help=HELP,
-    short_help="List the pictures that sketches promise, and see to their references.",
-    invoke_without_command=True,
-    rich_markup_mode="rich",
-)
+app = command_group("shots", HELP, "List the pictures that sketches promise, and see to their references.")
 
 SketchesArgument = Annotated[
     list[str] | None,
-    typer.Argument(
-        help="Shipped sketches by name, or paths of sketches, of their folders, or of shaders.",
-        metavar="SKETCH",
-        show_default=False,
-        autocompletion=complete_sketch,
+    argument(
+        "SKETCH",
+        "Shipped sketches by name, or paths of sketches, of their folders, or of shaders.",
+        complete_sketch,
     ),
 ]
-
-
-@app.callback()
-def _group(ctx: typer.Context) -> None:
-    if ctx.invoked_subcommand is None:
-        print(ctx.get_help())
 
 
 @app.command("list", help=LIST_HELP)
@@ -84,10 +69,11 @@ def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> Non
 app.command("report", help=shots_results.REPORT_HELP)(shots_results.report)
 app.command("review", help=shots_results.REVIEW_HELP)(shots_results.review)
 app.command("accept", help=shots_results.ACCEPT_HELP)(shots_results.accept)
+app.command("mutants", help=mutants.HELP)(mutants.mutants)
 
 
 def _rows(sketch: Sketch) -> list[dict[str, Any]]:
-    """Return what there is to say of each shot, as JSON takes it."""
+    """Describe each shot, as JSON takes it."""
     from playground.errors import DataError
     from playground.paths import shown
     from playground.shots.references import accepted, home_of
@@ -111,6 +97,3 @@ def _rows(sketch: Sketch) -> list[dict[str, Any]]:
             }
         )
     return rows
-
-
-app.command("mutants", help=mutants.HELP)(mutants.mutants)

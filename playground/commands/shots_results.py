@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from playground.commands.arguments import help_text
+from playground.commands.arguments import argument, flag, help_text, option
 from playground.errors import PlaygroundError
 from playground.terminal import complain, note
 
@@ -39,25 +39,14 @@ REVIEW_HELP = help_text(
 
 FolderArgument = Annotated[
     Path | None,
-    typer.Argument(
-        help="The folder of results, as --shots-output of pytest named it (default: shots-report).",
-        metavar="DIR",
-        show_default=False,
-    ),
+    argument("DIR", "The folder of results, as --shots-output of pytest named it (default: shots-report)."),
 ]
 
 
 def report(
     folder: FolderArgument = None,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            help="The file to write (default: index.html in DIR).",
-            metavar="FILE",
-            show_default=False,
-        ),
+        Path | None, option("-o --output", "FILE", "The file to write (default: index.html in DIR).")
     ] = None,
 ) -> None:
     """Make one HTML file of the results of screenshot tests."""
@@ -70,19 +59,14 @@ def report(
 def accept(
     shots: Annotated[
         list[str] | None,
-        typer.Argument(
-            help="Shots, as sketch/shot, or with * and ?; before them, the folder of results if it is"
+        argument(
+            "[DIR] SHOT...",
+            "Shots, as sketch/shot, or with * and ?; before them, the folder of results if it is"
             " not shots-report.",
-            metavar="[DIR] SHOT...",
-            show_default=False,
         ),
     ] = None,
-    everything: Annotated[
-        bool, typer.Option("--all", metavar="", help="Every shot that failed and can be accepted.")
-    ] = False,
-    also: Annotated[
-        bool, typer.Option("--also", metavar="", help="Keep the references that are there; add this one.")
-    ] = False,
+    everything: Annotated[bool, flag("--all", "Every shot that failed and can be accepted.")] = False,
+    also: Annotated[bool, flag("--also", "Keep the references that are there; add this one.")] = False,
 ) -> None:
     """Make references of pictures that were drawn."""
     from playground.shots.accept import accept as accept_one
@@ -139,17 +123,17 @@ def review(
             note(line)
 
 
-def _folder_and_shots(words: list[str]) -> tuple[Path, list[str]]:
-    """Part the folder, which may come first, from the shots."""
+def _folder_and_shots(names: list[str]) -> tuple[Path, list[str]]:
+    """Split the folder, which may come first, from the shots."""
     from playground.shots.results import FOLDER
 
-    if words and _is_folder(words[0]):
-        return Path(words[0]), words[1:]
-    return Path(FOLDER), words
+    if names and _is_folder(names[0]):
+        return Path(names[0]), names[1:]
+    return Path(FOLDER), names
 
 
-def _is_folder(word: str) -> bool:
-    """Whether a word means a folder: one that is there, unless a result has that very name."""
+def _is_folder(name: str) -> bool:
+    """Whether a name means a folder: one that is there, unless a result has that very name."""
     from playground.shots.results import FOLDER
 
-    return Path(word).is_dir() and not (Path(FOLDER) / f"{word}.json").is_file()
+    return Path(name).is_dir() and not (Path(FOLDER) / f"{name}.json").is_file()

@@ -14,6 +14,8 @@ from playground.commands.arguments import (
     JsonOption,
     Renderer,
     SoftwareOption,
+    argument,
+    command_group,
     help_text,
 )
 from playground.errors import counted
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from playground.engine.verify_targets import Subject
 
 HELP = help_text(
-    "Fast variants: other forms of a technique, that give the same and exist only for speed.\n\n"
+    "Fast variants: other forms of a technique, that give the same result and exist only for speed.\n\n"
     "A technique is its plain text, x.glsl or x.toml. x.comp beside it (a compute shader) or x.fast.toml"
     " (several passes) runs in its place only while both texts are those that were found to agree, within"
     " the bound that the variant states; a file fast_variants.json beside them says so. Otherwise the plain"
@@ -50,28 +52,12 @@ RENEW_HELP = help_text(
     "playground variants renew my-land",
 )
 
-app = typer.Typer(
-    name="variants",
-    help=HELP,
-    short_help="List, verify and record the fast variants of techniques.",
-    invoke_without_command=True,
-    rich_markup_mode="rich",
-)
+app = command_group("variants", HELP, "List, verify and record the fast variants of techniques.")
 
 WhatArgument = Annotated[
     str,
-    typer.Argument(
-        help="A technique or a folder of glsl/, or the path of a variant, a kernel or a sketch.",
-        metavar="WHAT",
-        show_default=False,
-    ),
+    argument("WHAT", "A technique or a folder of glsl/, or the path of a variant, a kernel or a sketch."),
 ]
-
-
-@app.callback()
-def _group(ctx: typer.Context) -> None:
-    if ctx.invoked_subcommand is None:
-        print(ctx.get_help())
 
 
 @app.command("list", help=LIST_HELP)
@@ -121,7 +107,6 @@ def _row(subject: Subject) -> tuple[str, str, str]:
 
 
 def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
-    from playground.api import headless
     from playground.engine.plain_forms import silent
     from playground.engine.verify import verify
     from playground.engine.verify_targets import subjects
@@ -131,7 +116,7 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
     with TemporaryDirectory(prefix="playground-variants-") as folder:
         chosen = subjects(what, Path(folder) / "stand-in.png")
         with (
-            headless(software=renderer.software, device=renderer.device, notice=silent) as engine,
+            renderer.open_engine(notice=silent) as engine,
             progress("verifying", len(chosen)) as advance,
         ):
             for subject in chosen:

@@ -2,7 +2,7 @@
 
 A kernel is drawn on a stage of its own: placeholder textures for its inputs, a placeholder
 picture for files that nothing names, and a view that only copies, so that a mistake
-elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox process,
+elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox,
 where it can crash or hang.
 
 Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 from playground.engine.error_place import told_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import make_plan
-from playground.engine.sandbox import Request, Trial, TrialReport, TryLibrary, TrySketch
+from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, stage, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
@@ -66,7 +66,7 @@ class FileReport:
     errors: tuple[Diagnostic, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
     notes: tuple[str, ...] = ()  # sentences: fast variants that do not run
-    seconds: float = 0.0  # in the sandbox process
+    seconds: float = 0.0  # in the sandbox
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; ``line`` and ``column`` count from 1, 0 where unknown."""
@@ -117,24 +117,24 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
     return list(found.items())
 
 
-def check_file(path: Path, trial: Trial, root: Path | None = None, *, plain: bool = False) -> FileReport:
+def check_file(path: Path, sandbox: Sandbox, root: Path | None = None, *, plain: bool = False) -> FileReport:
     """Check one file and return what is wrong with it; ``root`` is the folder it may include from.
 
     ``plain``: no fast variant is drawn.
     """
     path = path.resolve()
     with TemporaryDirectory(prefix="playground-check-") as folder:
-        report = _Check(trial, path, root_of(path) if root is None else root, Path(folder), plain).run()
+        report = _Check(sandbox, path, root_of(path) if root is None else root, Path(folder), plain).run()
     return report
 
 
 class _Check:
     """One file being checked."""
 
-    def __init__(self, trial: Trial, path: Path, root: Path, scratch: Path, plain: bool) -> None:
+    def __init__(self, sandbox: Sandbox, path: Path, root: Path, scratch: Path, plain: bool) -> None:
         self.plain = plain
         self.notes: tuple[str, ...] = ()
-        self.trial = trial
+        self.sandbox = sandbox
         self.path = path
         self.root = GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root
         self.scratch = scratch  # where the placeholder picture is written
@@ -230,13 +230,13 @@ class _Check:
             self.attempt(self.request(trusted(technique), (COMPUTE,)))
 
     def attempt(self, request: Request) -> None:
-        report: TrialReport = self.trial.run(request)
+        report: SandboxReport = self.sandbox.run(request)
         self.seconds += report.seconds
         self.skipped |= dict.fromkeys(report.skipped)
         if report.error is not None:
             self.failed(report.error)
         elif not report.ok:
-            self.failed(PlaygroundError("the trial failed and gave no reason"))
+            self.failed(PlaygroundError("the sandbox failed and gave no reason"))
 
     def failed(self, error: PlaygroundError) -> None:
         for diagnostic in error.diagnostics:

@@ -7,17 +7,17 @@ size or a count names a changed value or the time, or where the terrain's file i
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from numbers import Integral, Real
+from pathlib import Path
 
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
 from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node
+from playground.engine.plan_request import PlanRequest, checked_pixels, checked_seconds, checked_steps
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
@@ -28,6 +28,7 @@ from playground.sketch.flatten import flatten
 from playground.sketch.identity import Same
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
+from playground.sketch.variant_check import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Land, source_kind
@@ -40,18 +41,6 @@ _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is r
 
 
 @dataclass(frozen=True, slots=True)
-class _Request:
-    """What a plan is made for, besides a graph, its values, the camera and the time."""
-
-    frame_size: tuple[int, int]
-    stopped: tuple[tuple[str, int], ...]  # repeats that are stopped early: steps to run, by path
-    fills: bool
-    compute: bool
-    varies: bool  # keyframes set parameters, and so perhaps counts of steps
-    terrain: Land  # what the sketch says of it
-
-
-@dataclass(frozen=True, slots=True)
 class _Known:
     """A plan, and what it would be made anew for."""
 
@@ -59,6 +48,7 @@ class _Known:
     values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
+    refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
 
 
 class Planner:
@@ -81,27 +71,42 @@ class Planner:
         largest: int = LARGEST_SIDE,
     ) -> Plan:
         """Make a plan as ``make_plan`` does."""
-        size, seconds = _pixels(frame_size, largest), _seconds(time)
+        size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
         varies = any(keyframe.values for keyframe in sketch.keyframes)
         sketch = sketch.at(seconds)
-        stopped = {repeated_in(sketch, path): _steps(path, count) for path, count in (steps or {}).items()}
+        stopped = {
+            repeated_in(sketch, path): checked_steps(path, count) for path, count in (steps or {}).items()
+        }
         fills = not wanted if interpolated is None else interpolated
         terrain = Land(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
-        request = _Request(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
+        request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
         place = (Same(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
         known = self._plans.pop(place, None)
-        flat = flatten(
-            sketch,
-            variants=variants,
-            opened=(wanted,) if wanted else (),
-            stopped=tuple(stopped),
-            before=known.plan.flat if known else None,
-        )
-        planning = _Planning(sketch, flat, request, seconds, known)
-        found = planning.renewed()
+
+        def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
+            flat = flatten(
+                sketch,
+                variants=variants,
+                opened=(wanted,) if wanted else (),
+                stopped=tuple(stopped),
+                refused=tuple(refused),
+                before=known.plan.flat if known else None,
+            )
+            return _Planning(sketch, flat, request, seconds, known)
+
+        found = planning(known.refusals, known).renewed() if known else None
         if found is None:
             self.made_whole += 1
-            found = planning.whole()
+            attempt = planning(())
+            refusals = attempt.refusals()
+            if refusals:
+                plain = planning(refusals).whole()
+                named, by_time = plain.named | attempt.named, plain.by_time or attempt.by_time
+                found = replace(plain, named=named, by_time=by_time, refusals=refusals)
+                lacking = (*found.plan.lacking, *refusals.values())
+                found = replace(found, plan=replace(found.plan, lacking=lacking))
+            else:
+                found = attempt.whole()
         self._plans[place] = found
         while len(self._plans) > _MOST_PLANS:
             self._plans.popitem(last=False)
@@ -163,28 +168,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
     return found
 
 
-def _pixels(size: object, largest: int) -> tuple[int, int]:
-    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
-        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
-    width, height = int(found[0]), int(found[1])
-    if not (1 <= width <= largest and 1 <= height <= largest):
-        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
-    return width, height
-
-
-def _seconds(time: object) -> float:
-    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
-        raise ParameterError(f"time {time!r}: expected a number of seconds")
-    return float(time)
-
-
-def _steps(path: str, count: object) -> int:
-    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
-        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
-    return int(count)
-
-
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
     """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
     flat = flatten(sketch)
@@ -199,11 +182,20 @@ def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
+def _sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
+    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
+    if leaf.kernel.kind == "compute":
+        return leaf.path, leaf.kernel.own_accepts
+    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
+    is_variant = inside and flat.specs[path].technique.variants
+    return (path, leaf.kernel.accepts) if is_variant else (path, "")
+
+
 class _Planning:
     """One plan being made; ``known`` is the last of the same graph, made for the same request."""
 
     def __init__(
-        self, sketch: Sketch, flat: Flat, request: _Request, time: float, known: _Known | None
+        self, sketch: Sketch, flat: Flat, request: PlanRequest, time: float, known: _Known | None
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -250,6 +242,10 @@ class _Planning:
 
     def whole(self) -> _Known:
         """Make the plan from nothing."""
+        # What has the terrain's own size first: the others' sizes follow from it.
+        for leaf in self.flat.leaves:
+            if leaf.spec.size is None:
+                self._refuse(leaf, self._size_of_leaf(leaf))
         nodes = tuple(self._node(node) for node in self.flat.nodes)
         lacking = tuple(
             f"{path or 'the sketch'} does without compute shaders, which are not here: "
@@ -268,7 +264,21 @@ class _Planning:
             interpolated=self.request.fills,
             lacking=lacking,
         )
-        return _Known(plan, self._values, frozenset(self.named), self.by_time)
+        return _Known(plan, self._values, frozenset(self.named), self.by_time, {})
+
+    def refusals(self) -> dict[str, str]:
+        """Return a sentence for each technique whose fast variant does not take its size, by its path."""
+        found: dict[str, str] = {}
+        for leaf in self.flat.leaves:
+            path, accepts = _sizes_of_variant(leaf, self.flat)
+            if accepts and path not in found:
+                size = self._size_of_leaf(leaf)
+                if not expressions.is_accepted(accepts, size):
+                    found[path] = (
+                        f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
+                        f"not {size[0]} x {size[1]}; the plain form runs"
+                    )
+        return found
 
     def _eye(self) -> Eye:
         extent, relief = self.land.extent, self.land.relief
@@ -285,8 +295,7 @@ class _Planning:
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
-        if kernel.accepts and not expressions.is_accepted(kernel.accepts, size):
-            raise self._refused(node, size)
+        self._refuse(node, size)
         names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
         names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         self._note_names(node)
@@ -336,10 +345,13 @@ class _Planning:
             )
         return count
 
-    def _refused(self, leaf: Leaf, size: tuple[int, int]) -> SketchError:
+    def _refuse(self, leaf: Leaf, size: tuple[int, int]) -> None:
+        """Raise ``SketchError`` for a size that a kernel does not take, with the nearest that it takes."""
+        if not leaf.kernel.accepts or expressions.is_accepted(leaf.kernel.accepts, size):
+            return
         near = expressions.nearest_accepted(leaf.kernel.accepts, size)
         listed = " or ".join(f"{x} x {y}" for x, y in near)
-        return leaf.spec.error(
+        raise leaf.spec.error(
             f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )

@@ -231,6 +231,7 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
 def _wrap_variant(kernel: Kernel) -> Wrapped:
     before = [
         "#version 430",
+        "#define COMPUTE_STAGE",
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
     ]
     before += _given(kernel)

@@ -1,18 +1,20 @@
 """Lessons: Markdown with TOML blocks, read into what a window, a book or a notebook shows.
 
     texts/en/NAME.md    a lesson; all pictures, numbers and code are named there
-    texts/fr/NAME.md    its words in another language, and nothing else
-    words/              what is written around lessons in each language
+    texts/fr/NAME.md    its texts in another language, and nothing else
+    labels/             the labels around lessons in each language
     model               what a lesson is made of
-    read, fences        from a file to that
-    translate           from a translation to that; which of it has gone stale
+    document            a file split into front matter and pieces
+    read, fences        from a file to a lesson
+    translate, status   from a translation to a lesson; what of it is out of date
     library             which lessons and languages there are
-    pictures            what is drawn for a lesson
-    measuring           what is computed for one, by the functions of ``measures``
-    excerpt             code by a named anchor
-    rules               what every lesson keeps to
-    status              how far translations are
+    figure_renders      the pictures of a lesson
+    figures             the thesis's figures
+    measuring           the numbers of a lesson, by the functions of ``measures``
+    excerpt, bugs       code by a named anchor; the lines around a deliberate bug
+    rules               the rules of every lesson
     book/               pages to read offline
+    notebook/           Jupyter notebooks
 
-Reading needs no OpenGL; an engine is handed to what draws.
+Reading needs no OpenGL; what draws receives an engine.
 """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from dataclasses import dataclass
 
 from playground.errors import SketchError, nearest
@@ -24,7 +25,7 @@ class Excerpt:
 def excerpt(file: str, anchor: str, text: str | None = None) -> Excerpt:
     """Return what an anchor marks in a file of ``glsl/``; the marks of other anchors are left out.
 
-    ``text`` stands in for what is in the file. Raises ``SketchError`` where there is no such
+    ``text`` replaces what is in the file. Raises ``SketchError`` where there is no such
     anchor, or where it has no end.
     """
     found = anchors(file, read_text(GLSL / file) if text is None else text)
@@ -53,17 +54,8 @@ def anchors(file: str, text: str) -> dict[str, Excerpt]:
         else:
             first = open_at.pop(name)
             inside = [each for each in lines[first : number - 1] if not _MARK.match(each)]
-            found[name] = Excerpt(file, first + 1, _dedented(inside))
+            marked = textwrap.dedent("\n".join(each.rstrip() for each in inside))
+            found[name] = Excerpt(file, first + 1, marked.strip("\n"))
     for name, number in open_at.items():
         raise SketchError(f"anchor '{name}' has no end", file=GLSL / file, line=number)
     return found
-
-
-def _dedented(lines: list[str]) -> str:
-    """Take from lines the indentation that all have, and the empty ones at both ends."""
-    while lines and not lines[0].strip():
-        lines = lines[1:]
-    while lines and not lines[-1].strip():
-        lines = lines[:-1]
-    common = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
-    return "\n".join(line[common:].rstrip() for line in lines)

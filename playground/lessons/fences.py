@@ -1,4 +1,4 @@
-"""Read a fenced block of a lesson: its first word is what it is, its second its name, its lines TOML."""
+"""Read a fenced block of a lesson: its first word is its kind, its second its name, its lines TOML."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.lessons.markdown import Piece
@@ -24,6 +24,8 @@ from playground.lessons.model import (
     Scene,
     Slider,
     Steps,
+    key_of,
+    translated_fields,
 )
 from playground.lessons.scenes import FRAME, PICTURE, STATE, Sketches, read_scene, with_steps, with_value
 from playground.paths import GLSL
@@ -32,7 +34,10 @@ from playground.sketch.model import Value
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
+B = TypeVar("B", bound=Named)
+
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+_RENAMED = {"mend": "fix", "turns": "iterations"}  # keys of older lessons
 
 
 @dataclass(frozen=True)
@@ -46,32 +51,46 @@ class Fence:
     file: TomlFile
     sketches: Sketches
 
-    def only(self, *own: str) -> None:
-        """Raise ``SketchError`` for a key that such a block has not."""
-        self.file.only(self.file.table, own)
+    def only(self, kind: type[Named], *own: str) -> None:
+        """Raise ``SketchError`` for a key that is neither a text of such a block nor one of ``own``."""
+        self.file.only(self.file.table, [*own, *map(key_of, translated_fields(kind))])
 
     def take(self, key: str, kind: type, default: Any) -> Any:
         """Return what a key has, checked to be of a kind."""
         return self.file.take(self.file.table, key, kind, default)
 
-    def words(self, key: str, *, needed: bool = True) -> str:
-        """Return the words that a key has; raise ``SketchError`` if they are needed and not there."""
+    def markdown(self, key: str, *, needed: bool = True) -> str:
+        """Return the text that a key has; raise ``SketchError`` if it is needed and not there."""
         found: str = self.take(key, str, "")
         if needed and not found.strip():
             raise self.error(f'a {self.kind} block needs {key} = "…"')
         return found.strip()
 
-    def list_of_words(self, key: str) -> tuple[str, ...]:
-        """Return the list of words that a key has."""
+    def texts(self, key: str) -> tuple[str, ...]:
+        """Return the list of texts that a key has."""
         found = self.take(key, list, [])
         if not all(isinstance(item, str) for item in found):
             raise self.error(f"{key} = {spell(found)}: expected texts in quotes", key)
         return tuple(item.strip() for item in found)
 
+    def block(self, kind: type[B], **fields: Any) -> B:
+        """Return the block with these fields; its line, its name and its texts are read."""
+        for text in translated_fields(kind):
+            key, meaning = key_of(text), text.metadata
+            if text.name not in fields:
+                fields[text.name] = (
+                    self.texts(key) if "listed" in meaning else self.markdown(key, needed=meaning["needed"])
+                )
+        return kind(line=self.line, text=self.piece.text, name=self.name, **fields)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Its keys that say what a picture shows."""
+        return {key: value for key, value in self.file.table.items() if key in STATE}
+
     def scene(self, pixels: tuple[int, int] = PICTURE) -> Scene:
-        """Return the picture that the block's own keys say."""
-        table = {key: value for key, value in self.file.table.items() if key in STATE}
-        return read_scene(self.file, table, (), self.sketches, pixels)
+        """Return the picture that the block's own keys describe."""
+        return read_scene(self.file, self.state, (), self.sketches, pixels)
 
     def error(self, message: str, *place: str | int) -> SketchError:
         """Return an error at a place in the block."""
@@ -88,37 +107,29 @@ def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence
         message = f"{kind} '{name}': behind its kind a block has a name of small letters, digits and -"
         raise SketchError(message, file=path, line=line)
     file = TomlFile(path, GLSL / "sketches", piece.inside, line)
+    file.table = {_RENAMED.get(key, key): value for key, value in file.table.items()}
     return Fence(kind, name, piece, line, file, sketches)
 
 
 def read_fence(fence: Fence) -> Named:
-    """Return the block that a fence describes; raise ``SketchError`` at the key that is wrong."""
+    """Build the block that a fence describes; raise ``SketchError`` at the key that is wrong."""
     return READERS[fence.kind](fence)
 
 
 def _figure(fence: Fence) -> Figure:
-    fence.only(*STATE, "sliders", "caption", "alt")
-    scene = fence.scene()
-    sliders = fence.list_of_words("sliders")
+    fence.only(Figure, *STATE, "sliders")
+    scene, sliders = fence.scene(), fence.texts("sliders")
     for path in sliders:
         _check_path(fence, scene, path, "sliders")
-    return Figure(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        scene,
-        sliders,
-        fence.words("caption"),
-        fence.words("alt"),
-    )
+    return fence.block(Figure, scene=scene, sliders=sliders)
 
 
 def _steps(fence: Fence) -> Steps:
     from playground.engine.planner import repeated_in, repeats_of  # it needs what is loaded by then only
 
-    fence.only(*STATE, "passes", "turns", "caption", "alt", "captions")
+    fence.only(Steps, *STATE, "passes", "iterations")
     scene = fence.scene(FRAME)
-    passes = fence.list_of_words("passes")
+    passes = fence.texts("passes")
     if not passes:
         raise fence.error('a step block needs passes = ["…"]: the repeated passes that it stops')
     try:
@@ -126,42 +137,25 @@ def _steps(fence: Fence) -> Steps:
         most = min(repeats_of(scene.sketch, frame_size=scene.pixels, time=scene.time)[p] for p in repeated)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, "passes") from None
-    turns = fence.take("turns", list, list(range(most + 1)))
-    if not turns or not all(type(turn) is int and 0 <= turn <= most for turn in turns):
-        raise fence.error(f"turns = {spell(turns)}: expected whole numbers from 0 to {most}", "turns")
-    captions = fence.list_of_words("captions")
-    if captions and len(captions) != len(turns):
-        raise fence.error(f"captions: {len(captions)} for {len(turns)} turns", "captions")
-    return Steps(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        tuple(with_steps(scene, dict.fromkeys(passes, turn)) for turn in turns),
-        passes,
-        tuple(turns),
-        fence.words("caption"),
-        fence.words("alt"),
-        captions,
-    )
+    given = fence.take("iterations", list, list(range(most + 1)))
+    if not given or not all(type(one) is int and 0 <= one <= most for one in given):
+        message = f"iterations = {spell(given)}: expected whole numbers from 0 to {most}"
+        raise fence.error(message, "iterations")
+    captions = fence.texts("captions")
+    if captions and len(captions) != len(given):
+        raise fence.error(f"captions: {len(captions)} for {len(given)} iterations", "captions")
+    scenes = tuple(with_steps(scene, dict.fromkeys(passes, one)) for one in given)
+    return fence.block(Steps, scenes=scenes, passes=passes, iterations=tuple(given))
 
 
 def _slider(fence: Fence) -> Slider:
-    fence.only(*STATE, "parameter", "values", "from", "to", "frames", "caption", "alt", "label")
+    fence.only(Slider, *STATE, "parameter", "values", "from", "to", "frames")
     scene = fence.scene(FRAME)
-    parameter = fence.words("parameter")
+    parameter = fence.markdown("parameter")
     _check_path(fence, scene, parameter, "parameter")
     values = _swept(fence, scene, parameter)
-    return Slider(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        tuple(with_value(scene, parameter, value) for value in values),
-        parameter,
-        values,
-        fence.words("caption"),
-        fence.words("alt"),
-        fence.words("label", needed=False),
-    )
+    scenes = tuple(with_value(scene, parameter, value) for value in values)
+    return fence.block(Slider, scenes=scenes, parameter=parameter, values=values)
 
 
 def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
@@ -171,7 +165,7 @@ def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
         frames = fence.take("frames", int, 9)
         if low is None or high is None or low == high or not 2 <= frames <= 64:
             raise fence.error("a slider needs values = […], or from, to and frames (2 to 64)")
-        whole = _type_of(scene, parameter) in ("int", "uint")
+        whole = resolve(scene.sketch.graph, parameter)[0].parameter.type in ("int", "uint")
         given = [low + (high - low) * i / (frames - 1) for i in range(frames)]
         given = [round(v) if whole else float(f"{v:.6g}") for v in given]
     if len(given) < 2:
@@ -183,8 +177,7 @@ def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
 
 
 def _compare(fence: Fence) -> Compare:
-    fence.only(*STATE, "variant", "caption", "alt", "labels")
-    under = {key: value for key, value in fence.file.table.items() if key in STATE}
+    fence.only(Compare, *STATE, "variant")
     tables = fence.file.tables("variant")
     if len(tables) < 2:
         raise fence.error("a compare block has two or more [[variant]]")
@@ -192,106 +185,66 @@ def _compare(fence: Fence) -> Compare:
     for index, table in enumerate(tables):
         place = ("variant", index)
         fence.file.only(table, STATE, *place)
-        scenes.append(read_scene(fence.file, table, place, fence.sketches, under=under))
-    labels = fence.list_of_words("labels")
+        scenes.append(read_scene(fence.file, table, place, fence.sketches, under=fence.state))
+    labels = fence.texts("labels")
     if len(labels) != len(scenes):
         raise fence.error(f"labels: {len(labels)} for {len(scenes)} variants", "labels")
     if len({scene.pixels for scene in scenes}) > 1:
         raise fence.error("pictures that are compared have one size: set pixels")
-    return Compare(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        tuple(scenes),
-        labels,
-        fence.words("caption"),
-        fence.words("alt"),
-    )
+    return fence.block(Compare, scenes=tuple(scenes))
 
 
 def _code(fence: Fence) -> Code:
-    fence.only("file", "anchor", "caption")
-    return Code(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        _shader(fence),
-        fence.words("anchor"),
-        fence.words("caption", needed=False),
-    )
+    fence.only(Code, "file", "anchor")
+    return fence.block(Code, file=_shader(fence), anchor=fence.markdown("anchor"))
 
 
 def _break(fence: Fence) -> Break:
-    fence.only(*STATE, "file", "find", "put", "ask", "hint", "mend", "alt", "caption")
-    return Break(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        fence.scene(),
-        _shader(fence),
-        fence.take("find", str, ""),
-        fence.take("put", str, ""),
-        fence.words("ask"),
-        fence.words("hint"),
-        fence.words("mend"),
-        fence.words("alt"),
-        fence.words("caption", needed=False),
-    )
+    fence.only(Break, *STATE, "file", "find", "put")
+    find, put = (fence.take(key, str, "") for key in ("find", "put"))
+    return fence.block(Break, scene=fence.scene(), file=_shader(fence), find=find, put=put)
 
 
 def _question(fence: Fence) -> Question:
-    fence.only("ask", "choices", "right", "answer")
-    choices = fence.list_of_words("choices")
-    right = fence.take("right", int, -1)
+    fence.only(Question, "right")
+    choices, right = fence.texts("choices"), fence.take("right", int, -1)
     if choices and not 0 <= right < len(choices):
         raise fence.error(f"right = {right}: expected the place of a choice, 0 to {len(choices) - 1}")
     if right >= 0 and not choices:
         raise fence.error("right: there are no choices", "right")
-    return Question(
-        fence.line, fence.piece.text, fence.name, fence.words("ask"), choices, right, fence.words("answer")
-    )
+    return fence.block(Question, right=right)
 
 
 def _exercise(fence: Fence) -> Exercise:
-    fence.only(*STATE, "ask", "hint", "solution", "alt")
+    fence.only(Exercise, *STATE)
     drawn = "sketch" in fence.file.table
-    return Exercise(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        fence.words("ask"),
-        fence.words("hint", needed=False),
-        fence.words("solution"),
-        fence.scene() if drawn else None,
-        fence.words("alt", needed=drawn),
-    )
+    alt = fence.markdown("alt", needed=drawn)
+    return fence.block(Exercise, scene=fence.scene() if drawn else None, alt=alt)
 
 
 def _measure(fence: Fence) -> Measure:
-    fence.only(*STATE, "of", "what", "with", "over", "digits", "unit", "between", "text")
-    what = fence.words("what")
+    fence.only(Measure, *STATE, "of", "what", "with", "over", "digits", "unit", "between")
+    what = fence.markdown("what")
+    what = _RENAMED.get(what, what)
     if what not in MEASURES:
         raise fence.error(f"what = '{what}': there is no such measure{nearest(what, MEASURES)}", "what")
-    table = {key: value for key, value in fence.file.table.items() if key in STATE}
     over = fence.take("over", dict, None)
     if over is not None:
         fence.file.only(over, STATE, "over")
+        over = read_scene(fence.file, over, ("over",), fence.sketches, under=fence.state)
     digits = fence.take("digits", int, 3)
     if not 1 <= digits <= 7:
         raise fence.error(f"digits = {digits}: expected 1 to 7", "digits")
-    return Measure(
-        fence.line,
-        fence.piece.text,
-        fence.name,
-        fence.scene(),
-        None if over is None else read_scene(fence.file, over, ("over",), fence.sketches, under=table),
-        fence.take("of", str, "height"),
-        what,
-        _arguments(fence, what),
-        digits,
-        fence.take("unit", str, ""),
-        _between(fence),
-        fence.words("text", needed=False),
+    return fence.block(
+        Measure,
+        scene=fence.scene(),
+        over=over,
+        of=fence.take("of", str, "height"),
+        what=what,
+        arguments=_arguments(fence, what),
+        digits=digits,
+        unit=fence.take("unit", str, ""),
+        between=_between(fence),
     )
 
 
@@ -316,7 +269,7 @@ def _between(fence: Fence) -> tuple[float, float] | None:
 
 
 def _shader(fence: Fence) -> str:
-    file = fence.words("file")
+    file = fence.markdown("file")
     path = (GLSL / file).resolve()
     if not path.is_relative_to(GLSL.resolve()) or not path.is_file():
         names = [p.relative_to(GLSL).as_posix() for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp")]
@@ -329,10 +282,6 @@ def _check_path(fence: Fence, scene: Scene, path: str, key: str) -> None:
         resolve(scene.sketch.graph, path)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, key) from None
-
-
-def _type_of(scene: Scene, path: str) -> str:
-    return resolve(scene.sketch.graph, path)[0].parameter.type
 
 
 READERS: dict[str, Callable[[Fence], Named]] = {

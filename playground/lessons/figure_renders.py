@@ -55,7 +55,7 @@ def pictures_of(lesson: Lesson) -> list[Picture]:
 
 
 def pictures_in(block: Block) -> Iterator[Picture]:
-    """Yield the pictures of a block: of a series each, of a fault the whole one and the broken one."""
+    """Yield the pictures of a block: of a series each, of a bug the correct one and the broken one."""
     if isinstance(block, Figure) and block.scene:
         yield Picture(block.name, block.scene, block.alt)
     elif isinstance(block, Steps | Slider | Compare):
@@ -69,9 +69,9 @@ def pictures_in(block: Block) -> Iterator[Picture]:
 
 
 def broken(block: Break) -> Scene:
-    """Return the picture of a block with its fault in it.
+    """Return the picture of a block with its bug in it.
 
-    Raises ``SketchError`` where what the fault replaces is not there exactly once, or where
+    Raises ``SketchError`` where what the bug replaces is not there exactly once, or where
     the sketch does not use the file; ``ShaderError`` where no kernel is left.
     """
     assert block.scene is not None
@@ -79,11 +79,11 @@ def broken(block: Break) -> Scene:
     sketch = block.scene.sketch
     if path not in {file for _, kernel in kernels_of(sketch.graph) for file in kernel.files}:
         raise _error(block, f"sketch {sketch.name} does not use {block.file}")
-    return replace(block.scene, sketch=with_texts(sketch, {path: faulty(block)}).plainly(), plain=False)
+    return replace(block.scene, sketch=with_texts(sketch, {path: with_bug(block)}).plainly(), plain=False)
 
 
-def faulty(block: Break, text: str | None = None) -> str:
-    """Return the text of a block's file with its fault; ``text`` stands in for what is in the file."""
+def with_bug(block: Break, text: str | None = None) -> str:
+    """Return the text of a block's file with its bug; ``text`` replaces what is in the file."""
     text = read_text(GLSL / block.file) if text is None else text
     count = text.count(block.find)
     if not block.find or count != 1:

@@ -18,7 +18,7 @@ _SHOT = re.compile(r"figure-(\d+)-(\d+)(?:-([a-z]))?")
 
 
 @dataclass(frozen=True)
-class Drawn:
+class FigurePicture:
     """One picture of a figure."""
 
     sketch: str
@@ -38,7 +38,7 @@ class ThesisFigure:
 
     number: str  # "1.14"
     captions: dict[str, str]  # by language
-    pictures: tuple[Drawn, ...]  # none for a diagram of a formula
+    pictures: tuple[FigurePicture, ...]  # none for a diagram of a formula
     diagram: bool = False
 
     @property
@@ -63,9 +63,9 @@ def thesis_figures() -> list[ThesisFigure]:
     ]
 
 
-def _shots() -> dict[str, list[tuple[str, Drawn]]]:
+def _shots() -> dict[str, list[tuple[str, FigurePicture]]]:
     sketches = Sketches()
-    found: dict[str, list[tuple[str, Drawn]]] = {}
+    found: dict[str, list[tuple[str, FigurePicture]]] = {}
     for name in shipped_sketches():
         sketch = sketches.load(name)
         for shot in sketch.shots:
@@ -76,7 +76,7 @@ def _shots() -> dict[str, list[tuple[str, Drawn]]]:
             scene = Scene(
                 made, shot.size, shot.time, shot.steps, shot.name, shot.preset, shot.values, plain=True
             )
-            drawn = Drawn(name, shot.name, scene, _parameters(sketch, made))
+            drawn = FigurePicture(name, shot.name, scene, _parameters(sketch, made))
             found.setdefault(f"{match[1]}.{match[2]}", []).append((f"{match[3] or ''} {name}", drawn))
     return found
 

@@ -1,4 +1,4 @@
-"""Know which lessons there are, in which languages, and where their texts and words lie."""
+"""Find lessons, their languages, their texts, and the labels around them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ THESIS = (
 
 
 def lesson_file(name: str, language: str = SOURCE) -> Path:
-    """Return where a lesson's text is, or would be; raise ``SketchError`` for a name or language unknown."""
+    """Return the path of a lesson's text; raise ``SketchError`` for an unknown name or language."""
     if language not in LANGUAGES:
         raise SketchError(f"no language '{language}'{nearest(language, LANGUAGES)}")
     if name not in lesson_files():
@@ -42,11 +42,19 @@ def lesson_files() -> list[str]:
     return sorted(path.stem for path in (TEXTS / SOURCE).glob("*.md"))
 
 
+class Labels(dict[str, str]):
+    """The labels around lessons in one language, by key."""
+
+    def __call__(self, key: str, **values: object) -> str:
+        """Return a label with values in its places."""
+        return self[key].format(**values)
+
+
 @cache
-def interface_words(language: str) -> dict[str, str]:
-    """Return what is written around lessons in a language, by key."""
-    with (HERE / "words" / f"{language}.toml").open("rb") as handle:
-        return tomllib.load(handle)
+def interface_labels(language: str) -> Labels:
+    """Return the labels around lessons in a language."""
+    with (HERE / "labels" / f"{language}.toml").open("rb") as handle:
+        return Labels(tomllib.load(handle))
 
 
 def preferred_language(environment: Mapping[str, str] = os.environ) -> str:

@@ -25,13 +25,13 @@ _KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a text that stands by itself: a paragraph, a list, a fenced block."""
+    """A top-level part of a text: a paragraph, a list, a fenced block."""
 
     kind: str  # heading | paragraph | list | table | formula | quote | code | fence | rule
     text: str  # as written, without the empty lines around it
     line: int  # from 1, in the text
     level: int = 0  # of a heading, from 1
-    info: str = ""  # of a fence: what stands behind its opening
+    info: str = ""  # of a fence: what follows its opening
     inside: str = ""  # of a fence: its lines
 
 
@@ -59,23 +59,23 @@ def pieces(text: str) -> list[Piece]:
     return found
 
 
-def formulas(words: str) -> Iterator[str]:
+def formulas(text: str) -> Iterator[str]:
     """Yield the formulas of a text, as LaTeX."""
-    for token in walk(parser().parse(words)):
+    for token in walk(parser().parse(text)):
         if token.type.startswith("math_"):
             yield token.content
 
 
-def links(words: str) -> Iterator[str]:
+def links(text: str) -> Iterator[str]:
     """Yield the addresses that a text links to."""
-    for token in walk(parser().parse(words)):
+    for token in walk(parser().parse(text)):
         if token.type == "link_open":
             yield str(token.attrs["href"])
 
 
-def images(words: str) -> Iterator[str]:
+def images(text: str) -> Iterator[str]:
     """Yield the addresses of a text's images."""
-    for token in walk(parser().parse(words)):
+    for token in walk(parser().parse(text)):
         if token.type == "image":
             yield str(token.attrs["src"])
 

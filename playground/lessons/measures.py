@@ -1,6 +1,6 @@
 """What lessons measure: numbers of a texture, each a pure function of its values.
 
-A function is given ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
+A function receives ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
 channel, and the ``Grid`` that they stand on. Lessons name it in ``what``, and give the rest
 of its arguments in ``with``; it raises ``ValueError`` for one that does not fit the texture.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import signature
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +20,7 @@ Values = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """What the texels of a land stand for."""
+    """What the texels of a heightmap stand for."""
 
     spacing: tuple[float, float] = (1.0, 1.0)  # [m] from texel to texel, eastwards and northwards
     relief: float = 1.0  # [m] from height 0 to height 1
@@ -35,7 +36,7 @@ class OfTexture:
 
 @dataclass(frozen=True)
 class OfRun:
-    """A measure of how a texture or a picture is made: the engine knows it, not the values."""
+    """A measure of how a texture or a picture is computed: from the engine, not from the values."""
 
     arguments: tuple[str, ...] = ()
 
@@ -66,17 +67,17 @@ def deviation(values: Values, grid: Grid) -> float:
 
 
 def share_below(values: Values, grid: Grid, limit: float) -> float:
-    """Return which share of the texels lies below a limit, 0..1."""
+    """Return the share of the texels that lies below a limit, 0..1."""
     return float((values < limit).mean())
 
 
 def share_above(values: Values, grid: Grid, limit: float) -> float:
-    """Return which share of the texels lies above a limit, 0..1."""
+    """Return the share of the texels that lies above a limit, 0..1."""
     return float((values > limit).mean())
 
 
 def share_between(values: Values, grid: Grid, low: float, high: float) -> float:
-    """Return which share of the texels lies between two limits, both included, 0..1."""
+    """Return the share of the texels that lies between two limits, both included, 0..1."""
     return float(((values >= low) & (values <= high)).mean())
 
 
@@ -91,7 +92,7 @@ def local_maxima(values: Values, grid: Grid) -> float:
 
 
 def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
-    """Return which share of the local maxima has a row and a column that ``every`` divides, 0..1."""
+    """Return the share of the local maxima that has a row and a column that ``every`` divides, 0..1."""
     step = int(every)
     if step < 1:
         raise ValueError(f"every = {every:g}: expected 1 or more")
@@ -115,7 +116,7 @@ def mean_slope(values: Values, grid: Grid) -> float:
 
 
 def share_steeper(values: Values, grid: Grid, degrees: float) -> float:
-    """Return which share of a land is steeper than some degrees, 0..1."""
+    """Return the share of the terrain that is steeper than some degrees, 0..1."""
     return float((_slopes(values, grid) > degrees).mean())
 
 
@@ -155,7 +156,7 @@ def box_dimension(values: Values, grid: Grid, limit: float) -> float:
 
 
 def diagonal_crease(values: Values, grid: Grid) -> float:
-    """Return how much a square land bends across its south-west to north-east diagonal, over its parallels.
+    """Return how much a square heightmap bends across its south-west diagonal, over the parallels of it.
 
     The bend is the second difference along the other diagonal; the parallels are the forty on each side.
     """
@@ -165,13 +166,13 @@ def diagonal_crease(values: Values, grid: Grid) -> float:
 
 
 def step_across(values: Values, grid: Grid, at: float) -> float:
-    """Return the mean step from column ``at`` − 1 to ``at``, over that of four pairs of columns beside."""
+    """Return the mean step from column ``at`` − 1 to ``at``, over that of four pairs of columns nearby."""
     column, count = int(at), values.shape[1]
     if not 4 <= column <= count - 4:
         raise ValueError(f"column {column} of {count} has not four on each side")
     steps = np.abs(np.diff(values, axis=1)).mean(axis=0)
-    beside = [steps[column - 1 + k] for k in (-3, -2, 2, 3)]
-    return float(steps[column - 1] / np.mean(beside))
+    neighbours = [steps[column - 1 + k] for k in (-3, -2, 2, 3)]
+    return float(steps[column - 1] / np.mean(neighbours))
 
 
 def correlation(values: Values, grid: Grid, dx: float, dy: float) -> float:
@@ -186,37 +187,26 @@ def correlation(values: Values, grid: Grid, dx: float, dy: float) -> float:
 
 
 def edge_match(values: Values, grid: Grid) -> float:
-    """Return the mean step from the last column to the first, over that of columns side by side.
+    """Return the mean step from the last column to the first, over that of neighbouring columns.
 
-    About 1 for a land that repeats without a seam.
+    About 1 for terrain that repeats without a seam.
     """
     return float(np.abs(values[:, 0] - values[:, -1]).mean() / np.abs(np.diff(values, axis=1)).mean())
 
 
+_FUNCTIONS: tuple[Callable[..., float], ...] = (
+    *(mean, lowest, highest, spread, deviation, distinct),
+    *(share_below, share_above, share_between, share_steeper),
+    *(local_maxima, peaks_on_lattice, mean_slope, spectrum_slope, box_dimension),
+    *(diagonal_crease, step_across, correlation, edge_match),
+)
+
 MEASURES: dict[str, OfTexture | OfRun] = {
-    "mean": OfTexture(mean),
-    "lowest": OfTexture(lowest),
-    "highest": OfTexture(highest),
-    "spread": OfTexture(spread),
-    "deviation": OfTexture(deviation),
-    "share_below": OfTexture(share_below, ("limit",)),
-    "share_above": OfTexture(share_above, ("limit",)),
-    "share_between": OfTexture(share_between, ("low", "high")),
-    "distinct": OfTexture(distinct),
-    "local_maxima": OfTexture(local_maxima),
-    "peaks_on_lattice": OfTexture(peaks_on_lattice, ("every",)),
-    "mean_slope": OfTexture(mean_slope),
-    "share_steeper": OfTexture(share_steeper, ("degrees",)),
-    "spectrum_slope": OfTexture(spectrum_slope),
-    "box_dimension": OfTexture(box_dimension, ("limit",)),
-    "diagonal_crease": OfTexture(diagonal_crease),
-    "step_across": OfTexture(step_across, ("at",)),
-    "correlation": OfTexture(correlation, ("dx", "dy")),
-    "edge_match": OfTexture(edge_match),
+    **{each.__name__: OfTexture(each, tuple(signature(each).parameters)[2:]) for each in _FUNCTIONS},
     "triangles": OfRun(),  # drawn for the whole picture
-    "turns": OfRun(),  # of the repeated pass in ``of``
-    "texels": OfRun(),  # computed for ``of`` by fragment shaders, every turn counted
+    "iterations": OfRun(),  # of the repeated pass in ``of``
+    "texels": OfRun(),  # computed for ``of`` by fragment shaders, every iteration counted
     "texture_bytes": OfRun(),  # of ``of``, without mip levels
-    "milliseconds": OfRun(),  # to make ``of`` anew: the best of three
+    "milliseconds": OfRun(),  # to compute ``of`` again: the best of three
 }
 """Every measure, by the name that lessons use."""

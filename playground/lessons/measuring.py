@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import re
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,14 +16,14 @@ from playground.engine.plan import Plan, Step, Turns, every_node, needed
 from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
-from playground.lessons.model import Lesson, Measure, Scene, Words
+from playground.lessons.model import Lesson, Markdown, Measure, Scene
 
 _PLACE = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")
 
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """What a measure came to."""
+    """The value of a measure."""
 
     value: float
     text: str  # to its digits, with its unit; a point for the decimals
@@ -45,8 +47,8 @@ def numbers_of(engine: Engine, lesson: Lesson) -> dict[str, Number]:
     return {measure.name: measured(engine, measure) for measure in lesson.measures}
 
 
-def filled(words: Words, numbers: dict[str, Number], comma: bool = False) -> Words:
-    """Return words with numbers in the places that name them; one not there yet is "…".
+def filled(markdown: Markdown, numbers: Mapping[str, Number], comma: bool = False) -> Markdown:
+    """Replace the places that name measures by their numbers; one that is not computed yet is "…".
 
     ``comma`` writes decimals behind a comma, as French does.
     """
@@ -56,16 +58,16 @@ def filled(words: Words, numbers: dict[str, Number], comma: bool = False) -> Wor
         found = number.text if number else "…"
         return found.replace(".", ",") if comma else found
 
-    return _PLACE.sub(text, words)
+    return _PLACE.sub(text, markdown)
 
 
-def named_in(words: Words) -> list[str]:
-    """List the measures that words name."""
-    return _PLACE.findall(words)
+def named_in(markdown: Markdown) -> list[str]:
+    """List the measures that a text names."""
+    return _PLACE.findall(markdown)
 
 
 def spelled(value: float, digits: int, unit: str = "") -> str:
-    """Write a number to significant digits, never as a power of ten; thousands parted by narrow spaces."""
+    """Write a number to significant digits, never as a power of ten; thousands separated by narrow spaces."""
     rounded = float(f"{value:.{digits - 1}e}")
     power = math.floor(math.log10(abs(rounded))) if rounded else 0
     # What was counted has no decimals: 1 summit, not 1.00.
@@ -77,10 +79,10 @@ def spelled(value: float, digits: int, unit: str = "") -> str:
 
 
 def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
-    steps = dict(scene.steps)
+    at: dict[str, Any] = {"size": scene.pixels, "time": scene.time, "steps": dict(scene.steps)}
     found = MEASURES[measure.what]
     if isinstance(found, OfTexture):
-        values = engine.read(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
+        values = engine.read(scene.sketch, measure.of, **at)
         first = values if values.ndim == 2 else values[..., 0]
         grid = _grid(engine.plan, first.shape)
         try:
@@ -89,19 +91,21 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
             raise SketchError(f"measure '{measure.name}': {error}", line=measure.line) from None
     if measure.what == "triangles":
         engine.cache.clear()
-        engine.draw(scene.sketch, size=scene.pixels, time=scene.time, steps=steps)
+        engine.draw(scene.sketch, **at)
         return float(engine.triangles)
     if measure.what == "milliseconds":
-        return min(_seconds(engine, measure, scene) for _ in range(3)) * 1e3
+        return min(_seconds(engine, measure, scene, at) for _ in range(3)) * 1e3
     if measure.what == "texture_bytes":
-        texture = engine.texture(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=steps)
+        texture = engine.texture(scene.sketch, measure.of, **at)
         width, height = texture.size
         bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
         return float(width * height * texture.components * bytes_a_channel)
-    # Of the plain form: what a fast variant does is no step of the text that the lesson shows.
-    plan = make_plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=steps, wanted=measure.of)
+    # Of the plain form: a fast variant has other iterations than the text that the lesson shows.
+    plan = make_plan(
+        scene.sketch, frame_size=scene.pixels, time=scene.time, steps=at["steps"], wanted=measure.of
+    )
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
-    if measure.what == "turns":
+    if measure.what == "iterations":
         return float(max((node.repeat for node in every_node(tuple(nodes))), default=0))
     return float(sum(_texels(node) for node in nodes))
 
@@ -112,11 +116,11 @@ def _texels(node: Step | Turns) -> int:
     return node.repeat * sum(_texels(inner) for inner in node.body)
 
 
-def _seconds(engine: Engine, measure: Measure, scene: Scene) -> float:
+def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any]) -> float:
     engine.cache.clear()
     engine.ctx.finish()
     begun = time.perf_counter()
-    engine.texture(scene.sketch, measure.of, size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+    engine.texture(scene.sketch, measure.of, **at)
     engine.ctx.finish()
     return time.perf_counter() - begun
 

@@ -1,14 +1,21 @@
-"""What a lesson is made of: frozen values; words as Markdown, pictures as sketches."""
+"""What a lesson is made of: frozen values; its texts are Markdown, its pictures sketches."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import Field, dataclass, field, fields
+from typing import Any
 
 from playground.sketch.model import Sketch, Value
 
-Words = str
+Markdown = str
 """Markdown with formulas between dollars, and ``{{name}}`` for the number of a measure."""
+
+
+# What the field of a block is, beside its type: a text that a translation replaces.
+_NEEDED: dict[str, Any] = {"translated": True, "needed": True}
+_OPTIONAL: dict[str, Any] = {"translated": True, "needed": False}
+_LISTED: dict[str, Any] = {"translated": True, "listed": True}
 
 
 @dataclass(frozen=True)
@@ -18,17 +25,17 @@ class Scene:
     sketch: Sketch  # with its values and its camera
     pixels: tuple[int, int]
     time: float = 0.0  # [s]
-    steps: tuple[tuple[str, int], ...] = ()  # repeated pass → turn to stop at
+    steps: tuple[tuple[str, int], ...] = ()  # repeated pass → iteration to stop at
     shot: str = ""  # of the sketch, that it began as
     preset: str = ""
     values: tuple[tuple[str, Value], ...] = ()  # set over those of shot and preset
-    view: str = ""  # texture that is shown from above in place of the sketch's view
+    view: str = ""  # texture that is shown from above instead of the sketch's view
     plain: bool = False  # it is that shot and nothing else
 
 
 @dataclass(frozen=True)
 class Block:
-    """A part of a lesson; ``text`` is what the file says, as long as it is not translated."""
+    """A part of a lesson; ``text`` is what the English file says."""
 
     line: int  # in the English file, from 1
     text: str
@@ -40,7 +47,7 @@ class Prose(Block):
 
     kind: str = "paragraph"  # heading | paragraph | list | table | formula | quote | code
     level: int = 0  # of a heading, from 1
-    words: Words = ""
+    markdown: Markdown = field(default="", metadata=_NEEDED)
 
 
 @dataclass(frozen=True)
@@ -56,20 +63,22 @@ class Figure(Named):
 
     scene: Scene | None = None
     sliders: tuple[str, ...] = ()  # parameter paths
-    caption: Words = ""
-    alt: str = ""
+    caption: Markdown = field(default="", metadata=_NEEDED)
+    alt: str = field(default="", metadata=_NEEDED)
 
 
 @dataclass(frozen=True)
 class Steps(Named):
-    """A repeated kernel, turn by turn."""
+    """A repeated kernel, iteration by iteration."""
 
-    scenes: tuple[Scene, ...] = ()  # one a turn shown
+    scenes: tuple[Scene, ...] = ()  # one for each iteration shown
     passes: tuple[str, ...] = ()  # stopped together
-    turns: tuple[int, ...] = ()
-    caption: Words = ""
-    alt: str = ""
-    captions: tuple[Words, ...] = ()  # none, or one a turn shown
+    iterations: tuple[int, ...] = ()
+    caption: Markdown = field(default="", metadata=_NEEDED)
+    alt: str = field(default="", metadata=_NEEDED)
+    captions: tuple[Markdown, ...] = field(
+        default=(), metadata=_LISTED
+    )  # none, or one for each iteration shown
 
 
 @dataclass(frozen=True)
@@ -79,9 +88,9 @@ class Slider(Named):
     scenes: tuple[Scene, ...] = ()  # one a value
     parameter: str = ""  # path
     values: tuple[Value, ...] = ()
-    caption: Words = ""
-    alt: str = ""
-    label: str = ""  # of the parameter; "": as the sketch names it
+    caption: Markdown = field(default="", metadata=_NEEDED)
+    alt: str = field(default="", metadata=_NEEDED)
+    label: str = field(default="", metadata=_OPTIONAL)  # of the parameter; "": as the sketch names it
 
 
 @dataclass(frozen=True)
@@ -89,9 +98,9 @@ class Compare(Named):
     """Two or more variants side by side."""
 
     scenes: tuple[Scene, ...] = ()
-    labels: tuple[str, ...] = ()  # one a variant
-    caption: Words = ""
-    alt: str = ""
+    labels: tuple[str, ...] = field(default=(), metadata=_LISTED)  # one for each variant
+    caption: Markdown = field(default="", metadata=_NEEDED)
+    alt: str = field(default="", metadata=_NEEDED)
 
 
 @dataclass(frozen=True)
@@ -100,43 +109,43 @@ class Code(Named):
 
     file: str = ""  # in glsl/
     anchor: str = ""
-    caption: Words = ""
+    caption: Markdown = field(default="", metadata=_OPTIONAL)
 
 
 @dataclass(frozen=True)
 class Break(Named):
-    """A fault put into a shader, to be found and mended."""
+    """A bug put into a shader, to be found and fixed."""
 
     scene: Scene | None = None  # whole
     file: str = ""  # in glsl/
     find: str = ""  # what stands there once
-    put: str = ""  # the fault in its place
-    ask: Words = ""
-    hint: Words = ""
-    mend: Words = ""
-    alt: str = ""  # of the broken picture
-    caption: Words = ""
+    put: str = ""  # the bug in its place
+    ask: Markdown = field(default="", metadata=_NEEDED)
+    hint: Markdown = field(default="", metadata=_NEEDED)
+    fix: Markdown = field(default="", metadata=_NEEDED)
+    alt: str = field(default="", metadata=_NEEDED)  # of the broken picture
+    caption: Markdown = field(default="", metadata=_OPTIONAL)
 
 
 @dataclass(frozen=True)
 class Question(Named):
     """Something to answer before the answer is shown."""
 
-    ask: Words = ""
-    choices: tuple[Words, ...] = ()
+    ask: Markdown = field(default="", metadata=_NEEDED)
+    choices: tuple[Markdown, ...] = field(default=(), metadata=_LISTED)
     right: int = -1  # index of the right choice; -1: there are none
-    answer: Words = ""
+    answer: Markdown = field(default="", metadata=_NEEDED)
 
 
 @dataclass(frozen=True)
 class Exercise(Named):
     """Something to do, with a solution that is hidden at first."""
 
-    ask: Words = ""
-    hint: Words = ""
-    solution: Words = ""
+    ask: Markdown = field(default="", metadata=_NEEDED)
+    hint: Markdown = field(default="", metadata=_OPTIONAL)
+    solution: Markdown = field(default="", metadata=_NEEDED)
     scene: Scene | None = None  # of the solution
-    alt: str = ""
+    alt: str = field(default="", metadata=_OPTIONAL)
 
 
 @dataclass(frozen=True)
@@ -151,14 +160,16 @@ class Measure(Named):
     digits: int = 3  # significant
     unit: str = ""
     between: tuple[float, float] | None = None  # what the lesson claims of it
-    words: Words = ""  # a sentence with the number in it; "": only prose elsewhere names it
+    sentence: Markdown = field(
+        default="", metadata=_OPTIONAL | {"key": "text"}
+    )  # with the number; "": only prose names it
 
 
 @dataclass(frozen=True)
 class Section:
-    """What stands under one heading of the second level; the first has none."""
+    """The blocks under one heading of the second level; the first has none."""
 
-    title: Words
+    title: Markdown
     blocks: tuple[Block, ...]
 
 
@@ -171,7 +182,7 @@ class Lesson:
     file: str  # absolute path of the English file
     number: int
     title: str
-    goal: Words
+    goal: Markdown
     minutes: int
     thesis: tuple[str, ...]  # sections, as "1.3.2"
     papers: tuple[str, ...]
@@ -182,10 +193,10 @@ class Lesson:
     @property
     def sections(self) -> tuple[Section, ...]:
         """Its blocks, by headings of the second level; the first section comes before any."""
-        found: list[tuple[Words, list[Block]]] = [("", [])]
+        found: list[tuple[Markdown, list[Block]]] = [("", [])]
         for block in self.blocks:
             if isinstance(block, Prose) and block.kind == "heading" and block.level == 2:
-                found.append((block.words, []))
+                found.append((block.markdown, []))
             else:
                 found[-1][1].append(block)
         return tuple(Section(title, tuple(blocks)) for title, blocks in found)
@@ -200,31 +211,26 @@ class Lesson:
         """Its numbers."""
         return tuple(block for block in self.blocks if isinstance(block, Measure))
 
-    def words(self) -> Iterator[Words]:
+    def texts(self) -> Iterator[Markdown]:
         """Yield all that a reader reads of it."""
         yield self.title
         yield self.goal
         for block in self.blocks:
-            yield from words_of(block)
+            yield from texts_of(block)
 
 
-WORDS: dict[type[Block], tuple[str, ...]] = {
-    Figure: ("caption", "alt"),
-    Steps: ("caption", "alt", "captions"),
-    Slider: ("caption", "alt", "label"),
-    Compare: ("caption", "alt", "labels"),
-    Code: ("caption",),
-    Break: ("ask", "hint", "mend", "alt", "caption"),
-    Question: ("ask", "choices", "answer"),
-    Exercise: ("ask", "hint", "solution", "alt"),
-    Measure: ("words",),
-    Prose: ("words",),
-}
-"""The fields of a block that are words: all that a translation may say."""
+def translated_fields(kind: type[Block]) -> list[Field[Any]]:
+    """List the fields of a kind of block that are texts: all that a translation may replace."""
+    return [each for each in fields(kind) if "translated" in each.metadata]
 
 
-def words_of(block: Block) -> Iterator[Words]:
-    """Yield the words of a block, as they stand in its fields."""
-    for field in WORDS[type(block)]:
-        value = getattr(block, field)
+def key_of(text: Field[Any]) -> str:
+    """Return the key of a text in the file."""
+    return text.metadata.get("key") or text.name
+
+
+def texts_of(block: Block) -> Iterator[Markdown]:
+    """Yield the texts of a block."""
+    for each in translated_fields(type(block)):
+        value = getattr(block, each.name)
         yield from value if isinstance(value, tuple) else (value,)

@@ -1,4 +1,4 @@
-"""What every lesson keeps to, so that all of them can be read the same way."""
+"""Check the rules of every lesson, so that all of them can be read the same way."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ EXERCISES = 3
 """Exercises that a lesson has at least."""
 
 VISIBLE_MEAN, VISIBLE_SHARE, VISIBLE_LEVELS = 2.0, 0.02, 16
-"""A fault shows if pictures differ by so many levels in the mean, or such a share of pixels by so many."""
+"""A bug is visible if pictures differ by so many levels in the mean, or such a share of pixels by so many."""
 
 
 def broken_rules(lesson: Lesson) -> Iterator[tuple[int, str]]:
@@ -62,12 +62,12 @@ def broken_rules(lesson: Lesson) -> Iterator[tuple[int, str]]:
 
 
 def wrong_pictures(engine: Engine, lesson: Lesson) -> Iterator[tuple[int, str]]:
-    """Yield (line, sentence) of faults that do not show, and of numbers that are not as claimed."""
+    """Yield (line, sentence) of bugs that are not visible, and of numbers that are not as claimed."""
     for block in lesson.blocks:
         try:
             if isinstance(block, Break) and block.scene:
                 if not visible(draw(engine, block.scene), draw(engine, broken(block))):
-                    yield block.line, f"break '{block.name}': the fault hardly changes the picture"
+                    yield block.line, f"break '{block.name}': the bug hardly changes the picture"
             elif isinstance(block, Measure):
                 value = measured(engine, block).value
                 if block.between and not block.between[0] <= value <= block.between[1]:
@@ -78,7 +78,7 @@ def wrong_pictures(engine: Engine, lesson: Lesson) -> Iterator[tuple[int, str]]:
 
 
 def visible(one: Frame, other: Frame) -> bool:
-    """Say whether two pictures of one size differ as anybody sees."""
+    """Whether two pictures of one size differ visibly."""
     difference = np.abs(one.array.astype(np.int16) - other.array).max(axis=-1)
     share = float((difference > VISIBLE_LEVELS).mean())
     return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
@@ -131,15 +131,15 @@ def _sections(lesson: Lesson) -> Iterator[tuple[int, str]]:
 
 def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
     measures = {measure.name for measure in lesson.measures}
-    for words in lesson.words():
-        for latex in formulas(words):
+    for text in lesson.texts():
+        for latex in formulas(text):
             yield from _formula(latex)
-        for name in named_in(words):
+        for name in named_in(text):
             if name not in measures:
                 yield 1, f"{{{{{name}}}}}: there is no measure of that name"
-        for address in images(words):
+        for address in images(text):
             yield 1, f"an image of '{address}': pictures are blocks of their own"
-        for address in links(words):
+        for address in links(text):
             kind, _, what = address.partition(":")
             if kind == "lesson" and what not in lesson_files():
                 yield 1, f"a link to lesson '{what}', which there is not"
@@ -155,8 +155,8 @@ def _formula(latex: str) -> Iterator[tuple[int, str]]:
     try:
         known = "\\" not in convert(latex)  # a command that it does not know stays as it is
     except Exception as error:  # its errors have no class in common
-        said = str(error) or type(error).__name__.removesuffix("Error")
-        yield 1, f"formula ${latex}$ cannot be read: {said}"
+        message = str(error) or type(error).__name__.removesuffix("Error")
+        yield 1, f"formula ${latex}$ cannot be read: {message}"
         return
     if not known:
         yield 1, f"formula ${latex}$ holds a command that cannot be shown"

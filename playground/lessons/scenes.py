@@ -25,7 +25,7 @@ from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
 STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels", "view", "range")
-"""The keys that say what a picture shows."""
+"""The keys that describe a picture."""
 
 PICTURE = (640, 360)
 """Pixels of a picture that stands alone."""
@@ -56,7 +56,7 @@ def read_scene(
     pixels: tuple[int, int] = PICTURE,
     under: Mapping[str, Any] | None = None,
 ) -> Scene:
-    """Return the picture that a table's keys of ``STATE`` say; those of ``under`` stand below its own.
+    """Return the picture that a table's keys of ``STATE`` describe; its own override those of ``under``.
 
     ``set`` and ``steps`` of both are joined. Raises ``SketchError`` at the key that is wrong.
     """
@@ -84,7 +84,7 @@ def read_scene(
         made = made.with_camera(camera)
     view = file.take(whole, "view", str, "", *place)
     if view:
-        made = _seen_from_above(file, whole, place, made)
+        made = _from_above(file, whole, place, made)
     elif "range" in whole:
         raise file.error("range: there is no view, whose lowest and highest value it is", *place, "range")
     time = file.take(whole, "time", float, shot.time, *place)
@@ -101,7 +101,7 @@ def read_scene(
 
 
 def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:
-    """Return the picture with repeated passes stopped after so many turns."""
+    """Return the picture with repeated passes stopped after so many iterations."""
     return replace(scene, steps=tuple({**dict(scene.steps), **steps}.items()), plain=False)
 
 
@@ -147,7 +147,7 @@ def _range(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[floa
     return float(given[0]), float(given[1])
 
 
-def _seen_from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Sketch:
+def _from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Sketch:
     ref = table["view"]
     flat = flatten(sketch)
     try:

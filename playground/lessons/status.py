@@ -1,4 +1,4 @@
-"""Say how far a translation is: missing, stale, or current."""
+"""Find the state of a translation: missing, unmarked, stale, or current."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.errors import counted
+from playground.lessons.document import Document, read_document
 from playground.lessons.library import lesson_file
-from playground.lessons.read import Text, part
 from playground.lessons.translate import stale
 
 
 @dataclass(frozen=True)
 class Status:
-    """How far a translation is."""
+    """The state of a translation."""
 
     name: str
     language: str
-    word: str  # missing | unmarked | stale | current
+    state: str  # missing | unmarked | stale | current
     changed: tuple[int, ...] = ()  # lines of the English file
     added: tuple[int, ...] = ()
     removed: int = 0  # blocks
@@ -27,13 +27,13 @@ class Status:
     def sentences(self) -> list[str]:
         """What there is to do, in English."""
         found = []
-        if self.word == "unmarked":
+        if self.state == "unmarked":
             found.append(f"playground lesson translated {self.name} --lang {self.language}")
-        for word, lines in (("changed", self.changed), ("new", self.added)):
+        for change, lines in (("changed", self.changed), ("new", self.added)):
             if lines:
-                found.append(f"{word}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}")
+                found.append(f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}")
         if self.removed:
-            found.append(f"{counted(self.removed, 'block')} of it no more in English")
+            found.append(f"{counted(self.removed, 'block')} of it no longer in English")
         return found
 
     def as_json(self) -> dict[str, Any]:
@@ -41,7 +41,7 @@ class Status:
         return {
             "lesson": self.name,
             "language": self.language,
-            "state": self.word,
+            "state": self.state,
             "changed_lines": list(self.changed),
             "new_lines": list(self.added),
             "removed_blocks": self.removed,
@@ -49,11 +49,11 @@ class Status:
 
 
 def status_of(name: str, language: str) -> Status:
-    """Return how far a translation is; raise ``SketchError`` for one that cannot be read."""
+    """Return the state of a translation; raise ``SketchError`` for one that cannot be read."""
     path = lesson_file(name, language)
     if not path.is_file():
         return Status(name, language, "missing")
-    english, other = part(lesson_file(name)), part(path)
+    english, other = read_document(lesson_file(name)), read_document(path)
     if not other.front.table.get("source"):
         return Status(name, language, "unmarked")
     lost = stale(english, other)
@@ -64,6 +64,6 @@ def status_of(name: str, language: str) -> Status:
     )
 
 
-def _lines(english: Text, indices: Sequence[int]) -> tuple[int, ...]:
-    """Return where blocks stand; the first index is that of title and goal."""
+def _lines(english: Document, indices: Sequence[int]) -> tuple[int, ...]:
+    """Return the lines of blocks; the first index is that of title and goal."""
     return tuple(english.pieces[index - 1].line if index else 1 for index in indices)

@@ -1,7 +1,7 @@
-"""Put the words of a translation in place of the English ones, and know which have gone stale.
+"""Replace the English texts of a lesson by those of a translation, and find those out of date.
 
-A translation says which English it was made from: ``source`` in its front matter holds a hash
-of each English block. Where the English has changed since, the words are still shown, and
+A translation records which English it was made from: ``source`` in its front matter holds a hash
+of each English block. Where the English has changed since, the translated text is still shown, and
 ``status`` names the block.
 """
 
@@ -11,22 +11,19 @@ import difflib
 import hashlib
 import re
 import tomllib
-from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
 from playground.errors import SketchError
 from playground.images.files import replacing
+from playground.lessons.document import Document, prose_of, texts_in
 from playground.lessons.fences import Fence, open_fence
 from playground.lessons.markdown import Piece
-from playground.lessons.model import WORDS, Block, Lesson, Named, Prose
-from playground.lessons.read import Text, prose_of, texts_of
+from playground.lessons.model import Block, Lesson, Named, Prose, key_of, translated_fields
 from playground.lessons.scenes import Sketches
 
 _FRONT = ("title", "goal", "source")
-_KEYS = {"words": "text"}  # a field's key in the file, where it is not the field's name
-_LISTED = ("captions", "labels", "choices")
 _SOURCE = re.compile(r"^source\s*=\s*\[.*?\]", re.MULTILINE | re.DOTALL)
 
 
@@ -44,13 +41,13 @@ class Stale:
         return bool(self.changed or self.added or self.removed)
 
 
-def hashes(text: Text) -> list[str]:
+def hashes(text: Document) -> list[str]:
     """Return the hash of each block of an English file; the first is that of title and goal."""
     front = "\n".join(str(text.front.table.get(key, "")) for key in ("title", "goal"))
     return [_hash(front), *(_hash(piece.text) for piece in text.pieces)]
 
 
-def stale(english: Text, other: Text) -> Stale:
+def stale(english: Document, other: Document) -> Stale:
     """Compare what a translation was made from with what the English says now; index 0 is the front.
 
     Raises ``SketchError`` where the translation has other blocks than it was marked with.
@@ -72,12 +69,12 @@ def stale(english: Text, other: Text) -> Stale:
     return Stale(tuple(changed), tuple(added), removed)
 
 
-def translated(lesson: Lesson, english: Text, other: Text, language: str) -> Lesson:
-    """Return a lesson with the words of a translation.
+def translated(lesson: Lesson, english: Document, other: Document, language: str) -> Lesson:
+    """Return a lesson with the texts of a translation.
 
     Raises ``SketchError`` where the translation has other blocks than the English had when it
-    was made, says more than words, or lacks some. Of a stale translation, the English blocks
-    that are new, or that its words no longer fit, stand in English.
+    was made, sets more than texts, or lacks some. Of a stale translation, the English blocks
+    that are new, or that its texts no longer fit, stay in English.
     """
     front = other.front
     front.only(front.table, _FRONT)
@@ -108,8 +105,8 @@ def translated(lesson: Lesson, english: Text, other: Text, language: str) -> Les
     )
 
 
-def mark(lesson: Lesson, english: Text, other: Text, language: str) -> None:
-    """Write the hashes into a translation whose words all fit today's English; raise as ``translated``.
+def mark(lesson: Lesson, english: Document, other: Document, language: str) -> None:
+    """Write the hashes into a translation whose texts all fit today's English; raise as ``translated``.
 
     Nothing is written where it raises.
     """
@@ -119,8 +116,8 @@ def mark(lesson: Lesson, english: Text, other: Text, language: str) -> None:
     write_hashes(english, other)
 
 
-def write_hashes(english: Text, other: Text) -> None:
-    """Write into a translation that it says what the English says now; the file is replaced whole.
+def write_hashes(english: Document, other: Document) -> None:
+    """Write the hashes of today's English into a translation; the file is replaced whole.
 
     Raises ``SketchError`` where it has not as many blocks.
     """
@@ -137,9 +134,9 @@ def write_hashes(english: Text, other: Text) -> None:
         handle.write((front + rest).encode())
 
 
-def _source(other: Text) -> tuple[str, ...]:
+def _source(other: Document) -> tuple[str, ...]:
     """Return the hashes that a translation holds, none where it was not marked yet."""
-    found = texts_of(other.front, "source")
+    found = texts_in(other.front, "source")
     if found and len(found) != len(other.pieces) + 1:
         message = f"{len(other.pieces)} blocks, but source names {len(found) - 1}"
         raise other.front.error(message, "source")
@@ -155,12 +152,12 @@ def _pairs(then: tuple[str, ...], now: list[str]) -> dict[int, int]:
     return {new - 1: old - 1 for new, old in found.items() if new and old}
 
 
-def _put(block: Block, piece: Piece, other: Text, sketches: Sketches) -> Block:
+def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:
     if isinstance(block, Prose):
         if block.kind != (found := prose_of(piece)).kind or block.level != found.level:
             message = f"a {found.kind} stands here, where the English has a {block.kind} (line {block.line})"
             raise SketchError(message, file=other.path, line=piece.line)
-        return replace(block, words=found.words)
+        return replace(block, markdown=found.markdown)
     assert isinstance(block, Named)
     kind = block.text.split(maxsplit=1)[0].lstrip("`~")
     head = f"{kind} {block.name}"
@@ -168,33 +165,31 @@ def _put(block: Block, piece: Piece, other: Text, sketches: Sketches) -> Block:
         found_head = piece.info if piece.kind == "fence" else f"a {piece.kind}"
         message = f"expected the block '{head}' here, found {found_head}"
         raise SketchError(message, file=other.path, line=piece.line)
-    return replace(block, **_words(block, open_fence(piece, other.path, piece.line, sketches)))
+    return replace(block, **_texts(block, open_fence(piece, other.path, piece.line, sketches)))
 
 
-def _words(block: Named, fence: Fence) -> dict[str, Any]:
-    fields = WORDS[type(block)]
-    keys = [_KEYS.get(field, field) for field in fields]
-    table: Mapping[str, Any] = fence.file.table
-    for key in table:
+def _texts(block: Named, fence: Fence) -> dict[str, Any]:
+    """Return the texts of a translated block, by field; raise ``SketchError`` where they do not fit."""
+    texts = translated_fields(type(block))
+    keys = [key_of(text) for text in texts]
+    for key in fence.file.table:
         if key not in keys:
             message = f"'{key}' is not for a translation, which says only {', '.join(keys)}"
             raise fence.error(message, key)
     found: dict[str, Any] = {}
-    for field, key in zip(fields, keys, strict=True):
-        there = getattr(block, field)
-        if key in _LISTED:
-            words: Any = fence.list_of_words(key)
-            if len(words) != len(there):
-                raise fence.error(f"{key}: {len(words)} here, {len(there)} in English", key)
-        else:
-            words = fence.words(key, needed=bool(there))
-            if words and not there:
-                raise fence.error(f"{key}: the English has none", key)
-        found[field] = words
+    for text in texts:
+        key, there = key_of(text), getattr(block, text.name)
+        listed = "listed" in text.metadata
+        given: Any = fence.texts(key) if listed else fence.markdown(key, needed=bool(there))
+        if listed and len(given) != len(there):
+            raise fence.error(f"{key}: {len(given)} here, {len(there)} in English", key)
+        if given and not there:
+            raise fence.error(f"{key}: the English has none", key)
+        found[text.name] = given
     return found
 
 
-def _other_shape(english: Lesson | Text, other: Text) -> SketchError:
+def _other_shape(english: Lesson | Document, other: Document) -> SketchError:
     """Name the first block that is not what the English has in its place."""
     theirs: tuple[Block | Piece, ...] = english.blocks if isinstance(english, Lesson) else english.pieces
     for here, there in zip(other.pieces, theirs, strict=False):
@@ -219,5 +214,5 @@ def _head(block: Block | Piece) -> list[str]:
 
 
 def _hash(text: str) -> str:
-    """Hash words: how lines are broken does not matter."""
+    """Hash a text: where its lines are broken does not matter."""
     return hashlib.sha256(" ".join(text.split()).encode()).hexdigest()[:8]

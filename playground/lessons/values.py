@@ -1,4 +1,4 @@
-"""Write a parameter's value as a reader reads it."""
+"""Format a parameter's value for a reader."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
 from playground.gpu.context import prefer_software
 from playground.gpu.driver_warnings import warnings_of
@@ -106,7 +106,7 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        trial = stack.enter_context(Trial(software=software))
+        trial = stack.enter_context(Sandbox(software=software))
         trial.start()
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()

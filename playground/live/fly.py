@@ -22,7 +22,7 @@ from imgui_bundle import imgui
 import glfw
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
@@ -97,7 +97,7 @@ def run(
             )
         saves = None
         if replay is None:  # a recorded flight is over the terrain that it was recorded over
-            trial = stack.enter_context(Trial(software=software))
+            trial = stack.enter_context(Sandbox(software=software))
             trial.start()
             path = Path(flight.sketch.file)
             saves = stack.enter_context(SaveFollower(path, sketch, values or {}, trial, driver, wake))

@@ -1,13 +1,14 @@
-"""Know how long a process has waited for a processor that others had.
+"""Measure how long a process has waited for a processor that others had.
 
 A limit of time is meant for what a process does, not for what its machine does besides: on a
 machine with ten things to do, a draw of a second takes five. Linux counts, for each thread,
 the time that it was ready to run and did not (``/proc/PID/task/*/schedstat``: nanoseconds run,
-nanoseconds waited, times). Where that is not told, nobody is known to have waited.
+nanoseconds waited, times). Other systems do not, so there all time that passes counts.
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 _SLOWEST = 8.0  # times longer that something may take on a busy machine
@@ -17,7 +18,7 @@ Waits = dict[str, int]
 
 
 def waits_of(pid: int) -> Waits:
-    """Return how long each thread of a process has waited so far; nothing where it is not told."""
+    """Return how long each thread of a process has waited so far; nothing where the system does not count."""
     found: Waits = {}
     try:
         tasks = list(Path(f"/proc/{pid}/task").iterdir())
@@ -46,3 +47,8 @@ def worked(passed: float, before: Waits, now: Waits) -> float:
     what never ends must be stopped on the busiest machine.
     """
     return max(passed - waited_since(before, now), passed / _SLOWEST)
+
+
+def longest(work: float) -> float:
+    """Return the seconds that may pass, at the most, while a process works for so many."""
+    return work * _SLOWEST if sys.platform == "linux" else work

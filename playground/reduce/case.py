@@ -26,7 +26,7 @@ _OUTPUT = re.compile(r"^\s*#pragma.*\)", re.MULTILINE)
 _REPEATS = re.compile(r"^\s*#pragma\s+(?:draw\b|kernel\b.*\brepeat\s*=)", re.MULTILINE)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Pass:
     """One pass, with the whole text of what fills it."""
 
@@ -59,7 +59,7 @@ class Pass:
         return name.startswith("initial") and bool(_REPEATS.search(self.text))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Case:
     """Something that may fail."""
 

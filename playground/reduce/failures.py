@@ -1,7 +1,7 @@
 """What counts as failing, and as failing in the same way.
 
 A candidate that fails in another way is no smaller form of what was asked about: taking
-out a line that kept a divisor from zero makes a NaN of its own. So each fault says of
+out a line that kept a divisor from zero makes a NaN of its own. So each failure says of
 what came of a candidate what it found there, and whether that is the same.
 """
 
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.reduce.child import Seen
+from playground.reduce.draw_handler import DrawResult
 from playground.reduce.edits import LITERALS, LITERALS_WITHOUT_ZERO
 
 _ROUNDING = 1e-5  # relative: what rounding explains; what lies beyond is another kind of difference
@@ -26,8 +26,8 @@ _ROUNDING = 1e-5  # relative: what rounding explains; what lies beyond is anothe
 class Finding:
     """A failure: its kind, in words that stay the same from candidate to candidate, and where it is."""
 
-    word: str
-    told: str = ""  # more of it, for a person
+    kind: str
+    details: str = ""  # more of it, for a person
     where: NDArray[np.bool_] | None = None  # (ny, nx) of the texels that are wrong
     messages: frozenset[str] = frozenset()
 
@@ -36,11 +36,11 @@ class Finding:
 class Side:
     """One way to draw a candidate."""
 
-    worker: int = 0
+    process: int = 0
     driver: str = "auto"
 
 
-class Fault(ABC):
+class FailureKind(ABC):
     """A kind of failure; ``sides`` are the ways in which a candidate must be drawn to see it."""
 
     sides: tuple[Side, ...] = (Side(),)
@@ -48,51 +48,51 @@ class Fault(ABC):
     as_picture = False  # whether the picture's bytes are looked at, not a pass's values
 
     @abstractmethod
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong with a candidate; None where nothing of this kind is."""
 
     def same(self, before: Finding, after: Finding) -> bool:
         """Say whether a candidate fails as the one before did, and at no texel that was good."""
-        if before.word != after.word:
+        if before.kind != after.kind:
             return False
         if before.where is None or after.where is None or before.where.shape != after.where.shape:
             return True
         return not bool((after.where & ~before.where).any())
 
 
-class Refused(Fault):
+class Refused(FailureKind):
     """The compiler refuses, with a message that a pattern finds."""
 
     def __init__(self, pattern: str = "", driver: str = "auto") -> None:
         self.sides = (Side(driver=driver),)
         self._pattern = re.compile(pattern)
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
-        if seen[0].word != "shader":
+        if results[0].kind != "shader":
             return None
-        short = {_short(message): message for message in seen[0].messages}
-        hit = next((word for word, whole in short.items() if self._pattern.search(whole)), None)
-        return None if hit is None else Finding(hit, seen[0].told, messages=frozenset(short))
+        short = {_short(message): message for message in results[0].messages}
+        hit = next((clause for clause, whole in short.items() if self._pattern.search(whole)), None)
+        return None if hit is None else Finding(hit, results[0].details, messages=frozenset(short))
 
     def same(self, before: Finding, after: Finding) -> bool:
         """Say whether it is the same message, and none that was not there before."""
-        return before.word == after.word and after.messages <= before.messages
+        return before.kind == after.kind and after.messages <= before.messages
 
 
-class Died(Fault):
+class Died(FailureKind):
     """The driver crashes or hangs."""
 
-    def __init__(self, word: str = "", driver: str = "auto") -> None:
+    def __init__(self, kind: str = "", driver: str = "auto") -> None:
         self.sides = (Side(driver=driver),)
-        self._words = (word,) if word else ("crash", "hang")
+        self._kinds = (kind,) if kind else ("crash", "hang")
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return how it died; None where it did not."""
-        return Finding(seen[0].word, seen[0].told) if seen[0].word in self._words else None
+        return Finding(results[0].kind, results[0].details) if results[0].kind in self._kinds else None
 
 
-class NotFinite(Fault):
+class NotFinite(FailureKind):
     """A value is NaN or infinite.
 
     No texel may turn bad that was good, and what was bad in places may not become bad
@@ -106,10 +106,10 @@ class NotFinite(Fault):
         self.sides = (Side(driver=driver),)
         self._anywhere = anywhere
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
-        values = seen[0].values
-        if seen[0].word != "drawn" or values is None or values.dtype.kind != "f":
+        values = results[0].values
+        if results[0].kind != "drawn" or values is None or values.dtype.kind != "f":
             return None
         wrong = _flat(~np.isfinite(values))
         if not wrong.any():
@@ -117,13 +117,13 @@ class NotFinite(Fault):
         kind = "NaN" if _flat(np.isnan(values)).any() else "infinite"
         whole = bool(wrong.all())
         count = int(wrong.sum())
-        told = f"{count} of {wrong.size} texels are {kind}; first at {_first(wrong)}"
+        details = f"{count} of {wrong.size} texels are {kind}; first at {_first(wrong)}"
         if self._anywhere:
-            return Finding(kind, told)
-        return Finding(f"{kind} {'everywhere' if whole else 'in places'}", told, wrong)
+            return Finding(kind, details)
+        return Finding(f"{kind} {'everywhere' if whole else 'in places'}", details, wrong)
 
 
-class Differs(Fault):
+class Differs(FailureKind):
     """Two ways to draw give other numbers, or only one of them draws at all.
 
     Where they agreed they must go on to agree, and what rounding explains is another
@@ -135,17 +135,17 @@ class Differs(Fault):
         self._names = names
         self._tolerance = tolerance
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return how far they are apart; None where they are not."""
-        one, other = seen
-        if one.word != "drawn" or other.word != "drawn":
-            if one.word == other.word:
+        one, other = results
+        if one.kind != "drawn" or other.kind != "drawn":
+            if one.kind == other.kind:
                 return None
-            bad, name = (one, self._names[0]) if one.word != "drawn" else (other, self._names[1])
-            if bad.word == "refused" or "drawn" not in (one.word, other.word):
+            bad, name = (one, self._names[0]) if one.kind != "drawn" else (other, self._names[1])
+            if bad.kind == "refused" or "drawn" not in (one.kind, other.kind):
                 return None
-            said = _short(bad.messages[0]) if bad.messages else bad.told
-            return Finding(f"only by {name}: {bad.word} {said}", bad.told)
+            message = _short(bad.messages[0]) if bad.messages else bad.details
+            return Finding(f"only by {name}: {bad.kind} {message}", bad.details)
         assert one.values is not None and other.values is not None
         if one.values.shape != other.values.shape:
             return None
@@ -166,23 +166,23 @@ class Differs(Fault):
         flat = _flat(wrong)
         places = "everywhere" if flat.all() else "in places"
         if (wrong & ~good).any():
-            word = f"not finite by one of them {places}"
+            kind = f"not finite by one of them {places}"
         elif wide.any():
-            word = f"differs widely {places}"
+            kind = f"differs widely {places}"
         else:
-            word = "differs in the last bits"
+            kind = "differs in the last bits"
         worst = np.unravel_index(
             int(np.argmax(np.where(wrong, np.where(good, apart, np.inf), -1.0))), wrong.shape
         )
-        told = (
+        details = (
             f"{int(flat.sum())} of {flat.size} texels differ, the most at {_place(worst)}:"
             f" {first[worst]:.9g} by {self._names[0]}, {second[worst]:.9g} by {self._names[1]}"
         )
         # Which texels rounding meets changes with every edit.
-        return Finding(word, told, None if word.endswith("bits") else flat)
+        return Finding(kind, details, None if kind.endswith("bits") else flat)
 
 
-class OffReference(Fault):
+class OffReference(FailureKind):
     """A shot is not its reference: the pixels that were wrong must stay wrong in the same way.
 
     Any other picture would differ from the reference too, so what is kept is how each
@@ -203,20 +203,20 @@ class OffReference(Fault):
                 wrong &= (apart > tolerance).any(axis=2)
         self.wrong = wrong
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
-        values = seen[0].values
-        if seen[0].word != "drawn" or values is None or values.shape != self._picture.shape:
+        values = results[0].values
+        if results[0].kind != "drawn" or values is None or values.shape != self._picture.shape:
             return None
         apart = np.abs(values.astype(np.int16) - self._picture)[self.wrong]
         if not self.wrong.any() or bool((apart > self._tolerance).any()):
             return None
         count = int(self.wrong.sum())
-        told = f"{count} of {self.wrong.size} pixels are off the reference, first at {_first(self.wrong)}"
-        return Finding("off its reference", told, self.wrong)
+        details = f"{count} of {self.wrong.size} pixels are off the reference, first at {_first(self.wrong)}"
+        return Finding("off its reference", details, self.wrong)
 
 
-class Commanded(Fault):
+class Commanded(FailureKind):
     """A command of the user's says that a candidate fails."""
 
     sides = ()
@@ -224,7 +224,7 @@ class Commanded(Fault):
     def __init__(self, command: str) -> None:
         self.command = command
 
-    def found(self, seen: Sequence[Seen]) -> Finding | None:
+    def found(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return None: nothing is drawn, and the command's exit status tells."""
         return None
 

@@ -16,13 +16,14 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, nearest
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.reduce.candidate_process import LIMIT, CandidateProcess
 from playground.reduce.case import Case
-from playground.reduce.child import Task
+from playground.reduce.draw_handler import DrawTask
 from playground.reduce.failures import (
     Commanded,
     Died,
     Differs,
-    Fault,
+    FailureKind,
     Finding,
     NotFinite,
     OffReference,
@@ -31,7 +32,6 @@ from playground.reduce.failures import (
 )
 from playground.reduce.inline import lay_flat
 from playground.reduce.probe import Probe
-from playground.reduce.worker import LIMIT, Worker
 from playground.shots.compare import TOLERANCE
 from playground.shots.suite import ShotCase, check
 from playground.sketch.model import Sketch
@@ -40,7 +40,7 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 """What failing may mean; "" is to look for it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Question:
     """What fails, as it was asked."""
 
@@ -73,24 +73,24 @@ class Beginning:
     renderers: tuple[ContextInfo, ...]  # of each side; none where a command judges
 
 
-class Bench:
+class CandidateBench:
     """The folder and the processes that candidates are tried in; use it with ``with``."""
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self._stack = ExitStack()
         self._folder = Path()
-        self.workers: list[Worker] = []
+        self.processes: list[CandidateProcess] = []
 
-    def __enter__(self) -> Bench:
+    def __enter__(self) -> CandidateBench:
         asked = self.question
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="playground-reduce-")))
         make = {"software": asked.software, "limit": asked.limit}
-        self.workers = [self._stack.enter_context(Worker(device=asked.device, **make))]  # type: ignore[arg-type]
+        self.processes = [self._stack.enter_context(CandidateProcess(device=asked.device, **make))]  # type: ignore[arg-type]
         if asked.kind == "against":
             device = asked.device if asked.other_device is None else asked.other_device
-            other = Worker(device=device, environment=asked.environment, **make)  # type: ignore[arg-type]
-            self.workers.append(self._stack.enter_context(other))
+            other = CandidateProcess(device=device, environment=asked.environment, **make)  # type: ignore[arg-type]
+            self.processes.append(self._stack.enter_context(other))
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -102,39 +102,39 @@ class Bench:
         sketch = asked.sketch.for_shot(asked.sketch.shot(asked.shot)) if asked.shot else asked.sketch
         case = lay_flat(sketch, frame=asked.frame, time=asked.time, steps=dict(asked.steps))
         refused = ""
-        for fault, candidate in self._possible(case):
-            probe = Probe(fault, self.workers, self._folder, asked.limit)
+        for failure, candidate in self._possible(case):
+            probe = Probe(failure, self.processes, self._folder, asked.limit)
             finding = probe.find(candidate)
             refused = refused or probe.refused
             if finding is None:
                 continue
             probe.renew()
             again = probe.find(candidate)
-            if again is None or not fault.same(finding, again):
-                raise DataError(f"it fails only sometimes ({finding.word}): nothing can be told from one try")
+            if again is None or not failure.same(finding, again):
+                raise DataError(f"it fails only sometimes ({finding.kind}): one try proves nothing")
             if asked.kind == "command":
                 return Beginning(candidate, finding, probe, ())
-            renderers = tuple(self.workers[number].info for number in range(len(self.workers)))
+            renderers = tuple(self.processes[number].info for number in range(len(self.processes)))
             return Beginning(candidate, finding, probe, renderers)
         if refused:
             raise DataError(f"{asked.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
         raise DataError(_nothing(asked))
 
-    def _possible(self, case: Case) -> Iterator[tuple[Fault, Case]]:
-        """Yield what may be the fault, and where, in the order in which it is looked for."""
+    def _possible(self, case: Case) -> Iterator[tuple[FailureKind, Case]]:
+        """Yield what may be the failure, and where, in the order in which it is looked for."""
         asked = self.question
         if asked.kind == "command":
             yield Commanded(asked.command), self._chosen(case)[-1]
         elif asked.kind == "shot":
             yield self._off_reference(), case
         elif asked.kind:
-            for fault in self._faults(asked.kind):
-                yield from ((fault, one) for one in self._chosen(case))
+            for failure in self._failures(asked.kind):
+                yield from ((failure, one) for one in self._chosen(case))
         else:
             # A pass may fail in any way before the next is drawn, which may take long.
-            faults = [fault for kind in ("error", "crash", "nan") for fault in self._faults(kind)]
-            yield from ((fault, one) for one in self._chosen(case) for fault in faults)
-            yield from ((fault, one) for fault in self._faults("drivers") for one in self._chosen(case))
+            failures = [failure for kind in ("error", "crash", "nan") for failure in self._failures(kind)]
+            yield from ((failure, one) for one in self._chosen(case) for failure in failures)
+            yield from ((failure, one) for failure in self._failures("drivers") for one in self._chosen(case))
 
     def _chosen(self, case: Case) -> list[Case]:
         """Return the case looking at each pass in turn, or at the one that was asked for."""
@@ -147,17 +147,17 @@ class Bench:
             raise ParameterError(f"--pass {self.question.path}: no such pass{nearest(wanted, names)}")
         return [case.looking_at(name) for name in inside]
 
-    def _faults(self, kind: str) -> list[Fault]:
+    def _failures(self, kind: str) -> list[FailureKind]:
         asked = self.question
         if kind == "against":
             driver = asked.driver or "auto"
             names = ("here", " ".join(f"{k}={v}" for k, v in asked.environment.items()) or "the other device")
             return [Differs((Side(0, driver), Side(1, driver)), names, asked.tolerance)]
-        compute = self.workers[0].info.compute
+        compute = self.processes[0].info.compute
         if kind == "drivers":
             if not compute:
                 if asked.kind:
-                    opengl = self.workers[0].info.opengl
+                    opengl = self.processes[0].info.opengl
                     raise DataError(f"this context is {opengl}; the compute driver needs 4.3")
                 return []
             sides = (Side(0, FRAGMENT), Side(0, COMPUTE))
@@ -170,28 +170,37 @@ class Bench:
         word = kind if asked.kind else ""  # a hang counts too where nothing was asked for
         return [Died(word, driver) for driver in drivers]
 
-    def _off_reference(self) -> Fault:
+    def _off_reference(self) -> FailureKind:
         asked = self.question
         shot = asked.sketch.shot(asked.shot)
-        worker = self.workers[0]
+        process = self.processes[0]
         shown = asked.sketch.for_shot(shot)
         steps = tuple(asked.steps.items())
-        seen = worker.look(Task(shown, "", asked.driver or "auto", shot.size, shot.time, steps))
-        if seen.values is None:
-            raise DataError(f"shot '{shot.name}' gives no picture: {seen.told.splitlines()[0]}")
+        result = process.draw(
+            DrawTask(
+                sketch=shown,
+                ref="",
+                driver=asked.driver or "auto",
+                frame=shot.size,
+                time=shot.time,
+                steps=steps,
+            )
+        )
+        if result.values is None:
+            raise DataError(f"shot '{shot.name}' gives no picture: {result.details.splitlines()[0]}")
         case = ShotCase(asked.sketch, shot)
-        outcome = check(case, Frame(seen.values, asked.sketch.name, shot.time), worker.info)
+        outcome = check(case, Frame(result.values, asked.sketch.name, shot.time), process.info)
         if outcome.reference is None:
             raise DataError(
-                f"shot '{shot.name}' has no reference for {worker.info.slug}: nothing to differ from"
+                f"shot '{shot.name}' has no reference for {process.info.slug}: nothing to differ from"
             )
         if outcome.ok:
             raise DataError(f"shot '{shot.name}' is as its reference; nothing fails")
-        fault = OffReference(seen.values, [outcome.reference.pixels], TOLERANCE)
-        if not fault.wrong.any():
+        failure = OffReference(result.values, [outcome.reference.pixels], TOLERANCE)
+        if not failure.wrong.any():
             raise DataError(f"shot '{shot.name}' fails, but no pixel is off by more than {TOLERANCE} of 255")
-        fault.sides = (Side(0, asked.driver or "auto"),)
-        return fault
+        failure.sides = (Side(0, asked.driver or "auto"),)
+        return failure
 
 
 def _nothing(asked: Question) -> str:
@@ -200,9 +209,9 @@ def _nothing(asked: Question) -> str:
     if asked.kind == "shot":
         return (
             f"shot '{asked.shot}' of {name} is off its reference, but not once its techniques are laid flat;"
-            " a compute shader that stands for a whole technique may be at fault: try --driver fragment"
+            " a compute shader that stands for a whole technique may be the cause: try --driver fragment"
         )
-    said = {
+    nothing = {
         "": "it compiles and draws, every value is finite, and both drivers give the same bits",
         "drivers": "both drivers give the same",
         "against": "both sides give the same",
@@ -212,4 +221,4 @@ def _nothing(asked: Question) -> str:
         "hang": f"nothing takes longer than {asked.limit:g} s",
         "command": "the command says that all is well",
     }[asked.kind]
-    return f"{name} does not fail: {said}"
+    return f"{name} does not fail: {nothing}"

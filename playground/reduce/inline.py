@@ -39,18 +39,18 @@ def lay_flat(
     land = plan.land
     assert land.size is not None and land.extent is not None
     return Case(
-        passes,
-        passes[-1].name,
-        land.size,
-        land.extent,
-        land.relief,
-        land.base_elevation or None,
-        sketch.camera,
-        sketch.samples,
-        frame,
-        time,
-        tuple((maker.name(path), turns) for path, turns in plan.steps.items()),
-        tuple(maker.files.items()),
+        passes=passes,
+        target=passes[-1].name,
+        size=land.size,
+        extent=land.extent,
+        relief=land.relief,
+        base_elevation=land.base_elevation or None,
+        camera=sketch.camera,
+        samples=sketch.samples,
+        frame=frame,
+        time=time,
+        steps=tuple((maker.name(path), turns) for path, turns in plan.steps.items()),
+        files=tuple(maker.files.items()),
     )
 
 
@@ -58,8 +58,8 @@ def _plain(step: Step, plan: Plan) -> Case:
     suffix = Path(step.kernel.path).suffix
     text = "\n".join(line.code for line in step.kernel.source.lines if line.code.strip()) + "\n"
     name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
-    one = Pass(name, text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
-    return Case((one,), name, frame=plan.frame_size, time=plan.time, samples=1)
+    one = Pass(name=name, text=text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
+    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)
 
 
 class _Maker:
@@ -101,14 +101,16 @@ class _Maker:
             elif not name.startswith("initial"):
                 text, beside = unwired(text, name), unwired(beside, name)
         return Pass(
-            self.name(step.path),
-            text,
-            beside,
-            tuple(inputs),
-            tuple((name, self._value(step.kernel, name, value)) for name, value in step.values.items()),
-            None if step.size == self.plan.land.size else step.size,
-            repeat,
-            feedback,
+            name=self.name(step.path),
+            text=text,
+            variant=beside,
+            inputs=tuple(inputs),
+            values=tuple(
+                (name, self._value(step.kernel, name, value)) for name, value in step.values.items()
+            ),
+            size=None if step.size == self.plan.land.size else step.size,
+            repeat=repeat,
+            feedback=feedback,
         )
 
     def _value(self, kernel: Kernel, name: str, value: Value) -> Value:
@@ -144,7 +146,7 @@ def _lines(source: SourceText) -> list[str]:
 def _without_guards(lines: list[str]) -> list[str]:
     """Leave out include guards, and what they keep from standing twice."""
     found: list[str] = []
-    seen: set[str] = set()
+    results: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
     skip_define = ""
     for index, line in enumerate(lines):
@@ -156,12 +158,12 @@ def _without_guards(lines: list[str]) -> list[str]:
         guard = _IFNDEF.match(line)
         following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
         if word.startswith("if"):
-            if guard and guard.group(1) in seen:
+            if guard and guard.group(1) in results:
                 stack.append("twice")
                 continue
             if guard and following and following.group(1) == guard.group(1):
                 stack.append("guard")
-                seen.add(guard.group(1))
+                results.add(guard.group(1))
                 skip_define = guard.group(1)
                 continue
             stack.append("other")

@@ -16,12 +16,12 @@ from playground.gpu.wrap import wrap
 from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.paths import shown
+from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.case import SHOT, Case, copied
-from playground.reduce.child import Task
-from playground.reduce.failures import Commanded, Died, Fault, Finding, Refused
+from playground.reduce.draw_handler import DrawTask
+from playground.reduce.failures import Commanded, Died, FailureKind, Finding, Refused
 from playground.reduce.initial_case import Question
 from playground.reduce.probe import Probe
-from playground.reduce.worker import Worker
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 
@@ -29,7 +29,7 @@ RECORD = "reduced.json"
 """The file by which a folder is known to be one of ours."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Account:
     """What the text in the folder says."""
 
@@ -69,7 +69,7 @@ def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> lis
     claim(folder)
     texts = account.after.texts()
     data = copied(account.after.files, texts)
-    texts |= {"README.txt": told(account), **more}
+    texts |= {"README.txt": readme_text(account), **more}
     names = sorted([*texts, *(name for name, _ in data), RECORD])
     try:
         folder.mkdir(exist_ok=True)
@@ -100,13 +100,13 @@ def _earlier(folder: Path) -> list[str]:
         return []
 
 
-def told(account: Account) -> str:
+def readme_text(account: Account) -> str:
     """Return the text that goes with a report of the failure."""
     before, after = account.before, account.after
     lines = [
-        f"{account.sketch}, reduced: {account.finding.word}",
+        f"{account.sketch}, reduced: {account.finding.kind}",
         "",
-        f"    {account.finding.told.strip()}".replace("\n", "\n    "),
+        f"    {account.finding.details.strip()}".replace("\n", "\n    "),
         "",
         "To see it:",
         "",
@@ -131,17 +131,17 @@ def told(account: Account) -> str:
     return "\n".join(lines)
 
 
-def to_reproduce(question: Question, folder: Path, case: Case, fault: Fault) -> tuple[str, ...]:
+def to_reproduce(question: Question, folder: Path, case: Case, failure: FailureKind) -> tuple[str, ...]:
     """Return the commands that show the failure of what is left, from the folder that holds the folder."""
     name = quoted(folder.name)
-    if isinstance(fault, Commanded):
-        return (f"cd {name}", fault.command)
+    if isinstance(failure, Commanded):
+        return (f"cd {name}", failure.command)
     place = name if case.file == "sketch.toml" else f"{name}/{case.file}"
     shot = f" --shot {SHOT}" if case.file == "sketch.toml" else ""
-    look = "" if fault.as_picture or not shot else f" --texture {case.target}"
+    look = "" if failure.as_picture or not shot else f" --texture {case.target}"
     ending = ".npy" if look else ".png"
     found = []
-    for index, side in enumerate(fault.sides):
+    for index, side in enumerate(failure.sides):
         other = index > 0 and question.kind == "against"
         pairs = question.environment.items() if other else ()
         device = question.other_device if other and question.other_device is not None else question.device
@@ -149,30 +149,32 @@ def to_reproduce(question: Question, folder: Path, case: Case, fault: Fault) -> 
         options = f" --driver {side.driver}" if side.driver != "auto" else ""
         options += " --software" if question.software else ""
         options += f" --device {device}" if device is not None else ""
-        number = "" if len(fault.sides) == 1 else f"-{index + 1}"
+        number = "" if len(failure.sides) == 1 else f"-{index + 1}"
         command = f"playground render {place}{shot}{look}{options} -o {SHOT}{number}{ending}"
         found.append(before + command)
     return tuple(found)
 
 
-def plain_texts(case: Case, probe: Probe, finding: Finding, worker: Worker) -> dict[str, str]:
+def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidateProcess) -> dict[str, str]:
     """Return the reduced pass as the driver sees it, all wrapping in place, if that still fails so.
 
     By file name; empty where the plain shader does not fail in the same way. The probe's
-    folder must hold the case. Raises ``DataError`` for a fault that is not the compiler's.
+    folder must hold the case. Raises ``DataError`` for a failure that is not the compiler's.
     """
-    fault = probe.fault
-    if not isinstance(fault, Refused | Died):
+    failure = probe.failure
+    if not isinstance(failure, Refused | Died):
         raise DataError("--plain is for what the compiler refuses, or dies of")
     graph = load(probe.folder / case.file).graph
     kernel = next(kernel for path, kernel in kernels_of(graph) if path in (case.target, "view"))
-    driver = fault.sides[0].driver
+    driver = failure.sides[0].driver
     stages = wrap(kernel, driver).stages
     endings = {"vertex": ".vert", "fragment": ".frag", "compute": ".comp"}
     texts = {f"plain{endings[stage]}": stages[stage].text for stage in stages}
     for name, text in texts.items():
         (probe.folder / name).write_text(text, encoding="utf-8")
     opened = "plain.frag" if "plain.frag" in texts else "plain.comp"
-    seen = worker.look(Task(str(probe.folder / opened), "", driver, case.frame, case.time))
-    after = fault.found([seen])
-    return texts if after is not None and after.word == finding.word else {}
+    result = process.draw(
+        DrawTask(sketch=str(probe.folder / opened), ref="", driver=driver, frame=case.frame, time=case.time)
+    )
+    after = failure.found([result])
+    return texts if after is not None and after.kind == finding.kind else {}

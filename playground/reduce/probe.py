@@ -1,4 +1,4 @@
-"""From a case to what came of it: written into a folder, drawn in each way that its fault asks for."""
+"""From a case to what came of it: written into a folder, drawn in each way that its failure asks for."""
 
 from __future__ import annotations
 
@@ -10,44 +10,46 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from playground.errors import ParameterError
+from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.case import SHOT, Case, copied
-from playground.reduce.child import Seen, Task
-from playground.reduce.failures import Commanded, Fault, Finding
-from playground.reduce.worker import Worker
+from playground.reduce.draw_handler import DrawResult, DrawTask
+from playground.reduce.failures import Commanded, FailureKind, Finding
 
 CANNOT_SAY = 125
 """Exit status of a command that cannot judge a candidate, as ``git bisect run`` has it."""
 
 
 class Probe:
-    """Tries cases against one fault."""
+    """Tries cases against one failure."""
 
-    def __init__(self, fault: Fault, workers: Sequence[Worker], folder: Path, limit: float) -> None:
-        self.fault = fault
+    def __init__(
+        self, failure: FailureKind, processes: Sequence[CandidateProcess], folder: Path, limit: float
+    ) -> None:
+        self.failure = failure
         self.folder = folder
         self.limit = limit  # [s] of a command
-        self._workers = workers
-        self.refused = ""  # what was said of a case that is no sketch, if there was one
+        self._processes = processes
+        self.refused = ""  # the error of a case that is no sketch, if there was one
         self._written: dict[str, str] = {}
 
     def find(self, case: Case) -> Finding | None:
         """Return how a case fails; None where it does not, or not in this way."""
         self.write(case)
-        if isinstance(self.fault, Commanded):
-            return self._commanded(self.fault.command)
-        seen: list[Seen] = []
-        for side in self.fault.sides:
-            task = task_of(case, str(self.folder / case.file), side.driver, self.fault.as_picture)
-            seen.append(self._workers[side.worker].look(task))
-            if seen[-1].word == "refused":
-                self.refused = seen[-1].told
+        if isinstance(self.failure, Commanded):
+            return self._commanded(self.failure.command)
+        results: list[DrawResult] = []
+        for side in self.failure.sides:
+            task = task_of(case, str(self.folder / case.file), side.driver, self.failure.as_picture)
+            results.append(self._processes[side.process].draw(task))
+            if results[-1].kind == "refused":
+                self.refused = results[-1].details
                 return None
-        return self.fault.found(seen)
+        return self.failure.found(results)
 
     def renew(self) -> None:
         """Let the next case meet fresh processes."""
-        for worker in self._workers:
-            worker.renew()
+        for process in self._processes:
+            process.renew()
 
     def write(self, case: Case) -> None:
         """Let the folder hold this case, and only it."""
@@ -91,9 +93,9 @@ class Probe:
         )
 
 
-def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> Task:
-    """Return what a worker is asked of a case that lies in a file."""
+def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> DrawTask:
+    """Return the task to draw a case that is in a file."""
     names = {one.name for one in case.live}
     steps = tuple((path, turns) for path, turns in case.steps if path in names)
     ref = "" if as_picture else "view" if case.file != "sketch.toml" else case.target
-    return Task(sketch, ref, driver, case.frame, case.time, steps)
+    return DrawTask(sketch=sketch, ref=ref, driver=driver, frame=case.frame, time=case.time, steps=steps)

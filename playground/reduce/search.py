@@ -117,7 +117,7 @@ class Search:
             return False
         self.tries += 1
         finding = self._probe.find(case)
-        holds = finding is not None and self._probe.fault.same(self.finding, finding)
+        holds = finding is not None and self._probe.failure.same(self.finding, finding)
         self._known[key] = holds
         if holds:
             assert finding is not None
@@ -131,7 +131,7 @@ class Search:
         """Return how the best fails in fresh processes; None where it does not, or otherwise."""
         self._probe.renew()
         finding = self._probe.find(self.best)
-        return finding if finding is not None and self._probe.fault.same(self.finding, finding) else None
+        return finding if finding is not None and self._probe.failure.same(self.finding, finding) else None
 
     # ── one round ────────────────────────────────────────────────────────────
 
@@ -157,7 +157,7 @@ class Search:
         """Put something plain in the place of each pass that the target reads, the nearest first."""
         for one in reversed(self.best.live[:-1]):
             if any(live.name == one.name for live in self.best.live):
-                for text in _plain_texts(one, "0.0" in self._probe.fault.literals):
+                for text in _plain_texts(one, "0.0" in self._probe.failure.literals):
                     plain = replace(one, text=text, variant="", inputs=(), values=(), repeat=0, feedback=())
                     if len(tokens_of(text)) >= len(tokens_of(one.text)):
                         break  # it is as plain already
@@ -203,7 +203,7 @@ class Search:
         for kind in ("text", "variant"):
             if not getattr(self._pass(name), kind):
                 continue
-            number = "0.0" if "0.0" in self._probe.fault.literals else "1.0"
+            number = "0.0" if "0.0" in self._probe.failure.literals else "1.0"
             self._first_of(name, partial(_stubs, kind=kind, number=number), kind)
             before = ""
             # A body that shrank may free the functions that it called.
@@ -212,7 +212,7 @@ class Search:
                 blocks.fewer_lines(text, partial(self._try_lines, name, kind))
 
     def _expressions(self, name: str) -> None:
-        literals = self._probe.fault.literals
+        literals = self._probe.failure.literals
         again = bool(self._pass(name).variant)
         while again:
             one = self._pass(name)

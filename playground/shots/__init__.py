@@ -7,18 +7,18 @@
     judge.py        a picture, its fingerprint, references → whether it passes, in a word
     suite.py        sketches → cases → frames → outcomes
     results.py      a folder with a record of each checked shot and its pictures
-    places.py       where in that folder each has its own; removing what is not so any more
+    result_paths.py    where in that folder each has its own; removing what is out of date
     page/           what shows them, as HTML
     report.py       one file of a folder of results, with no network
     accept.py       a picture of them becomes a reference; undoing that
     session.py      what is reviewed: accepted, undone, changed meanwhile
     review.py       the same page, served on this machine alone
-    studio.py       a child process with an OpenGL context, studio_child.py, which takes the pictures
+    renderer_process.py, render_handler.py    render shots in a worker process
     recording.py, checking.py    draw, compare, write, and say it, for one process of pytest
     collect.py, fixture.py       tests from sketches; the ``shot`` fixture of tests in Python
-    used.py         references of tests in Python that none uses any more
+    unused_references.py    references of tests in Python that none uses any more
     plugin.py       pytest: options, which sketches, the summary
-    mutants/        pictures broken on purpose, that no comparison may let pass
+    mutants/        images broken on purpose, that no comparison may let pass
 
 Each knows only those above it. Importing this opens nothing.
 """

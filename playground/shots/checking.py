@@ -25,19 +25,19 @@ from playground.errors import (
     DataError,
     OpenGLFault,
     PlaygroundError,
-    TrialCrash,
-    TrialTimeout,
+    SandboxCrash,
+    SandboxTimeout,
 )
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots.names import LEFT, REFERENCE_RENDERER, SAID, UNCOMPARED
 from playground.shots.recording import Recorder, typed
 from playground.shots.references import write_reference
+from playground.shots.renderer_process import RendererProcess
 from playground.shots.results import NEVER_ACCEPTED
-from playground.shots.studio import Studio
 from playground.shots.suite import Outcome, ShotCase, Taken, check
 
-_ENDS = {TrialCrash: "crash", TrialTimeout: "hang", OpenGLFault: "gl-error"}
+_ENDS = {SandboxCrash: "crash", SandboxTimeout: "hang", OpenGLFault: "gl-error"}
 """The words for what gives no picture; anything else that a sentence explains is an "error"."""
 
 
@@ -79,14 +79,14 @@ class Checker:
         self.plain: bool = config.getoption("--shots-plain")
         software = ContextInfo(0, self.expected, "", "", 0).software
         renderer = "any" if not software else "either" if self.any_renderer else "software"
-        self.studio = Studio(config.getoption("--shots-timeout"), renderer)
+        self.renderer_process = RendererProcess(config.getoption("--shots-timeout"), renderer)
         self.recorder = Recorder(config)
         self._plain_forms: PlainForms | None = None
         self._written: dict[Path, tuple[str, NDArray[np.uint8]]] = {}  # by whom, and what
 
     def close(self) -> None:
         """End the child process."""
-        self.studio.close()
+        self.renderer_process.close()
 
     def shot(self, node: pytest.Item, case: ShotCase) -> None:
         """Draw a shot and hold it to its reference."""
@@ -96,7 +96,7 @@ class Checker:
         self._say_plain_forms(node, case, renderer)
         taken: Taken | PlaygroundError
         try:
-            taken = self.studio.take(case)
+            taken = self.renderer_process.render(case)
         except PlaygroundError as error:
             taken = error  # failing here would show it twice
         self.show_what_was_printed(node)
@@ -134,7 +134,7 @@ class Checker:
         found: ContextInfo | PlaygroundError
         start = time.perf_counter()
         try:
-            found = self.studio.renderer
+            found = self.renderer_process.renderer
         except PlaygroundError as error:
             found = error
         if isinstance(found, ContextError):
@@ -159,9 +159,9 @@ class Checker:
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
         """Add what the child printed to the test's report, where pytest shows it if the test fails."""
-        said = self.studio.said()
-        if said.strip():
-            node.add_report_section("call", "of the process that draws", said)
+        printed = self.renderer_process.printed()
+        if printed.strip():
+            node.add_report_section("call", "of the process that draws", printed)
 
     def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
         """Return the command that would accept the picture; "" where none would."""

@@ -28,7 +28,7 @@ Colour = tuple[int, int, int, int]
 _OUTSIDE = (255, 0, 255, 255)  # where one of the two pictures has no pixel
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
     """What came of comparing two pictures."""
 
@@ -89,13 +89,22 @@ def compare(
     spread = _spread(actual)
     if spread is not None:
         colour = _colour(actual, 0, 0)
-        return Comparison("blank", tolerance, size, expected_size, spread, actual=colour)
+        return Comparison(
+            verdict="blank",
+            tolerance=tolerance,
+            size=size,
+            expected_size=expected_size,
+            channels=spread,
+            actual=colour,
+        )
     if expected is None:
-        return Comparison("missing", tolerance, size)
+        return Comparison(verdict="missing", tolerance=tolerance, size=size)
     if size != expected_size:
-        return Comparison("size", tolerance, size, expected_size)
+        return Comparison(verdict="size", tolerance=tolerance, size=size, expected_size=expected_size)
     if np.array_equal(actual.ravel().view(np.uint32), expected.ravel().view(np.uint32)):
-        return Comparison("same", tolerance, size, expected_size)  # as nearly all of one build are
+        return Comparison(
+            verdict="same", tolerance=tolerance, size=size, expected_size=expected_size
+        )  # as nearly all of one build are
     difference = _difference(actual, expected)
     # Down the columns first: long runs in memory, where axis 2 would be runs of four.
     channels = difference.reshape(size[1], -1).max(axis=0).reshape(-1, 4).max(axis=0)
@@ -103,15 +112,15 @@ def compare(
     y, x = divmod(int(difference.argmax()) // 4, size[0])
     over = int(np.count_nonzero((difference > tolerance).view(np.uint32))) if most > tolerance else 0
     return Comparison(
-        "differs" if over else "same",
-        tolerance,
-        size,
-        expected_size,
-        _four(channels),
-        over,
-        (x, y),
-        _colour(actual, x, y),
-        _colour(expected, x, y),
+        verdict="differs" if over else "same",
+        tolerance=tolerance,
+        size=size,
+        expected_size=expected_size,
+        channels=_four(channels),
+        over=over,
+        place=(x, y),
+        actual=_colour(actual, x, y),
+        expected=_colour(expected, x, y),
     )
 
 

@@ -52,7 +52,7 @@ _WORDS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Fingerprint:
     """What a picture comes from; "" for what is not known."""
 
@@ -109,16 +109,18 @@ class Fingerprint:
 def fingerprint_of(renderer: ContextInfo, size: tuple[int, int], drawn: str = "") -> Fingerprint:
     """Return the fingerprint of a picture drawn on this machine; ``drawn`` as `Engine.drawn` gives it."""
     mesa, llvm = _MESA.search(renderer.version), _LLVM.search(renderer.renderer)
+    cpu, simd = processor() if renderer.software else ("", "")
     return Fingerprint(
-        renderer.renderer,
-        renderer.version,
-        renderer.vendor,
-        mesa[1] if mesa else "",
-        llvm[1] if llvm else "",
-        *(processor() if renderer.software else ("", "")),
-        drawn,
-        f"{size[0]}x{size[1]}",
-        f"terrain-shader-playground {__version__}",
+        renderer=renderer.renderer,
+        version=renderer.version,
+        vendor=renderer.vendor,
+        mesa=mesa[1] if mesa else "",
+        llvm=llvm[1] if llvm else "",
+        cpu=cpu,
+        simd=simd,
+        drawn=drawn,
+        size=f"{size[0]}x{size[1]}",
+        tool=f"terrain-shader-playground {__version__}",
     )
 
 

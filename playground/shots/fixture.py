@@ -63,7 +63,7 @@ class ShotFixture:
         with; ``size`` in pixels (640 × 360), ``time`` in seconds, ``values`` of parameters by path
         and ``steps`` of repeated passes go over what that says.
 
-        A crash raises ``TrialCrash``, a draw that hangs ``TrialTimeout``, a mistake in the sketch
+        A crash raises ``SandboxCrash``, a draw that hangs ``SandboxTimeout``, a mistake in the sketch
         another ``PlaygroundError``; the next picture is drawn all the same. Skips the test, or
         fails it where ``CI`` is set, without the expected renderer.
         """
@@ -82,7 +82,7 @@ class ShotFixture:
             )
             renderer = self._checker.renderer(self._node, own)
             self._begin(own)
-            frame = self._checker.studio.take(ShotCase(prepared, asked))
+            frame = self._checker.renderer_process.render(ShotCase(prepared, asked))
         except PlaygroundError as error:
             mistake = error
         else:
@@ -159,9 +159,9 @@ class ShotFixture:
 
 
 def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> Taken:
-    """Return a picture as the studio gives it, with all that is known of how it was drawn."""
+    """Return a picture as the renderer process gives it, with all that is known of how it was drawn."""
     taken = _taken(picture)
-    if by is None:  # drawn by the studio, which has looked
+    if by is None:  # drawn by the renderer process, which has looked
         return taken
     taken = replace(taken, gl_error=_error_left(by))
     if not isinstance(by, Engine):
@@ -198,7 +198,7 @@ def _error_left(by: By) -> str:
 
 
 def _taken(picture: Frame | NDArray[Any]) -> Taken:
-    """Return a picture as the studio gives it, with what is wrong with its numbers."""
+    """Return a picture as the renderer process gives it, with what is wrong with its numbers."""
     if isinstance(picture, Taken):
         return picture
     if isinstance(picture, Frame):

@@ -95,7 +95,7 @@ class Seen:
     place: tuple[int, int]  # [pixels] x and y of their top left corner
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Judgement:
     """Whether a picture passes, and why."""
 
@@ -145,7 +145,12 @@ def judge(
 
 def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
     """Return the judgement where a reference is there that cannot be read."""
-    return Judgement("unreadable", compare(actual, None), f"unreadable: {reason}", fingerprint=fingerprint)
+    return Judgement(
+        word="unreadable",
+        comparison=compare(actual, None),
+        sentence=f"unreadable: {reason}",
+        fingerprint=fingerprint,
+    )
 
 
 def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
@@ -170,7 +175,9 @@ def _nearest(
         return min(seen, key=lambda pair: _distance(pair[0]))
     if not references:
         comparison = compare(actual, None)
-        return Judgement(comparison.verdict, comparison, str(comparison), fingerprint=fingerprint), None
+        return Judgement(
+            word=comparison.verdict, comparison=comparison, sentence=str(comparison), fingerprint=fingerprint
+        ), None
     own = [fingerprint.same_build(reference.fingerprint) for reference in references]
     judged = []
     for reference, same in zip(references, own, strict=True):
@@ -192,7 +199,14 @@ def _judged(
     comparison = compare(actual, reference.pixels, TOLERANCE)
     tier = SAME_BUILD if same else OTHER_BUILD
     differences = fingerprint.differences(reference.fingerprint)
-    found = Judgement(comparison.verdict, comparison, str(comparison), tier, fingerprint, differences)
+    found = Judgement(
+        word=comparison.verdict,
+        comparison=comparison,
+        sentence=str(comparison),
+        tier=tier,
+        fingerprint=fingerprint,
+        differences=differences,
+    )
     if comparison.verdict in ("blank", "size"):
         return replace(found, tier="")
     if strict or comparison.verdict == "same":
@@ -224,7 +238,12 @@ def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, referenc
     comparison = compare(actual, reference.pixels, TOLERANCE)
     differences = fingerprint.differences(reference.fingerprint)
     found = Judgement(
-        comparison.verdict, comparison, str(comparison), OTHER_RENDERER, fingerprint, differences
+        word=comparison.verdict,
+        comparison=comparison,
+        sentence=str(comparison),
+        tier=OTHER_RENDERER,
+        fingerprint=fingerprint,
+        differences=differences,
     )
     if comparison.verdict in ("blank", "size"):
         return replace(found, tier="")

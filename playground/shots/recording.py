@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.paths import shown
-from playground.shots.compare import difference_picture
-from playground.shots.flip import flip_picture
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
 from playground.shots.names import CHECKED, LOOSE, SCREENSHOTS, UNKEPT
 from playground.shots.references import accepted, home_of, reference_texts
@@ -31,7 +29,7 @@ from playground.shots.results import (
     read_result,
     write_result,
 )
-from playground.shots.suite import Outcome, ShotCase
+from playground.shots.suite import Outcome, ShotCase, images_of
 
 _CATCHES = {
     SAME_BUILD: "The same build drew both: any change of more than one level is found",
@@ -77,7 +75,7 @@ class Recorder:
         )
         if outcome.tier == OTHER_RENDERER:
             node.user_properties.append((LOOSE, own))
-        return self._keep(node, outcome.case, record, {} if outcome.ok else _pictures(outcome))
+        return self._keep(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
         """Leave the record of a shot of which there is no picture; returns what `record` does."""
@@ -163,10 +161,10 @@ class Recorder:
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
         return Record(
-            case.sketch.name,
-            case.shot.name,
-            word,
-            sentence,
+            sketch=case.sketch.name,
+            shot=case.shot.name,
+            word=word,
+            sentence=sentence,
             root=str(self.root),
             home=_home(case, self.root),
             node=typed(node),
@@ -216,17 +214,6 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     return numbers
 
 
-def _pictures(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
-    actual, reference = outcome.frame.array, outcome.reference
-    if reference is None:
-        return {"actual": actual}
-    pictures = {"actual": actual, "expected": reference.pixels}
-    pictures["difference"] = difference_picture(actual, reference.pixels)
-    if actual.shape == reference.pixels.shape:
-        pictures["flip"] = flip_picture(actual, reference.pixels)
-    return pictures
-
-
 def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:
     """Leave a record that a test file has references in vain; return what its report is to carry."""
     recorder = Recorder(config)
@@ -239,10 +226,10 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
         # Of the same run as what its tests have left, which may have run in other processes.
         runs = {record.when: record.run for record in records_in(recorder.folder)}
         record = Record(
-            path.name,
-            "references",
-            "error",
-            first,
+            sketch=path.name,
+            shot="references",
+            word="error",
+            sentence=first,
             root=str(root),
             home=home,
             error=rest,

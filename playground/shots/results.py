@@ -55,7 +55,7 @@ _SHOT = re.compile(r"[^./\\\0][^./\\\0]*")
 _SKETCH = re.compile(r"(?!\.{1,2}$)[^/\\\0]+")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Record:
     """What came of one checked shot. Everything in it is plain text and numbers."""
 

@@ -1,8 +1,8 @@
 """From sketches to the pictures they promise, and from pictures to what came of them.
 
 ``shots_of`` lists the cases, ``take`` draws one, ``check`` compares it with its reference,
-``save_pictures`` puts what there is to look at into a folder. No pytest, no options: a
-command or a report calls the same four.
+``images_of`` gives what there is to look at. No pytest, no options: a command or a report
+calls the same four.
 """
 
 from __future__ import annotations
@@ -11,12 +11,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from playground.engine.engine import Engine
 from playground.engine.error_place import told_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
 from playground.shots.flip import flip_picture
@@ -53,7 +55,7 @@ class Taken(Frame):
     gl_error: str = ""  # what drawing it left behind
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome:
     """What came of one shot."""
 
@@ -167,7 +169,13 @@ def check(
         try:
             references.append(read_reference(file))
         except DataError as error:
-            return Outcome(case, frame, unreadable(frame.array, fingerprint, str(error)), file, renderer)
+            return Outcome(
+                case=case,
+                frame=frame,
+                judgement=unreadable(frame.array, fingerprint, str(error)),
+                path=file,
+                renderer=renderer,
+            )
     judgement, reference = judge(
         frame.array,
         fingerprint,
@@ -176,29 +184,27 @@ def check(
         not_finite=not_finite,
         gl_error=gl_error,
     )
-    return Outcome(case, frame, judgement, reference.path if reference else path, renderer, reference)
+    return Outcome(
+        case=case,
+        frame=frame,
+        judgement=judgement,
+        path=reference.path if reference else path,
+        renderer=renderer,
+        reference=reference,
+    )
 
 
-def save_pictures(outcome: Outcome, folder: Path) -> dict[str, Path]:
-    """Write the actual picture, and the expected one and the differences if there is a reference.
+def images_of(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
+    """Return the actual image, and the expected one and the differences if there is a reference.
 
-    One of those is 16 times as strong as the pixels have it, the other, of pictures of one size,
-    is FLIP. Returns the files by the words actual, expected, difference and flip:
-    ``folder/<sketch>/<shot>.actual.png`` and so on. Raises ``DataError`` where the folder cannot
-    be written to.
+    One of those is 16 times as strong as the pixels have it, the other, of images of one size,
+    is FLIP. By the words actual, expected, difference and flip.
     """
-    pictures = {"actual": outcome.frame.array}
-    if outcome.reference is not None:
-        pictures["expected"] = outcome.reference.pixels
-        pictures["difference"] = difference_picture(outcome.frame.array, outcome.reference.pixels)
-        if outcome.frame.array.shape == outcome.reference.pixels.shape:
-            pictures["flip"] = flip_picture(outcome.frame.array, outcome.reference.pixels)
-    place = folder / outcome.case.sketch.name
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
-    files = {word: place / f"{outcome.case.shot.name}.{word}.png" for word in pictures}
-    for word, file in files.items():
-        write_png(file, pictures[word])
-    return files
+    actual, reference = outcome.frame.array, outcome.reference
+    if reference is None:
+        return {"actual": actual}
+    images = {"actual": actual, "expected": reference.pixels}
+    images["difference"] = difference_picture(actual, reference.pixels)
+    if actual.shape == reference.pixels.shape:
+        images["flip"] = flip_picture(actual, reference.pixels)
+    return images

@@ -53,7 +53,9 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     header += [(o.name, o.format) for o in kernel.outputs]
     header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
     header += [_parameter(p) for p in kernel.parameters]
-    return [header, kernel.agrees, compiled_text(kernel.source.code)]
+    # Only where it is there: records of others keep their hashes.
+    more = [kernel.own_accepts] if kernel.own_accepts else []
+    return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
 
 
 def _parameter(parameter: Parameter) -> tuple[Any, ...]:

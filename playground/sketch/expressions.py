@@ -115,7 +115,8 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
     """List the sizes up to ``limit`` that ``accepts`` allows along x and along y, smallest first.
 
     ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own. The
-    values must grow with n, which goes from 0 up. ``"2**n or 2**n + 1"`` allows either.
+    values must grow with n, which goes from 0 up. ``"2**n or 2**n + 1"`` allows either, and
+    ``"n up to 4097"`` none above.
     """
     parts = _parts(accepts)
     if len(parts) > 2:
@@ -157,7 +158,13 @@ def _parts(text: str) -> tuple[str, ...]:
 
 
 def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
-    return tuple(sorted({value for part in text.split(" or ") for value in _values(part, variable, limit)}))
+    found: set[int] = set()
+    for part in text.split(" or "):
+        expression, _, most = part.partition(" up to ")
+        if most and not most.strip().isdecimal():
+            raise ExpressionError(f"'{part}': expected a whole number after 'up to'")
+        found.update(_values(expression, variable, min(limit, int(most)) if most else limit))
+    return tuple(sorted(found))
 
 
 @lru_cache(maxsize=256)

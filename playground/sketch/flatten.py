@@ -45,6 +45,7 @@ def flatten(
     variants: Collection[str] = (),
     opened: tuple[str, ...] = (),
     stopped: tuple[str, ...] = (),
+    refused: tuple[str, ...] = (),
     before: Flat | None = None,
 ) -> Flat:
     """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
@@ -52,14 +53,14 @@ def flatten(
     A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, nor for one that is itself among
-    the ``stopped`` or that starts from something wired.
+    the ``stopped`` or the ``refused``, or that starts from something wired.
     Of ``before``, an earlier result, the leaves are taken whose values are the same objects still.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
     inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
-    asked = (opened, stopped, tuple(inside)) if kinds else ((), (), ())
+    asked = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
     shape = _shape(Same(graph), kinds, *asked)
     values = effective_values(graph)
     for path, value in sketch.overrides:
@@ -94,9 +95,10 @@ def _shape(
     kinds: frozenset[str],
     opened: tuple[str, ...],
     stopped: tuple[str, ...],
+    refused: tuple[str, ...],
     overrides: tuple[str, ...],
 ) -> Shape:
-    maker = _Flattener(key.object, kinds, opened, stopped, overrides)
+    maker = _Flattener(key.object, kinds, opened, stopped, refused, overrides)
     nodes = tuple(maker.expand(key.object, "", {}))
     outputs = {
         path: {name: maker.real(ref) for name, ref in found.items()}
@@ -175,6 +177,7 @@ class _Flattener:
         kinds: frozenset[str],
         opened: tuple[str, ...],
         stopped: tuple[str, ...],
+        refused: tuple[str, ...],
         overrides: tuple[str, ...],
     ) -> None:
         self.kinds = kinds
@@ -190,7 +193,7 @@ class _Flattener:
         if kinds:
             for path in (*opened, *stopped):
                 self._open("", path)
-            self.opened |= set(stopped)
+            self.opened |= {*stopped, *refused}
             self._open_wired(graph, "")
             for path in overrides:
                 self._open_set(graph, "", path)

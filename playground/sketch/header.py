@@ -36,7 +36,10 @@ _KEYS = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
     "source": ("name", "output"),
     "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
-    "compute": ("where", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned", "agrees"),
+    "compute": (
+        *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
+        "agrees",
+    ),
 }
 # The options that may use the names of where.
 _EXPRESSIONS = ("groups", "buffers", "repeat", "count", "visits", "stride", "at_once")
@@ -107,12 +110,16 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     }
     kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
     _check_turns(kernel, numbers, line)
-    if kernel.accepts:
-        try:
-            expressions.accepted_sizes(kernel.accepts)
-        except ExpressionError as error:
-            raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
+    _check_accepts(kernel.accepts, line)
     return kernel
+
+
+def _check_accepts(accepts: str, line: Line) -> None:
+    try:
+        if accepts:
+            expressions.accepted_sizes(accepts)
+    except ExpressionError as error:
+        raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
 
 
 def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
@@ -242,10 +249,12 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         agrees = read_agreement(options["agrees"]) if "agrees" in options else ()
     except ValueError as error:
         raise line.error(f"agrees: {error}") from None
+    _check_accepts(options.get("accepts", ""), line)
     _check("groups", options["groups"], (*names, "iteration"), line, count=2)
     _check("repeat", options.get("repeat", "1"), names, line)
     return replace(
         kernel,
+        own_accepts=options.get("accepts", ""),
         groups=options["groups"],
         local=(int(local[0]), int(local[1])),
         buffers=tuple(buffers),

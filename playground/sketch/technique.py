@@ -64,6 +64,7 @@ class Kernel:
     inputs: tuple[Input, ...] = ()
     repeat: str = "1"
     accepts: str = ""
+    own_accepts: str = ""  # of a compute variant: the sizes that it takes, where its technique takes more
     visits: str = ""
     stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from playground.errors import PlaygroundError, TrialError
+from playground.errors import PlaygroundError, SandboxError
 from playground.folders import state_folder
 from playground.sketch.map_sketch import Map
 from playground.workbench.edit_merge import FileValue, file_values
@@ -85,7 +85,7 @@ class Rememberer:
             self._seen = self._written = None
             self._is_told, self._compared = False, None
         if session.shown is None or session.drafts.opening:
-            if self._recalled and isinstance(session.error, TrialError):
+            if self._recalled and isinstance(session.error, SandboxError):
                 session.notes.append("playground live --fresh opens it without what was set by hand")
                 self._recalled = False
             return

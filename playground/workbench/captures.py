@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
@@ -54,7 +54,7 @@ class Capturing:
 
     wish: Wish = field(default_factory=Wish)
     shown: bool = False
-    working: Working | None = None
+    working: JobProcess | None = None
     last: Path | None = None  # the file or folder that was made last
     failed: str = ""  # why the last one was not made
 
@@ -70,7 +70,7 @@ class Capturing:
             actions.say(self.failed)
             return
         engine = actions.session.engine
-        self.working = Working(job, software=engine.info.software, driver=engine.driver)
+        self.working = JobProcess(job, software=engine.info.software, driver=engine.driver)
 
     def look(self, actions: Actions) -> None:
         """Take in how far the job is; say it once it has ended."""
@@ -142,17 +142,17 @@ def job_of(wish: Wish, actions: Actions) -> Job:
         if steps:
             raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
     return Job(
-        wish.kind,
-        sketch,
-        actions.folder,
-        size,
-        time_of,
-        steps,
-        seconds_of(wish, sketch) if moves else None,
-        fps,
-        wish.ending,
-        wish.quality,
-        sweeps,
+        kind=wish.kind,
+        sketch=sketch,
+        folder=actions.folder,
+        size=size,
+        time=time_of,
+        steps=steps,
+        seconds=seconds_of(wish, sketch) if moves else None,
+        fps=fps,
+        ending=wish.ending,
+        quality=wish.quality,
+        sweeps=sweeps,
     )
 
 

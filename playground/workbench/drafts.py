@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from playground.engine.sandbox import TrialReport, TrySketch
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.assign import LAND
@@ -246,14 +246,14 @@ class Drafts:
 
     # ── the sandbox ──────────────────────────────────────────────────────────
 
-    def check_aside(self, sketch: Sketch) -> TrialReport | None:
+    def check_aside(self, sketch: Sketch) -> SandboxReport | None:
         """Return what the sandbox says of a sketch drawn besides this one; None while it is not known.
 
         What is coming goes first.
         """
         sandbox = self._checks.sandbox
         if sandbox is None:
-            return TrialReport(True)
+            return SandboxReport(True)
         if self.testing:
             return None
         if self._aside is not sketch:

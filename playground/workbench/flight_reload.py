@@ -88,7 +88,7 @@ class SaveFollower:
         self._tried = None
         try:
             with noting_places() as self._places:
-                found = load(self._path).with_values(self._values)
+                found = load(self._path).plainly(self._shown.plain).with_values(self._values)
         except Exception as error:
             self.error = explained(error, self._path)
         else:

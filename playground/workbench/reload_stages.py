@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Protocol
 
-from playground.engine.sandbox import TrialReport, TrySketch
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import PlaygroundError, SketchError
 from playground.paths import shown
 
@@ -16,12 +16,12 @@ log = logging.getLogger("playground.live")
 
 
 class Sandbox(Protocol):
-    """What draws a sketch in a process of its own first: ``engine.sandbox.Trial``, or a fake in a test."""
+    """What draws a sketch in a process of its own first: ``engine.sandbox.Sandbox``, or a fake in a test."""
 
     def submit(self, request: TrySketch) -> None:
         """Submit a sketch; it replaces the one before."""
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         """Return the answer to the newest request, once."""
 
 

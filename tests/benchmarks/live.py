@@ -23,7 +23,7 @@ from pathlib import Path
 import moderngl
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.gpu.context import open_context
 from playground.paths import GLSL
 from playground.workbench.reload import Follower
@@ -41,7 +41,7 @@ class Bench:
     """A sketch in a folder, and a session that follows it as the window's does."""
 
     def __init__(
-        self, folder: Path, engine: Engine, trial: Trial, side: int, picture: tuple[int, int]
+        self, folder: Path, engine: Engine, trial: Sandbox, side: int, picture: tuple[int, int]
     ) -> None:
         self.engine, self.trial, self.picture = engine, trial, picture
         text = (GLSL / f"{KERNEL}.glsl").read_text(encoding="utf-8")
@@ -108,7 +108,7 @@ class Bench:
 
     def processor(self) -> float:
         """Return the seconds that processors have spent on this process and on the trial's."""
-        child = self.trial._child
+        child = self.trial._workers.worker
         return sum(spent(pid) for pid in (os.getpid(), child.pid if child else 0) if pid)
 
 
@@ -137,7 +137,7 @@ def objects() -> int:
 
 @contextmanager
 def opened(side: int, picture: tuple[int, int]) -> Iterator[Bench]:
-    with tempfile.TemporaryDirectory() as folder, Trial() as trial:
+    with tempfile.TemporaryDirectory() as folder, Sandbox() as trial:
         trial.start()
         with Engine(open_context(), owns_context=True) as engine:
             bench = Bench(Path(folder), engine, trial, side, picture)

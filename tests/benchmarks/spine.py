@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 import playground
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.paths import GLSL
 from playground.workbench.session import Session
 from playground.workbench.watcher import Watcher
@@ -111,7 +111,7 @@ def save_to_picture(name: str, saves: int, *, trial: bool) -> list[float]:
         sketch, kernel = _texturing_sketch(Path(folder), name)
         text = kernel.read_text()
         with playground.headless() as engine:
-            child = Trial() if trial else None
+            child = Sandbox() if trial else None
             if child is not None:
                 child.start()
             woken = threading.Event()

@@ -116,18 +116,20 @@ def test_how_long_a_film_is(clock, keyed):
 
 @pytest.mark.slow
 def test_a_thousand_pictures_leave_as_many_objects_as_ten(any_engine: Engine, keyed, alive: Counter[str]):
-    film = Film(keyed, 10, Fraction(25), (32, 18))
+    film = Film(sketch=keyed, count=10, fps=Fraction(25), size=(32, 18))
     list(frames(any_engine, film))
     before, kept = Counter(alive), any_engine.cache.bytes
-    for number, _ in enumerate(frames(any_engine, Film(keyed, 1000, Fraction(2500), (32, 18)))):
+    for number, _ in enumerate(
+        frames(any_engine, Film(sketch=keyed, count=1000, fps=Fraction(2500), size=(32, 18)))
+    ):
         assert number % 100 or alive == before
     assert alive == before and any_engine.cache.bytes == kept
 
 
 def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str]):
-    list(frames(any_engine, Film(keyed, 5, Fraction(25), (32, 18))))
+    list(frames(any_engine, Film(sketch=keyed, count=5, fps=Fraction(25), size=(32, 18))))
     before, kept = Counter(alive), any_engine.cache.bytes
-    list(frames(any_engine, Film(keyed, 60, Fraction(150), (32, 18))))
+    list(frames(any_engine, Film(sketch=keyed, count=60, fps=Fraction(150), size=(32, 18))))
     assert alive == before and any_engine.cache.bytes == kept
 
 
@@ -202,7 +204,7 @@ def test_an_interrupted_video_is_a_shorter_one(any_engine: Engine, keyed, tmp_pa
         if shown["picture"] == 3:
             raise KeyboardInterrupt
 
-    film = Film(keyed, 8, Fraction(10), (64, 36))
+    film = Film(sketch=keyed, count=8, fps=Fraction(10), size=(64, 36))
     with pytest.raises(Stopped) as caught:
         write_film(any_engine, film, tmp_path / "film.mp4", done=done)
     path = tmp_path / "film-first-3.mp4"
@@ -261,7 +263,10 @@ def test_a_film_that_cannot_be_read_back_is_kept(
     monkeypatch.setattr(video_module, "count_pictures", fails)
     said: list[str] = []
     path = write_film(
-        any_engine, Film(keyed, 3, Fraction(10), (64, 36)), tmp_path / "film.mp4", say=said.append
+        any_engine,
+        Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
+        tmp_path / "film.mp4",
+        say=said.append,
     )
     assert decoded(path).shape == (3, 36, 64, 3)
     assert len(said) == 1 and "was written, but could not be checked" in said[0]
@@ -328,7 +333,7 @@ def test_numbered_pictures(any_engine: Engine, keyed, tmp_path: Path):
 
 def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed, tmp_path: Path):
     pattern = tmp_path / "%d.png"
-    film = Film(keyed, 6, Fraction(20), (64, 36))
+    film = Film(sketch=keyed, count=6, fps=Fraction(20), size=(64, 36))
     write_sequence(any_engine, film, pattern)
     truth = [read_png(tmp_path / f"{n}.png")[0] for n in range(6)]
     (tmp_path / "1.png").write_bytes((tmp_path / "1.png").read_bytes()[:-200])  # cut short
@@ -343,9 +348,9 @@ def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed,
     for number in range(6):
         np.testing.assert_array_equal(read_png(tmp_path / f"{number}.png")[0], truth[number])
     # Another sketch or another time: no picture is the one wanted, but where nothing differs.
-    other = Film(keyed.with_values({"light.gain": 1.25}), 6, Fraction(20), (64, 36))
+    other = Film(sketch=keyed.with_values({"light.gain": 1.25}), count=6, fps=Fraction(20), size=(64, 36))
     assert not write_sequence(any_engine, other, pattern, resume=True).kept
-    later = Film(other.sketch, 6, Fraction(20), (64, 36), start=0.1)
+    later = Film(sketch=other.sketch, count=6, fps=Fraction(20), size=(64, 36), start=0.1)
     assert not write_sequence(any_engine, later, pattern, numbers=[0, 1], resume=True).kept
     without = write_sequence(any_engine, other, pattern, numbers=[3], resume=False)
     assert len(without.drawn) == 1
@@ -354,7 +359,9 @@ def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed,
 @pytest.mark.parametrize("pattern", ["a.png", "%d", "%d-%d.png", "%s.png", "%5.2f.png", "%d.jpg", "%d%%.png"])
 def test_a_name_without_a_number_is_refused(any_engine: Engine, keyed, tmp_path: Path, pattern: str):
     with pytest.raises(DataError, match=r"frames/%05d\.png"):
-        write_sequence(any_engine, Film(keyed, 1, Fraction(1), (8, 8)), tmp_path / pattern)
+        write_sequence(
+            any_engine, Film(sketch=keyed, count=1, fps=Fraction(1), size=(8, 8)), tmp_path / pattern
+        )
 
 
 def test_a_fingerprint_stands_for_the_picture(any_engine: Engine, keyed):

@@ -79,7 +79,7 @@ def test_the_bound_is_the_environments(
     assert "of at most 250 MiB" in capsys.readouterr().out
     monkeypatch.setenv("PLAYGROUND_CACHE", "0")
     assert cli.main(["cache", "show"]) == 0
-    assert "(PLAYGROUND_CACHE has nothing kept)" in capsys.readouterr().out
+    assert "(PLAYGROUND_CACHE turns caching off)" in capsys.readouterr().out
     monkeypatch.setenv("PLAYGROUND_CACHE", "plenty")
     for command in (["cache", "show"], ["live"]):
         monkeypatch.setenv("DISPLAY", ":0")

@@ -200,8 +200,8 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
         assert cli.main(line.split()) == 0, said(capsys)[1]
     written = set(said(capsys)[0].split())
     assert written == set(names(folder)) == {
-        "lit.glb", "land.png", "land.tif", "land.r16", "land.r16.json", "ground.webp", "land.glb",
-        "land.obj", "land.mtl", "land-texture.png",
+        "lit.glb", "terrain.png", "terrain.tif", "terrain.r16", "terrain.r16.json", "ground.webp",
+        "terrain.glb", "terrain.obj", "terrain.mtl", "terrain-texture.png",
     }  # fmt: skip
 
 

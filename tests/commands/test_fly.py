@@ -6,11 +6,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from playground import cli
+from playground.engine.engine import Engine
 from playground.images.files import read_png
+from playground.sketch.model import Sketch
 
 SKETCH = """format = 1
 title = "A small land without end"
@@ -61,6 +64,25 @@ def test_a_record_becomes_pictures_whose_paths_are_printed(folder: Path) -> None
     pictures = [read_png(folder / "new" / "pictures" / name)[0] for name in names]
     assert all(p.shape == (36, 64, 4) and p[..., :3].std() > 5 for p in pictures)
     assert (pictures[0] != pictures[2]).any()
+
+
+def test_plain_flies_over_the_plain_form_of_every_technique(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The engine is given a sketch that runs no fast variant, and only with --plain."""
+    plain: list[bool] = []
+    made = Engine.texture
+
+    def texture(self: Engine, sketch: Sketch, *more: Any, **named: Any) -> Any:
+        plain.append(sketch.plain)
+        return made(self, sketch, *more, **named)
+
+    monkeypatch.setattr(Engine, "texture", texture)
+    for words in ([], ["--plain"]):
+        plain.clear()
+        frames = f"pictures{len(words)}"
+        assert cli.main(["fly", "--replay", "a.jsonl", "--frames", frames, "--every", "20", *words]) == 0
+        assert plain and set(plain) == {bool(words)}
 
 
 @pytest.mark.parametrize(

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from playground.engine.check import check_file
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
 from playground.sketch.load import load
 
 
 @pytest.fixture(scope="module")
-def trial() -> Iterator[Trial]:
-    with Trial() as made:
+def sandbox() -> Iterator[Sandbox]:
+    with Sandbox() as made:
         yield made
 
 
-def wrong(path: Path, trial: Trial) -> Diagnostic:
-    report = check_file(path, trial)
+def wrong(path: Path, sandbox: Sandbox) -> Diagnostic:
+    report = check_file(path, sandbox)
     assert not report.ok
     assert "subject" not in json.dumps(report.as_json())
     return report.errors[0]
@@ -39,33 +39,33 @@ HEADERS = {
 
 
 @pytest.mark.parametrize("what", HEADERS)
-def test_a_header_that_is_wrong_is_told_at_its_line(folder, trial, what):
+def test_a_header_that_is_wrong_is_told_at_its_line(folder, sandbox, what):
     before, option, body = HEADERS[what]
     path = folder.write(
         "hills.glsl", f'// hills\n{before}\n#pragma kernel(output = "a:r32f"{option})\n{body}\n'
     )
-    found = wrong(path, trial)
+    found = wrong(path, sandbox)
     assert (Path(found.file).name, found.line) == ("hills.glsl", 3), found
     assert found.message.startswith(f"pass 'hills': {what}")
     assert found.excerpt.startswith("#pragma kernel")
 
 
-def test_a_compute_variant_s_groups_are_told_at_its_own_line(folder, trial):
-    if trial_has_no_compute(folder, trial):
+def test_a_compute_variant_s_groups_are_told_at_its_own_line(folder, sandbox):
+    if trial_has_no_compute(folder, sandbox):
         pytest.skip("this context has no compute shaders")
     folder.write(
         "hills.glsl", '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 texel) { return 1.0; }\n'
     )
     text = '\n#pragma compute(groups = "size.x / (size.x - size.y), 1")\nvoid main() {}\n'
-    found = wrong(folder.write("hills.comp", text), trial)
+    found = wrong(folder.write("hills.comp", text), sandbox)
     assert (Path(found.file).name, found.line) == ("hills.comp", 2), found
 
 
-def trial_has_no_compute(folder, trial: Trial) -> bool:
+def trial_has_no_compute(folder, sandbox: Sandbox) -> bool:
     path = folder.write(
         "any.glsl", '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 t) { return 1.0; }\n'
     )
-    return bool(check_file(path, trial).skipped)
+    return bool(check_file(path, sandbox).skipped)
 
 
 def test_a_sketch_s_own_kernel_is_told_at_its_header_too(any_engine, folder):
@@ -79,31 +79,31 @@ def test_a_sketch_s_own_kernel_is_told_at_its_header_too(any_engine, folder):
     assert (Path(found.file).name, found.line) == ("one.glsl", 2)
 
 
-def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, trial):
+def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, sandbox):
     folder.write("lib.glsl", "float half_of(float x) { return 0.5 * x; }\n")
     part = folder.write(
         "parts/k.glsl",
         '#include "../lib.glsl"\n#pragma kernel(output = "height:r32f")\n'
         "float kernel(ivec2 texel) { return half_of(float(texel.x)); }\n",
     )
-    assert "outside" in wrong(part, trial).message
+    assert "outside" in wrong(part, sandbox).message
     with pytest.raises(PlaygroundError, match="outside"):
         load(part)
     folder.write("sketch.toml", "")
-    assert check_file(part, trial).ok
+    assert check_file(part, sandbox).ok
     load(part)
 
 
-def test_a_shader_with_nothing_to_run_is_told_alike_by_check_and_by_opening_it(folder, trial):
+def test_a_shader_with_nothing_to_run_is_told_alike_by_check_and_by_opening_it(folder, sandbox):
     toy = folder.write("toy.frag", "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n")
-    said = wrong(toy, trial).message
+    said = wrong(toy, sandbox).message
     assert "neither a #version and main of its own nor a #pragma kernel" in said
     assert "ShaderToy's mainImage needs" in said
     with pytest.raises(PlaygroundError) as caught:
         load(toy)
     assert caught.value.diagnostics[0].message == said
     bare = folder.write("bare.frag", "float x;\n")
-    assert "ShaderToy" not in wrong(bare, trial).message
+    assert "ShaderToy" not in wrong(bare, sandbox).message
 
 
 HOLE = '// h\n#pragma kernel(output = "height:r32f")\nuniform float root = -1.0; //! slider(-1, 1)\n'
@@ -111,23 +111,23 @@ ALL = HOLE + "float kernel(ivec2 texel) { return sqrt(root); }\n"
 SOME = HOLE + "float kernel(ivec2 texel) { return texel.x == 1 ? sqrt(root) : 0.5; }\n"
 
 
-def test_a_technique_of_nothing_but_nan_fails_and_one_hole_may_be_the_stand_ins_own(folder, trial):
-    found = wrong(folder.write("all.glsl", ALL), trial)
+def test_a_technique_of_nothing_but_nan_fails_and_one_hole_may_be_the_stand_ins_own(folder, sandbox):
+    found = wrong(folder.write("all.glsl", ALL), sandbox)
     assert "output 'height': none of its 1089 texels is finite; the first is NaN" in found.message
     assert (Path(found.file).name, found.line) == ("all.glsl", 2)
-    assert check_file(folder.write("some.glsl", SOME), trial).ok
-    assert check_file(folder.write("none.glsl", ALL.replace("= -1.0;", "= 1.0;")), trial).ok
+    assert check_file(folder.write("some.glsl", SOME), sandbox).ok
+    assert check_file(folder.write("none.glsl", ALL.replace("= -1.0;", "= 1.0;")), sandbox).ok
 
 
-def test_a_sketch_may_have_no_hole_at_all(folder, trial):
+def test_a_sketch_may_have_no_hole_at_all(folder, sandbox):
     folder.write("some.glsl", SOME)
     text = 'format = 1\nsize = 33\n[[pass]]\nname = "height"\nuse = "./some"\n'
     sketch = folder.write("sketch.toml", text)
-    found = wrong(sketch, trial)
+    found = wrong(sketch, sandbox)
     assert "pass 'height', output 'height': NaN at texel (1, 0)" in found.message
     assert (Path(found.file).name, found.line) == ("some.glsl", 2)
     folder.write("sketch.toml", text + "set = { root = 1.0 }\n")
-    assert check_file(sketch, trial).ok
+    assert check_file(sketch, sandbox).ok
 
 
 def test_a_file_that_the_child_does_not_survive_is_not_read_here(
@@ -149,6 +149,6 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
         encoding="utf-8",
     )
     monkeypatch.setattr(sources, "read_elevation", refuse)
-    with Trial(memory_bytes=2**30) as small:
+    with Sandbox(memory_bytes=2**30) as small:
         found = wrong(tmp_path / "sketch.toml", small)
     assert "not enough memory to read it" in found.message and "land.npy" in found.message

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.check import FileReport, check_file, find_files
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import DataError, Diagnostic, ShaderError
 from playground.sketch.load import load
 
@@ -17,8 +17,8 @@ KERNEL = '#pragma kernel(output = "height:r32f")\n'
 
 
 @pytest.fixture(scope="module")
-def trial():
-    with Trial() as made:
+def sandbox():
+    with Sandbox() as made:
         yield made
 
 
@@ -26,8 +26,8 @@ def placed(found: Diagnostic) -> tuple[str, int]:
     return Path(found.file).name, found.line
 
 
-def checked(path: Path, trial: Trial) -> FileReport:
-    return check_file(path, trial)
+def checked(path: Path, sandbox: Sandbox) -> FileReport:
+    return check_file(path, sandbox)
 
 
 # Lines that a driver would miscount
@@ -68,12 +68,12 @@ def test_a_plain_shader_s_macro_calls_keep_their_lines_too(folder, any_engine):
     assert placed(caught.value.diagnostics[0]) == ("t.frag", 9)
 
 
-def test_a_line_directive_moves_no_error_and_is_a_warning(folder, trial, any_engine):
+def test_a_line_directive_moves_no_error_and_is_a_warning(folder, sandbox, any_engine):
     text = f"{KERNEL}#line 100\nfloat kernel(ivec2 texel) {{ return 1.0; }}\n"
-    report = checked(folder.write("a.glsl", text), trial)
+    report = checked(folder.write("a.glsl", text), sandbox)
     assert report.ok and [(placed(w), w.severity) for w in report.warnings] == [(("a.glsl", 2), "warning")]
     assert "#line is left out" in report.warnings[0].message
-    report = checked(folder.write("a.glsl", text.replace("1.0;", "wrong;")), trial)
+    report = checked(folder.write("a.glsl", text.replace("1.0;", "wrong;")), sandbox)
     assert placed(report.errors[0]) == ("a.glsl", 3)
 
 
@@ -93,18 +93,18 @@ def test_a_function_that_calls_itself_is_told_where_it_is_defined(folder, any_en
     assert all("recursion" in d.message for d in caught.value.diagnostics), caught.value
 
 
-def test_includes_in_a_circle_and_texts_that_are_not_utf_8_have_their_line(folder, trial):
+def test_includes_in_a_circle_and_texts_that_are_not_utf_8_have_their_line(folder, sandbox):
     folder.write("round.glsl", '\n#include "a.glsl"\n')
-    report = checked(folder.write("a.glsl", f'{KERNEL}#include "round.glsl"\n'), trial)
+    report = checked(folder.write("a.glsl", f'{KERNEL}#include "round.glsl"\n'), sandbox)
     assert placed(report.errors[0]) == ("round.glsl", 2) and "include cycle" in report.errors[0].message
     (folder.path / "latin.glsl").write_bytes(b"// fine\r\n// gr\xc3\xbcn, gr\xf6\xdfe\n")
-    report = checked(folder.path / "latin.glsl", trial)
+    report = checked(folder.path / "latin.glsl", sandbox)
     assert placed(report.errors[0]) == ("latin.glsl", 2) and report.errors[0].column == 12
-    report = checked(folder.write("a.glsl", f'{KERNEL}#include "latin.glsl"\n'), trial)
+    report = checked(folder.write("a.glsl", f'{KERNEL}#include "latin.glsl"\n'), sandbox)
     found = report.errors[0]
     assert placed(found) == ("latin.glsl", 2) and [Path(c).name for c in found.chain] == ["a.glsl:2"]
     (folder.path / "sketch.toml").write_bytes(b"format = 1\n# \xff\n")
-    assert placed(checked(folder.path / "sketch.toml", trial).errors[0]) == ("sketch.toml", 2)
+    assert placed(checked(folder.path / "sketch.toml", sandbox).errors[0]) == ("sketch.toml", 2)
 
 
 # What is never compiled
@@ -122,9 +122,9 @@ uniform vec2 metres = vec2(0.0);
 
 
 @pytest.mark.parametrize("code", ["float half_of(float x) { return x / 2; }", "float f(", "const int N = 3;"])
-def test_code_in_a_source_s_file_is_refused_at_its_line(folder, trial, code):
-    assert checked(folder.write("source.glsl", SOURCE), trial).ok
-    report = checked(folder.write("source.glsl", f"{SOURCE}#define N 3\n  {code}\n"), trial)
+def test_code_in_a_source_s_file_is_refused_at_its_line(folder, sandbox, code):
+    assert checked(folder.write("source.glsl", SOURCE), sandbox).ok
+    report = checked(folder.write("source.glsl", f"{SOURCE}#define N 3\n  {code}\n"), sandbox)
     (found,) = report.errors
     assert placed(found) == ("source.glsl", 10) and found.column == 3
     assert "nothing runs this code" in found.message
@@ -134,7 +134,7 @@ def test_code_in_a_source_s_file_is_refused_at_its_line(folder, trial, code):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in this system's folders")
-def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder, trial, tmp_path_factory):
+def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder, sandbox, tmp_path_factory):
     folder.write("good.glsl", f"{KERNEL}float kernel(ivec2 texel) {{ return 1.0; }}\n")
     os.mkfifo(folder.path / "pipe.glsl")
     os.mkfifo(folder.path / "pipe.toml")
@@ -143,7 +143,7 @@ def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder
     with socket.socket(socket.AF_UNIX) as one:
         one.bind(str(near / "s.frag"))
         (near / "s.frag").rename(folder.path / "socket.frag")
-        found = {path.name: checked(path, trial) for path, _ in find_files([folder.path])}
+        found = {path.name: checked(path, sandbox) for path, _ in find_files([folder.path])}
     assert found.pop("good.glsl").ok
     assert sorted(found) == ["pipe.glsl", "pipe.toml", "socket.frag"]
     for name, report in found.items():
@@ -153,7 +153,7 @@ def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder
         )
     with pytest.raises(DataError, match="a pipe, a socket or a device"):
         find_files([folder.path / "pipe.glsl"])
-    report = checked(folder.write("good.glsl", f'{KERNEL}#include "pipe.glsl"\n'), trial)
+    report = checked(folder.write("good.glsl", f'{KERNEL}#include "pipe.glsl"\n'), sandbox)
     assert placed(report.errors[0]) == ("good.glsl", 2)
 
 
@@ -173,19 +173,19 @@ def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder
         ("vec4 u_date", "annotation"),
     ],
 )
-def test_a_uniform_of_a_plain_shader_is_refused_in_a_kernel(folder, trial, declared, words):
+def test_a_uniform_of_a_plain_shader_is_refused_in_a_kernel(folder, sandbox, declared, words):
     text = f"{KERNEL}\nuniform {declared};\nfloat kernel(ivec2 texel) {{ return 1.0; }}\n"
-    (found,) = checked(folder.write("a.glsl", text), trial).errors
+    (found,) = checked(folder.write("a.glsl", text), sandbox).errors
     name = declared.split()[1]
     assert placed(found) == ("a.glsl", 3) and found.column == found.excerpt.index(name) + 1
     assert f"'{name}' is given to plain shaders only" in found.message and words in found.message
 
 
 @pytest.mark.parametrize("declared", ["vec2 u_mouse = vec2(0.5);  //! point", "float frame = 3.0;"])
-def test_one_that_is_meant_as_a_parameter_is_one(folder, trial, declared):
+def test_one_that_is_meant_as_a_parameter_is_one(folder, sandbox, declared):
     name = declared.split()[1]
     text = f"{KERNEL}uniform {declared}\nfloat kernel(ivec2 texel) {{ return vec2({name}).x; }}\n"
-    assert checked(folder.write("a.glsl", text), trial).ok
+    assert checked(folder.write("a.glsl", text), sandbox).ok
 
 
 # Steps
@@ -194,15 +194,15 @@ def test_one_that_is_meant_as_a_parameter_is_one(folder, trial, declared):
 REPEATS = f'{KERNEL[:-2]}, repeat = "5")\nfloat kernel(ivec2 texel) {{ return previous(texel) + 1.0; }}\n'
 
 
-def test_steps_beyond_the_repeat_are_refused_and_of_a_shot_at_its_line(folder, trial, any_engine):
+def test_steps_beyond_the_repeat_are_refused_and_of_a_shot_at_its_line(folder, sandbox, any_engine):
     shot = '[[shot]]\nname = "end"\nsteps = {{ a = {} }}\n'
     sketch = folder.one(REPEATS, more=shot.format(5))
-    assert checked(folder.path / "sketch.toml", trial).ok
+    assert checked(folder.path / "sketch.toml", sandbox).ok
     assert (any_engine.read(sketch, "a", steps={"a": 5}) == 5.0).all()
     with pytest.raises(Exception, match="steps: 'a' stops after 6 steps, but it has 5 in all"):
         any_engine.read(sketch, "a", steps={"a": 6})
     folder.one(REPEATS, more=shot.format(99))
-    (found,) = checked(folder.path / "sketch.toml", trial).errors
+    (found,) = checked(folder.path / "sketch.toml", sandbox).errors
     assert placed(found) == ("sketch.toml", 6) and "shot 'end': steps: 'a' stops after 99" in found.message
 
 

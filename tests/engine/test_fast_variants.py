@@ -129,6 +129,27 @@ def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(told, hill):
     assert "hill.glsl has changed since the two were found to agree" in sentence
 
 
+@pytest.mark.parametrize("accepts", ["n up to 17, m up to 16", "2**n + 1, 2**m"])
+def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(told, hill, kind, accepts):
+    """It says so once, and is not refused; at its own sizes the variant runs."""
+    engine, sentences = told
+    if kind == "compute":
+        hill.write("hill.comp", COMPUTE.replace("agrees", f'accepts = "{accepts}", agrees'))
+    else:
+        hill.write("part.glsl", HALF.replace('f")', f'f", accepts = "{accepts}")'))
+    trust(hill.path)
+    for sides, fast in (((17, 16), True), ((17, 17), False), ((17, 18), False), ((17, 8), True)):
+        sketch = hill.sketch(BODY, size=f"size = {list(sides)}")
+        found = engine.read(sketch, "h")
+        np.testing.assert_allclose(found, np.broadcast_to(np.arange(17), sides[::-1]), atol=1e-5)
+        assert ran_fast(engine) is fast
+    file = "hill.comp" if kind == "compute" else "part.glsl"
+    assert sentences == [
+        f"h: {file} takes {accepts} texels a side, not 17 x {height}; the plain form runs"
+        for height in (17, 18)
+    ]
+
+
 def test_comments_and_white_space_change_nothing(told, hill):
     engine, sentences = told
     text = HILL.replace("float kernel", "// mine\nfloat   kernel").replace("How high", "A tooltip")

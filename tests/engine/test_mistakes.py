@@ -8,7 +8,7 @@ import pytest
 
 from playground.engine.all_errors import all_mistakes
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial, TrySketch
+from playground.engine.sandbox import Sandbox, TrySketch
 from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.sketch.load import load
 
@@ -83,7 +83,7 @@ def test_an_error_of_another_kind_comes_back_as_it_is(any_engine: Engine, tmp_pa
 
 def test_the_trial_tells_of_all(tmp_path: Path) -> None:
     sketch = load(sketch_in(tmp_path, "first_name", "second_name"))
-    with Trial(limit_seconds=60.0) as trial:
-        report = trial.run(TrySketch(sketch))
+    with Sandbox(limit_seconds=60.0) as sandbox:
+        report = sandbox.run(TrySketch(sketch))
     assert report.error is not None
     assert set(files(report.error)) == {"first.glsl", "second.glsl"}

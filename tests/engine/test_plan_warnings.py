@@ -14,7 +14,7 @@ import playground
 from playground import cli
 from playground.engine import sandbox as trial
 from playground.engine.check import check_file
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.sketch.load import load
 from playground.workbench.problems import Warnings
 
@@ -49,7 +49,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.write("mine.glsl", KERNEL)
     path = folder.write("sketch.toml", SKETCH)
     monkeypatch.chdir(folder.path)
-    monkeypatch.setattr(trial, "Trial", partial(trial.Trial, limit_seconds=120.0))
+    monkeypatch.setattr(trial, "Sandbox", partial(trial.Sandbox, limit_seconds=120.0))
     return path
 
 
@@ -86,7 +86,7 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert out.count(f"warning: sketch.toml:3: {TURNED}") == 1
     assert out.count("nothing reads 'idle'") == 1  # of the kernel, and again of the sketch
     assert "2 files checked, none failed, 3 warnings" in out
-    with Trial() as made:
+    with Sandbox() as made:
         report = check_file(sketch, made).as_json()
     assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
 

@@ -100,7 +100,7 @@ def places():
 @pytest.mark.parametrize("name", SETS)
 @pytest.mark.parametrize("depth", [0, 1, 2, 3])
 def test_distances_are_those_to_the_nearest_piece(on_gpu, places, name, depth):
-    found = on_gpu(FOLDS, f"{name}(place, {depth})", place=places)
+    found = on_gpu(FOLDS, f"distance_to_set({name.upper()}, place, {depth})", place=places)
     truth = np.min([far_from(places, corners) for corners in pieces(name, depth)], axis=0)
     np.testing.assert_allclose(found, truth, atol=2e-6)
 

@@ -8,7 +8,7 @@ import pytest
 import scipy.fft
 
 from playground.engine.engine import Engine
-from playground.errors import PlaygroundError, SketchError
+from playground.errors import SketchError
 from playground.paths import GLSL
 from playground.sketch.source import read_source
 
@@ -234,7 +234,7 @@ def test_powers(on_gpu, y):
 def test_waves_are_drawn_by_their_frequency(engine, sketch_of, python_random, size):
     sketch = sketch_of(size, seed=11)
     wanted = waves_by_hash(*even(size), 11, python_random)
-    assert apart(as_complex(engine.read(sketch, "land.period")), wanted) < 1e-6
+    assert apart(as_complex(engine.read(sketch, "land.waves")), wanted) < 1e-6
     assert apart(engine.read(sketch, "land.grid"), scipy.fft.ifft2(wanted).real) < 2e-6
     assert np.abs(scipy.fft.ifft2(wanted).imag).max() < 1e-12, "opposite waves are conjugates"
     assert apart(as_complex(engine.read(sketch, "land.spectrum")), wanted) < 2e-6
@@ -290,7 +290,7 @@ def test_both_drivers_give_the_same_bits(ctx, sketch_of):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
-        for inner in ("spectrum", "filtered", "land"):  # asked for by name, it is made by turns
+        for inner in ("spectrum", "filtered", "repeated"):  # asked for by name, it is made by steps
             values = [e.read(sketch_of((129, 64)), f"land.{inner}") for e in (fragment, compute)]
             np.testing.assert_array_equal(*values)
 
@@ -457,11 +457,22 @@ def test_the_fast_variant_is_the_passes_at_every_size(ctx, sketch_of, side):
                 np.testing.assert_allclose(fast.read(sketch, "land"), slow.read(sketch, "land"), atol=3e-6)
 
 
-def test_sides_too_long_for_the_fast_variant_are_refused(any_engine, sketch_of):
-    if not any_engine.info.compute:
+def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch_of):
+    """Which says so once; the terrain is the plain form's, and that of the fast variant where it can run."""
+    if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    with pytest.raises(PlaygroundError, match="MiB; 2048 at most"):
-        any_engine.read(sketch_of((8192, 2)), "land")
+    notices = []
+    with Engine(ctx, notice=notices.append) as engine:
+        wide = sketch_of((8192, 2))
+        found = engine.read(wide, "land")
+        np.testing.assert_array_equal(found, engine.read(wide.plainly(), "land"))
+        engine.read(wide.with_values({"land.seed": 8}), "land")
+        assert notices == [
+            "land: fourier.comp takes n up to 4097, m up to 4097 texels a side, not 8192 x 2; "
+            "the plain form runs"
+        ]
+        engine.read(sketch_of((4097, 2)), "land")
+        assert engine.ran == ["land"] and len(notices) == 1, "by the fast variant"
 
 
 @pytest.fixture

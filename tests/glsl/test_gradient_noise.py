@@ -193,6 +193,7 @@ def test_gradients_are_unit_vectors_in_eight_even_directions(on_gpu):
 # ── the noise ────────────────────────────────────────────────────────────────
 
 FILES = {"Perlin": "noise/gradient.glsl", "simplex": "noise/simplex.glsl"}
+FADES = ("quintic", "quintic_slope")
 CALL = {"Perlin": "perlin(p, s)", "simplex": "simplex(p, s)"}
 
 
@@ -249,6 +250,18 @@ def test_simplex_noise_stands_on_triangles_of_side_1(on_gpu):
     found = on_gpu("noise/simplex.glsl", "simplex(p, 3u)", p=np.array(points, np.float32))
     np.testing.assert_allclose(found[:, 0], 0, atol=3e-5)
     np.testing.assert_allclose(np.hypot(found[:, 1], found[:, 2]), 100 * 0.5**4 * np.sqrt(2 / 3), rtol=1e-4)
+
+
+def test_the_fade_and_its_slope(on_gpu):
+    """Level at both ends, symmetric about the middle; the slope is that of differences."""
+    t = np.linspace(0, 1, 513, dtype=np.float32)
+    for vector in (False, True):
+        place = np.stack([t, t[::-1]], axis=1) if vector else t
+        fade, slope = (on_gpu("noise/fade.glsl", f"{name}(t)", t=place) for name in FADES)
+        np.testing.assert_allclose(fade + fade[::-1], 1, atol=1e-6)
+        assert np.abs(slope[[0, -1]]).max() == 0 and np.abs(fade[[0, -1]]).max() == 1
+        middle = (slope[1:] + slope[:-1]) / 2
+        np.testing.assert_allclose(np.abs(np.diff(fade, axis=0)) * 512, middle, atol=2e-4)
 
 
 def test_perlin_noise_is_zero_where_the_lattice_is(on_gpu):

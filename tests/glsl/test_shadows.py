@@ -146,37 +146,37 @@ def part_of_disc(line):
     return 1 - np.searchsorted(heights, line) / heights.size
 
 
-# What a walk leaps over
+# What a march leaps over
 
 
 @pytest.mark.parametrize("size", [(1, 1), (16, 17), (65, 33), (40, 100)], ids=str)
-def test_tops_are_the_highest_of_blocks_and_of_their_borders(any_engine, make_sketch, size):
+def test_block_maxima_are_the_highest_of_blocks_and_of_their_borders(any_engine, make_sketch, size):
     passes = (
         '[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
-        '[[pass]]\nname = "tops"\nuse = "lighting/ray_cast/tops"\nsize = "(height.size + 15) // 16"\n'
+        '[[pass]]\nname = "maxima"\nuse = "lighting/block_maxima"\nsize = "(height.size + 15) // 16"\n'
     )
     sketch = make_sketch(passes, size=list(size))
     heights = any_engine.read(sketch, "height")
-    tops = any_engine.read(sketch, "tops")
+    maxima = any_engine.read(sketch, "maxima")
     # The filter's window begins at its own texel, and what lies beside the land is as low as can be.
     wanted = maximum_filter(heights, size=17, origin=-8, mode="constant", cval=-1.0)[::16, ::16]
-    np.testing.assert_array_equal(tops, wanted)
+    np.testing.assert_array_equal(maxima, wanted)
 
 
 @pytest.mark.parametrize("method", ["ray_cast", *SOFT])
 @pytest.mark.parametrize("sun", [(135, 25), (262, 7), (0, 4)], ids=str)
 def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
     """With blocks that reach to the sky every step is looked at, and the bits are the same."""
-    sky = '#pragma kernel(output = "tops:r32f")\nfloat kernel(ivec2 texel) { return 1e6; }\n'
+    sky = '#pragma kernel(output = "block_maxima:r32f")\nfloat kernel(ivec2 texel) { return 1e6; }\n'
     head = (
         '[[pass]]\nname = "height"\nuse = "generation/gradient_noise"\nset = { frequency = 3.0, seed = 5 }\n'
         '[[pass]]\nname = "range"\nuse = "terrain/range"\n'
         '[[pass]]\nname = "horizon"\nuse = "./sky"\nsize = 1\n'
     )
     found = []
-    for use in ("lighting/ray_cast/tops", "./sky"):
+    for use in ("lighting/block_maxima", "./sky"):
         passes = (
-            f'{head}[[pass]]\nname = "tops"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
+            f'{head}[[pass]]\nname = "block_maxima"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
             f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/visibility"\nset = {{ sun = {list(sun)} }}\n'
         )
         sketch = make_sketch(passes, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
@@ -413,7 +413,7 @@ def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(c
         )
         assert swept.plan.step("light.horizon").size == (65, 65)
         np.testing.assert_array_equal(sweep_on_grid[::2, ::2], visible(plain, march))
-        assert len(said) == 1 and plain.plan.step("light.tops").size == (5, 5)
+        assert len(said) == 1 and plain.plan.step("light.block_maxima").size == (5, 5)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 180.0, 270.0, 45.0, 225.0])

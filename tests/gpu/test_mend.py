@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, complaint, mend
+
+from ..cases import each
 
 # Texts as users saw them: in public threads (named), or provoked on Mesa 22.3.6 with
 # glcontext 3.1 and GLFW 3.4, or (binary) as they stand in those two for other platforms.
@@ -98,7 +98,7 @@ MESSAGES = [
 PLATFORMS = ["linux", "darwin", "win32"]
 
 
-@pytest.mark.parametrize(("name", "message"), MESSAGES)
+@each(("name", "message"), MESSAGES)
 def test_a_real_message_is_known(name, message):
     found = complaint(message)
     assert found is not None
@@ -109,10 +109,8 @@ def test_every_complaint_of_the_table_has_a_real_message():
     assert {c.name for c in COMPLAINTS} == {name for name, _ in MESSAGES}
 
 
-@pytest.mark.parametrize("platform", PLATFORMS)
-@pytest.mark.parametrize(
-    "message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"})
-)
+@each("platform", PLATFORMS)
+@each("message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"}))
 def test_the_answer_is_one_line_of_whole_sentences(message, platform):
     answer = mend(message, platform, {})
     assert "\n" not in answer
@@ -120,8 +118,8 @@ def test_the_answer_is_one_line_of_whole_sentences(message, platform):
     assert "  " not in answer
 
 
-@pytest.mark.parametrize("platform", ["darwin", "win32"])
-@pytest.mark.parametrize(("name", "message"), MESSAGES)
+@each("platform", ["darwin", "win32"])
+@each(("name", "message"), MESSAGES)
 def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message, platform):
     answer = mend(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
     assert "apt" not in answer.split()
@@ -129,7 +127,7 @@ def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message,
     assert "WSL" not in answer
 
 
-@pytest.mark.parametrize("platform", PLATFORMS)
+@each("platform", PLATFORMS)
 def test_an_unknown_message_gets_the_general_advice(platform):
     assert complaint("the cat sat on the keyboard") is None
     assert mend("the cat sat on the keyboard", platform, {}).startswith("OpenGL did not start")
@@ -139,14 +137,14 @@ def test_an_unknown_platform_is_taken_for_linux():
     assert mend("libEGL.so not loaded", "freebsd14", {}) == mend("libEGL.so not loaded", "linux", {})
 
 
-@pytest.mark.parametrize("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
+@each("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
 def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_developers(message):
     answer = mend(message, "linux", {})
     assert f"apt install {' '.join(DEBIAN_RENDER)}" in answer
     assert "-dev" not in answer
 
 
-@pytest.mark.parametrize(
+@each(
     ("message", "environ", "expected"),
     [
         ("found 0 devices", {"NVIDIA_VISIBLE_DEVICES": "all"}, "NVIDIA_DRIVER_CAPABILITIES=all"),

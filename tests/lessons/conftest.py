@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
+from playground.lessons.document import read_document
 from playground.lessons.model import Lesson
-from playground.lessons.read import part, read_file
+from playground.lessons.read import read_file
 from playground.lessons.scenes import Sketches
 from playground.lessons.translate import translated, write_hashes
 
@@ -85,7 +86,7 @@ find   = "(all(inside) ? 4.0 : 3.0)"
 put    = "8.0"
 ask    = "Why is it dark?"
 hint   = "Count the neighbours."
-mend   = "Four of them."
+fix    = "Four of them."
 alt    = "Dark discs."
 ```
 
@@ -166,7 +167,7 @@ caption = "En entier."
 ```break fault
 ask  = "Pourquoi est-ce sombre ?"
 hint = "Comptez les voisins."
-mend = "Ils sont quatre."
+fix  = "Ils sont quatre."
 alt  = "Des disques sombres."
 ```
 
@@ -240,8 +241,8 @@ def lesson(make_lesson: Callable[..., Lesson]) -> Lesson:
 @pytest.fixture
 def french(write_lesson: Callable[..., Path], tmp_path: Path) -> Lesson:
     """Give the small lesson in French."""
-    english = part(write_lesson())
+    english = read_document(write_lesson())
     path = tmp_path / "petit.md"
     path.write_text(FRENCH, encoding="utf-8")
-    write_hashes(english, part(path))
-    return translated(read_file(english.path, SKETCHES), english, part(path), "fr")
+    write_hashes(english, read_document(path))
+    return translated(read_file(english.path, SKETCHES), english, read_document(path), "fr")

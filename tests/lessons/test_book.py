@@ -19,7 +19,7 @@ from playground.lessons.book.html import formula, line, plain, prose
 from playground.lessons.book.images import is_diagram, larger
 from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
-from playground.lessons.library import interface_words
+from playground.lessons.library import interface_labels
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
 
@@ -170,7 +170,7 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
 def test_a_figure_with_sliders_says_where_they_are(book):
     for language, option in (("en", ""), ("fr", " --lang fr")):
         page = Page(book / language / "small.html")
-        words = interface_words(language)
+        words = interface_labels(language)
         said = f"{words['in_window']}{words['colon']}playground lesson open small{option}"
         assert page.text.count(said) == 1  # of its figures one has sliders
 
@@ -248,7 +248,7 @@ def test_plain_words():
 
 
 def test_both_languages_have_the_same_words():
-    english, french = interface_words("en"), interface_words("fr")
+    english, french = interface_labels("en"), interface_labels("fr")
     assert english.keys() == french.keys()
     for key, text in english.items():
         places = [part.split("}")[0] for part in text.split("{")[1:]]
@@ -259,14 +259,14 @@ def test_every_word_is_used():
     """A word by a name that is made up would be missed: there are none."""
     package = Path(build.__file__).resolve().parent.parent
     code = "".join(path.read_text(encoding="utf-8") for path in package.rglob("*.py"))
-    assert [key for key in interface_words("en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
+    assert [key for key in interface_labels("en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
 
 
 def test_french_is_set_as_french_is():
     """No ordinary space before ; : ? ! and within quotation marks."""
     import re
 
-    for key, text in interface_words("fr").items():
+    for key, text in interface_labels("fr").items():
         assert not re.search(r" [;:?!»]|« ", text), key
 
 

@@ -1,13 +1,13 @@
-"""Excerpts by anchors, and the lines around a fault."""
+"""Excerpts by anchors, and the lines around a bug."""
 
 from __future__ import annotations
 
 import pytest
 
 from playground.errors import SketchError
-from playground.lessons.bugs import around, region
+from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import anchors, excerpt
-from playground.lessons.figure_renders import faulty
+from playground.lessons.figure_renders import with_bug
 from playground.paths import GLSL
 
 TEXT = """float a;
@@ -60,19 +60,20 @@ def test_every_anchor_of_the_library_can_be_read():
             assert 1 <= len(one.text.split("\n")) <= 40, (path, name)
 
 
-def test_the_lines_around_a_fault(lesson):
+def test_the_lines_around_a_bug(lesson):
     block = lesson.named["fault"]
-    whole, broken = around(block)
-    assert "(all(inside) ? 4.0 : 3.0)" in whole and "8.0" in broken
+    found = bug_region(block)
+    correct, broken = found.correct, found.broken
+    assert "(all(inside) ? 4.0 : 3.0)" in correct and "8.0" in broken
     differing = [
-        pair for pair in zip(whole.split("\n"), broken.split("\n"), strict=True) if pair[0] != pair[1]
+        pair for pair in zip(correct.split("\n"), broken.split("\n"), strict=True) if pair[0] != pair[1]
     ]
     assert len(differing) == 1
 
 
 def test_lines_put_back_make_the_file_again(lesson):
     block = lesson.named["fault"]
-    found = region(block)
+    found = bug_region(block)
     text = (GLSL / block.file).read_text(encoding="utf-8")
     same = [
         line.strip()
@@ -81,7 +82,7 @@ def test_lines_put_back_make_the_file_again(lesson):
     ]
     back = [
         line.strip()
-        for line in found.with_lines(found.whole).split("\n")
+        for line in found.with_lines(found.correct).split("\n")
         if line.strip() and "// anchor" not in line and "// end:" not in line
     ]
     assert back == same
@@ -95,7 +96,7 @@ def test_lines_put_back_make_the_file_again(lesson):
         ("float", "expected once in generation/diamond_square/raw.glsl, found"),
     ],
 )
-def test_a_fault_that_does_not_fit(make_lesson, find, words):
+def test_a_bug_that_does_not_fit(make_lesson, find, words):
     block = make_lesson(('find   = "(all(inside) ? 4.0 : 3.0)"', f'find = "{find}"')).named["fault"]
     with pytest.raises(SketchError, match=words):
-        faulty(block)
+        with_bug(block)

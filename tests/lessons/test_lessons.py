@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from playground.lessons.bugs import region
-from playground.lessons.figure_renders import faulty, pictures_of
+from playground.lessons.bugs import bug_region
+from playground.lessons.figure_renders import pictures_of, with_bug
 from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
 from playground.lessons.measuring import filled, numbers_of
 from playground.lessons.model import Break, Prose
@@ -37,7 +37,8 @@ def test_no_translation_is_stale_or_without_a_lesson():
     for language in LANGUAGES:
         if language != SOURCE:
             assert [path.stem for path in sorted((TEXTS / language).glob("*.md"))] == lesson_files()
-            assert {name: status_of(name, language).word for name in NAMES} == dict.fromkeys(NAMES, "current")
+            states = {name: status_of(name, language).state for name in NAMES}
+            assert states == dict.fromkeys(NAMES, "current")
 
 
 def test_each_keeps_to_the_rules(shipped):
@@ -47,7 +48,7 @@ def test_each_keeps_to_the_rules(shipped):
 
 def test_french_is_set_as_french_is(shipped):
     """A no-break space before ; : ? ! and within quotation marks; code and formulas aside."""
-    for words in shipped["fr"].words():
+    for words in shipped["fr"].texts():
         text = re.sub(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)|https://\S+", "", words)
         wrong = re.findall(r"[^\n]{0,20}(?:(?<=\w) [;:?!»]|« )[^\n]{0,10}", text)
         assert not wrong, wrong
@@ -56,10 +57,10 @@ def test_french_is_set_as_french_is(shipped):
 def test_a_translation_says_as_much(shipped):
     """Paragraph by paragraph: none is left in English, none is a line where there were ten."""
     for english, french in zip(shipped["en"].blocks, shipped["fr"].blocks, strict=True):
-        if isinstance(english, Prose) and english.kind == "paragraph" and len(english.words) > 80:
+        if isinstance(english, Prose) and english.kind == "paragraph" and len(english.markdown) > 80:
             assert isinstance(french, Prose)
-            assert french.words != english.words
-            assert 0.6 < len(french.words) / len(english.words) < 2.0, french.words[:80]
+            assert french.markdown != english.markdown
+            assert 0.6 < len(french.markdown) / len(english.markdown) < 2.0, french.markdown[:80]
 
 
 def test_the_names_of_its_pictures_are_its_own(shipped):
@@ -67,13 +68,14 @@ def test_the_names_of_its_pictures_are_its_own(shipped):
     assert len(names) == len(set(names)) and names
 
 
-def test_the_mended_lines_of_every_fault_restore_its_shader(shipped):
-    """What a lesson shows as mended, put back in the faulty lines' place, is the shipped text again."""
+def test_the_fixed_lines_of_every_bug_restore_its_shader(shipped):
+    """The lines that a lesson shows as the fix, put back into its file, make the shipped text again."""
     for block in shipped["en"].blocks:
         if isinstance(block, Break):
-            found = region(block)
-            assert code_of(found.with_lines(found.whole)) == code_of(read_text(GLSL / block.file)), block.name
-            assert code_of(found.with_lines(found.broken)) == code_of(faulty(block)), block.name
+            found = bug_region(block)
+            shipped_text = read_text(GLSL / block.file)
+            assert code_of(found.with_lines(found.correct)) == code_of(shipped_text), block.name
+            assert code_of(found.with_lines(found.broken)) == code_of(with_bug(block)), block.name
 
 
 def code_of(text):
@@ -82,7 +84,7 @@ def code_of(text):
 
 
 @pytest.mark.slow
-def test_faults_show_and_claims_hold(shipped, engine):
+def test_bugs_are_visible_and_claims_hold(shipped, engine):
     assert list(wrong_pictures(engine, shipped["en"])) == []
 
 
@@ -90,5 +92,5 @@ def test_faults_show_and_claims_hold(shipped, engine):
 def test_every_number_stands_in_its_sentence(shipped, engine):
     numbers = numbers_of(engine, shipped["en"])
     for language, lesson in shipped.items():
-        for words in lesson.words():
+        for words in lesson.texts():
             assert "…" not in filled(words, numbers, comma=language == "fr") or "…" in words

@@ -17,8 +17,9 @@ import pytest
 from PIL import Image
 
 from playground.errors import SketchError
+from playground.lessons.bugs import BugRegion
 from playground.lessons.figure_renders import broken, draw
-from playground.lessons.library import interface_words, lesson_files
+from playground.lessons.library import interface_labels, lesson_files
 from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Figure, Prose
 from playground.lessons.notebook import lesson as notebook_lesson
@@ -94,13 +95,13 @@ def test_a_value_out_of_range_is_said_and_the_picture_stays(opened):
 def test_a_series_is_dragged_frame_by_frame(opened, lesson, engine):
     widget = opened.show("turns")
     (control,) = widget.controls
-    assert (control["high"], control["choices"][2]) == (5.0, "turn 2")
+    assert (control["high"], control["choices"][2]) == (5.0, "iteration 2")
     widget.values = {"frame": 3}
     np.testing.assert_array_equal(pixels(widget.picture), draw(engine, lesson.named["turns"].scenes[3]).array)
 
 
 def test_controls_of_each_kind_of_block(lesson, opened):
-    kinds = {name: controls_of(lesson.named[name], "en", opened.words) for name in ("turns", "smooth", "two")}
+    kinds = {name: controls_of(lesson.named[name], "en", opened.label) for name in ("turns", "smooth", "two")}
     assert [found[0].kind for found in kinds.values()] == ["range", "range", "choice"]
     assert kinds["smooth"][0].choices == ("0.1", "0.5", "0.9")
     assert scene_at(lesson.named["two"], {"frame": 9.0}) == lesson.named["two"].scenes[1]
@@ -108,7 +109,7 @@ def test_controls_of_each_kind_of_block(lesson, opened):
 
 def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
     block = read_lesson("heightfield").named["land"]
-    found = controls_of(block, "fr", interface_words("fr"))
+    found = controls_of(block, "fr", interface_labels("fr"))
     assert [(c.key, c.label, c.value, c.low, c.high, c.unit) for c in found[:2]] == [
         ("light.sun:0", "azimut", 105.0, 0.0, 360.0, "°"),
         ("light.sun:1", "élévation", 22.0, -90.0, 90.0, "°"),
@@ -122,7 +123,7 @@ def test_every_slider_of_a_shipped_lesson_can_be_dragged():
     for name in lesson_files():
         for block in read_lesson(name, "en", sketches).blocks:
             if isinstance(block, Figure):
-                keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_words("en"))}
+                keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_labels("en"))}
                 assert keys == set(block.sliders), (name, block.name)
 
 
@@ -132,19 +133,19 @@ def test_a_saved_notebook_shows_the_picture(opened, lesson, engine):
     np.testing.assert_array_equal(shown, draw(engine, lesson.named["two"].scenes[0]).array)
 
 
-def test_mending_the_lines_makes_the_whole_picture(opened, lesson, engine):
-    from playground.lessons.bugs import around
+def test_fixing_the_lines_makes_the_correct_picture(opened, lesson, engine):
+    from playground.lessons.bugs import bug_region
 
     block = lesson.named["fault"]
-    whole, faulty = around(block)
+    region = bug_region(block)
     np.testing.assert_array_equal(opened.show("fault").array, draw(engine, broken(block)).array)
-    still = opened.mend("fault", faulty)
-    assert still.word == opened.words["not_yet"]
+    still = opened.fix("fault", region.broken)
+    assert still.verdict == opened.label["not_yet"]
     np.testing.assert_array_equal(still.array, draw(engine, broken(block)).array)
-    mended = opened.mend("fault", whole)
-    assert mended.word == opened.words["mended"]
-    np.testing.assert_array_equal(mended.array, draw(engine, block.scene).array)
-    assert opened.words["mended"] in mended._repr_html_()
+    fixed = opened.fix("fault", region.correct)
+    assert fixed.verdict == opened.label["fixed"]
+    np.testing.assert_array_equal(fixed.array, draw(engine, block.scene).array)
+    assert opened.label["fixed"] in fixed._repr_html_()
 
 
 def test_a_name_that_is_not_there(opened):
@@ -198,11 +199,12 @@ def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch)
 
 
 @pytest.mark.parametrize("text", ["#define A(x) \\", "b = '\\n';"])
-def test_lines_to_mend_are_in_the_cell_as_they_are_in_the_file(lesson, engine, monkeypatch, text):
+def test_lines_to_fix_are_in_the_cell_as_they_are_in_the_file(lesson, engine, monkeypatch, text):
     """A backslash stays one."""
-    monkeypatch.setattr("playground.lessons.notebook.build.around", lambda _: ("", text))
+    region = BugRegion(correct="", broken=text, before="", after="", indent="")
+    monkeypatch.setattr("playground.lessons.notebook.build.bug_region", lambda _: region)
     cells = json.loads(notebook_text(lesson, numbers_of(engine, lesson)))["cells"]
-    (cell,) = [cell for cell in cells if "lesson.mend(" in "".join(cell["source"])]
+    (cell,) = [cell for cell in cells if "lesson.fix(" in "".join(cell["source"])]
     call = ast.parse("".join(cell["source"])).body[0].value
     assert ast.literal_eval(call.args[1]) == f"\n{text}\n"
 

@@ -29,7 +29,7 @@ def test_a_figure_that_is_a_shot_is_plain(lesson, make_lesson):
 
 def test_steps_stop_all_their_passes_at_each_turn(lesson):
     steps = lesson.named["turns"]
-    assert steps.turns == (0, 1, 2, 3, 4, 5)  # 5 texels a side: the corners, then twice two turns
+    assert steps.iterations == (0, 1, 2, 3, 4, 5)  # 5 texels a side: the corners, then twice two turns
     assert [dict(scene.steps) for scene in steps.scenes] == [{"height.raw": t, "phase": t} for t in range(6)]
 
 
@@ -147,5 +147,17 @@ def test_a_file_without_front_matter(tmp_path):
 def test_a_formula_with_a_label_is_a_formula(make_lesson):
     """Nothing that stands in the text is lost."""
     found = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
-    assert "x = 1" in found.blocks[0].words and "(one)" in found.blocks[0].words
-    assert found.blocks[1].words == "A picture first."
+    assert "x = 1" in found.blocks[0].markdown and "(one)" in found.blocks[0].markdown
+    assert found.blocks[1].markdown == "A picture first."
+
+
+def test_keys_of_older_lessons_are_read(make_lesson, lesson):
+    """What was ``mend`` and ``turns`` is ``fix`` and ``iterations``, of a block and of a measure."""
+    older = make_lesson(
+        ('fix    = "Four of them."', 'mend   = "Four of them."'),
+        ('passes  = ["height.raw", "phase"]', 'passes  = ["height.raw", "phase"]\nturns = [0, 2]'),
+        ('what    = "spread"', 'what    = "turns"'),
+    )
+    assert older.named["fault"].fix == lesson.named["fault"].fix == "Four of them."
+    assert older.named["turns"].iterations == (0, 2)
+    assert older.named["spread"].what == "iterations"

@@ -64,11 +64,11 @@ def test_each_rule(make_lesson, before, after, words):
     assert any(words in sentence for sentence in sentences(make_lesson((before, after))))
 
 
-def test_a_fault_must_show_and_a_claim_must_hold(make_lesson, engine):
+def test_a_bug_must_be_visible_and_a_claim_must_hold(make_lesson, engine):
     assert list(wrong_pictures(engine, make_lesson())) == []
     hidden = make_lesson(('put    = "8.0"', 'put = "(all(inside) ? 4.0001 : 3.0)"'))
     assert [s for _, s in wrong_pictures(engine, hidden)] == [
-        "break 'fault': the fault hardly changes the picture"
+        "break 'fault': the bug hardly changes the picture"
     ]
     false = make_lesson(("between = [0.1, 2.0]", "between = [3.0, 4.0]"))
     (sentence,) = [s for _, s in wrong_pictures(engine, false)]

@@ -6,7 +6,8 @@ import pytest
 
 from playground.errors import SketchError
 from playground.lessons import library, status
-from playground.lessons.read import part, read_file
+from playground.lessons.document import read_document
+from playground.lessons.read import read_file
 from playground.lessons.translate import mark, stale, translated, write_hashes
 
 
@@ -24,7 +25,7 @@ def test_its_words_stand_in_the_place_of_the_english_ones(french, lesson):
     assert (french.language, french.title) == ("fr", "Une petite leçon")
     assert french.named["land"].alt == "Un treillis de disques."
     assert french.named["two"].labels == ("uni", "inégal")
-    assert french.named["spread"].words.startswith("Du plus bas")
+    assert french.named["spread"].sentence.startswith("Du plus bas")
     assert french.sections[1].title == "Une chose"
     assert not french.stale
 
@@ -47,9 +48,9 @@ def test_all_else_is_the_english_lesson_s(french, lesson):
 )
 def test_a_changed_block_is_stale_and_only_that(pair, write_lesson, before, after, changed):
     english, french = pair
-    old = part(english)
+    old = read_document(english)
     write_lesson((before, after))
-    lost = stale(part(english), part(french))
+    lost = stale(read_document(english), read_document(french))
     assert lines_of(old, lost.changed) == changed
     assert not lost.added and not lost.removed
 
@@ -57,36 +58,36 @@ def test_a_changed_block_is_stale_and_only_that(pair, write_lesson, before, afte
 def test_broken_lines_are_not_a_change(pair, write_lesson):
     english, french = pair
     write_lesson(("A picture first.", "A picture\nfirst."))
-    assert not stale(part(english), part(french)).any
+    assert not stale(read_document(english), read_document(french)).any
 
 
 def test_a_new_block_stands_in_english_until_it_is_translated(pair, write_lesson):
     english, french = pair
     write_lesson(("## One thing\n", "## One thing\n\nA new paragraph.\n"))
-    lost = stale(part(english), part(french))
-    assert lines_of(part(english), lost.added) == ["A new paragraph."] and not lost.changed
-    found = translated(read_file(english), part(english), part(french), "fr")
-    words = [block.words for block in found.blocks if hasattr(block, "kind")]
+    lost = stale(read_document(english), read_document(french))
+    assert lines_of(read_document(english), lost.added) == ["A new paragraph."] and not lost.changed
+    found = translated(read_file(english), read_document(english), read_document(french), "fr")
+    words = [block.markdown for block in found.blocks if hasattr(block, "kind")]
     assert "A new paragraph." in words and "Une image d’abord." in words
     assert found.named["third"].ask == "Changez."  # what comes after keeps its place
-    assert [found.blocks[i].words for i in found.stale] == ["A new paragraph."]
+    assert [found.blocks[i].markdown for i in found.stale] == ["A new paragraph."]
 
 
 def test_a_block_that_is_gone(pair, write_lesson):
     english, french = pair
     write_lesson(("A picture first.\n", ""))
-    assert stale(part(english), part(french)).removed == 1
-    found = translated(read_file(english), part(english), part(french), "fr")
+    assert stale(read_document(english), read_document(french)).removed == 1
+    found = translated(read_file(english), read_document(english), read_document(french), "fr")
     assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
-    assert not any(getattr(block, "words", "") == "Une image d’abord." for block in found.blocks)
+    assert not any(getattr(block, "markdown", "") == "Une image d’abord." for block in found.blocks)
 
 
 def test_marking_it_again_makes_it_current(pair, write_lesson):
     english, french = pair
     write_lesson(("A picture first.", "Another sentence."))
     before = french.read_text(encoding="utf-8")
-    write_hashes(part(english), part(french))
-    assert not stale(part(english), part(french)).any
+    write_hashes(read_document(english), read_document(french))
+    assert not stale(read_document(english), read_document(french)).any
     changed = [
         a
         for a, b in zip(before.split("\n"), french.read_text(encoding="utf-8").split("\n"), strict=True)
@@ -119,7 +120,7 @@ def test_what_a_translation_may_not(pair, before, after, words):
     assert before in text
     french.write_text(text.replace(before, after), encoding="utf-8")
     with pytest.raises(SketchError) as caught:
-        translated(read_file(english), part(english), part(french), "fr")
+        translated(read_file(english), read_document(english), read_document(french), "fr")
     assert words in caught.value.diagnostics[0].message
     assert caught.value.diagnostics[0].line
 
@@ -129,7 +130,7 @@ def test_marking_one_with_other_blocks_is_refused_and_nothing_written(pair):
     text = french.read_text(encoding="utf-8").replace("Une image d’abord.\n", "Une image.\n\nD’abord.\n")
     french.write_text(text, encoding="utf-8")
     with pytest.raises(SketchError, match="where the English has"):
-        write_hashes(part(english), part(french))
+        write_hashes(read_document(english), read_document(french))
     assert french.read_text(encoding="utf-8") == text
 
 
@@ -139,23 +140,23 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
         (tmp_path / language).mkdir()
         (tmp_path / language / "small.md").write_bytes(path.read_bytes())
     monkeypatch.setattr(library, "TEXTS", tmp_path)
-    assert status.status_of("small", "fr").word == "current"
+    assert status.status_of("small", "fr").state == "current"
     text = (tmp_path / "en" / "small.md").read_text(encoding="utf-8")
     (tmp_path / "en" / "small.md").write_text(text.replace("A picture first.", "Two."), encoding="utf-8")
     found = status.status_of("small", "fr")
     line = text.split("\n").index("A picture first.") + 1
-    assert (found.word, found.changed) == ("stale", (line,))
+    assert (found.state, found.changed) == ("stale", (line,))
     assert found.sentences == [f"changed: line {line}"]
     (tmp_path / "fr" / "small.md").unlink()
-    assert status.status_of("small", "fr").word == "missing"
+    assert status.status_of("small", "fr").state == "missing"
 
 
 def test_a_block_that_became_one_of_another_kind_stands_in_english(pair, write_lesson):
     """A stale translation can be read, whatever the English has become."""
     english, french = pair
     write_lesson(("A picture first.\n", "* A list\n* first\n"))
-    found = translated(read_file(english), part(english), part(french), "fr")
-    assert found.blocks[0].words == "* A list\n* first" and found.stale == (0,)
+    found = translated(read_file(english), read_document(english), read_document(french), "fr")
+    assert found.blocks[0].markdown == "* A list\n* first" and found.stale == (0,)
     assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
 
 
@@ -165,7 +166,7 @@ def test_a_block_that_got_more_parts_stands_in_english(pair, write_lesson):
         ('labels  = ["even", "uneven"]', 'labels = ["even", "uneven", "more"]'),
         ("0.9 }\n```", '0.9 }\n[[variant]]\nset = { "height.smoothing" = 0.5 }\n```'),
     )
-    found = translated(read_file(english), part(english), part(french), "fr")
+    found = translated(read_file(english), read_document(english), read_document(french), "fr")
     assert found.named["two"].labels == ("even", "uneven", "more")
     assert [found.blocks[i].name for i in found.stale] == ["two"]
     assert found.named["third"].ask == "Changez."
@@ -183,7 +184,7 @@ def test_one_that_says_something_else_is_not_marked(pair, before, after, words):
     text = french.read_text(encoding="utf-8").replace(before, after)
     french.write_text(text, encoding="utf-8")
     with pytest.raises(SketchError, match=words):
-        mark(read_file(english), part(english), part(french), "fr")
+        mark(read_file(english), read_document(english), read_document(french), "fr")
     assert french.read_text(encoding="utf-8") == text
 
 
@@ -192,4 +193,4 @@ def test_one_with_fewer_blocks_than_it_was_marked_with_is_not_current(pair):
     text = french.read_text(encoding="utf-8").replace("Une image d’abord.\n", "")
     french.write_text(text, encoding="utf-8")
     with pytest.raises(SketchError, match="blocks, but source names"):
-        stale(part(english), part(french))
+        stale(read_document(english), read_document(french))

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.lessons import library
-from playground.lessons.read import part
+from playground.lessons.document import read_document
 from playground.lessons.translate import write_hashes
 from playground.live.code_window import draw_code
 from playground.live.inspect.timeline import height_of_timeline
@@ -229,7 +229,7 @@ def write_lessons(folder: Path) -> Path:
     (folder / "en" / "halving.md").write_text(ENGLISH, encoding="utf-8")
     (folder / "en" / "after.md").write_text(OTHER, encoding="utf-8")
     (folder / "fr" / "halving.md").write_text(FRENCH, encoding="utf-8")
-    write_hashes(part(folder / "en" / "halving.md"), part(folder / "fr" / "halving.md"))
+    write_hashes(read_document(folder / "en" / "halving.md"), read_document(folder / "fr" / "halving.md"))
     return folder
 
 

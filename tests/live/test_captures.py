@@ -12,7 +12,7 @@ import pytest
 
 from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
-from playground.capture.job_process import Working
+from playground.capture.job_process import JobProcess
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
@@ -118,7 +118,7 @@ def test_a_process_that_dies_is_told(actions: Actions) -> None:
     actions.capture.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     actions.capture.start(actions)
     assert actions.capture.working is not None
-    actions.capture.working._process._process.kill()
+    actions.capture.working._worker._process.kill()
     wait(actions)
     assert actions.capture.failed.startswith("the capture "), actions.capture.failed
 
@@ -230,8 +230,14 @@ def test_a_job_takes_a_new_name_every_time(actions: Actions) -> None:
 
 
 def test_a_job_in_its_process_gives_the_bytes_of_this_one(actions: Actions) -> None:
-    job = Job(PICTURE, job_of(Wish(), actions).sketch, actions.folder, (64, 64), fps=Fraction(30))
-    working = Working(job, software=actions.session.engine.info.software)
+    job = Job(
+        kind=PICTURE,
+        sketch=job_of(Wish(), actions).sketch,
+        folder=actions.folder,
+        size=(64, 64),
+        fps=Fraction(30),
+    )
+    working = JobProcess(job, software=actions.session.engine.info.software)
     end = time.monotonic() + LIMIT
     while (finished := working.poll()) is None and time.monotonic() < end:
         time.sleep(0.01)

@@ -12,7 +12,7 @@ import pytest
 
 from playground import errors
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport
+from playground.engine.sandbox import SandboxReport
 from playground.errors import PlaygroundError
 from playground.live.errors_list import draw_errors
 from playground.workbench.problems import Problems
@@ -45,7 +45,7 @@ def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
 
 
 def test_there_are_many_kinds_of_errors() -> None:
-    assert {errors.TrialCrash, errors.OpenGLFault, errors.ParameterError, errors.DataError} <= set(family())
+    assert {errors.SandboxCrash, errors.OpenGLFault, errors.ParameterError, errors.DataError} <= set(family())
 
 
 @pytest.mark.parametrize("kind", [*family(), RuntimeError, MemoryError], ids=lambda kind: kind.__name__)
@@ -84,7 +84,7 @@ def test_a_refusal_of_the_trial_s_names_the_sketch(
     folder: Path, any_engine: Engine, kind: type[PlaygroundError]
 ) -> None:
     trial = FakeTrial()
-    trial.answer = TrialReport(False, kind("refused"))
+    trial.answer = SandboxReport(False, kind("refused"))
     session = Session(any_engine, folder, sandbox=trial)
     session.frame((32, 32))
     if not issubclass(kind, errors.ContextError):  # then the window's own context is asked

@@ -19,6 +19,8 @@ from playground.live.lesson.markdown_runs import Run, parts_of, plain
 from playground.workbench.lesson.labels import _ALL, words_in
 from playground.workbench.lesson.progress import NARROWEST, Progress, read_progress, write_progress
 
+from ..cases import each
+
 INK = 0xFFEEEEEE
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -88,7 +90,7 @@ def test_what_is_wider_than_a_line_is_broken_inside():
     assert "".join(texts(lines)) == "xabcdefghij y"
 
 
-@pytest.mark.parametrize("seed", range(60))
+@each("seed", range(60))
 def test_no_letter_is_lost_doubled_or_out_of_its_line(seed):
     chance = random.Random(seed)
     width = chance.randint(3, 40)

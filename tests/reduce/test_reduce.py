@@ -16,13 +16,13 @@ import pytest
 from playground.cli import main
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
-from playground.reduce.child import Seen, Task
-from playground.reduce.failures import Differs, Fault, NotFinite, OffReference, Refused, Side
+from playground.reduce.candidate_process import CandidateProcess
+from playground.reduce.draw_handler import DrawResult, DrawTask
+from playground.reduce.failures import Differs, FailureKind, NotFinite, OffReference, Refused, Side
 from playground.reduce.inline import lay_flat
 from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
-from playground.reduce.worker import Worker
 from playground.shots.references import reference_path
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
@@ -35,7 +35,7 @@ PASS = '[[pass]]\nname = "height"\nuse = "./one"\n'
 
 @pytest.fixture(scope="module")
 def worker():
-    with Worker(software=True, limit=60.0) as made:
+    with CandidateProcess(software=True, limit=60.0) as made:
         yield made
 
 
@@ -56,8 +56,8 @@ def sketch(tmp_path, monkeypatch):
 
 def shrink(
     path: Path,
-    fault: Fault,
-    worker: Worker,
+    failure: FailureKind,
+    worker: CandidateProcess,
     folder: Path,
     target: str = "height",
     frame: tuple[int, int] = (8, 8),
@@ -66,7 +66,7 @@ def shrink(
     """Reduce a sketch to the end, or for so many tries."""
     folder.mkdir(exist_ok=True)
     case = lay_flat(load(path), frame=frame).looking_at(target)
-    probe = Probe(fault, [worker], folder, 60.0)
+    probe = Probe(failure, [worker], folder, 60.0)
     finding = probe.find(case)
     assert finding is not None, "it fails to begin with"
     search = Search(case, finding, probe, tries=tries)
@@ -147,16 +147,16 @@ float kernel(ivec2 texel) {{
     assert "sin" not in text_of(search)
 
 
-def seen(values) -> list[Seen]:
-    return [Seen("drawn", values=np.array(values, np.float32))]
+def results(values) -> list[DrawResult]:
+    return [DrawResult("drawn", values=np.array(values, np.float32))]
 
 
 def test_not_finite_means_the_same_kind_in_no_new_place():
-    fault = NotFinite()
+    failure = NotFinite()
     nan, inf = np.nan, np.inf
-    before = fault.found(seen([[1, nan], [1, nan]]))
+    before = failure.found(results([[1, nan], [1, nan]]))
     assert before is not None
-    assert fault.found(seen([[1, 2], [1, 2]])) is None
+    assert failure.found(results([[1, 2], [1, 2]])) is None
     for values, same in (
         ([[1, nan], [1, nan]], True),
         ([[1, 1], [1, nan]], True),
@@ -165,9 +165,9 @@ def test_not_finite_means_the_same_kind_in_no_new_place():
         ([[1, inf], [1, inf]], False),
         ([[1, nan, 1]], True),  # another size: only the kind can be compared
     ):
-        after = fault.found(seen(values))
+        after = failure.found(results(values))
         assert after is not None
-        assert fault.same(before, after) == same, values
+        assert failure.same(before, after) == same, values
 
 
 # ── what the compiler refuses ────────────────────────────────────────────────
@@ -190,8 +190,8 @@ def test_a_compile_error_in_an_include_is_laid_bare(sketch, worker, tmp_path):
 
 
 def test_another_message_is_another_failure():
-    fault = Refused("undeclared")
-    before = fault.found([Seen("shader", ("`x' undeclared", "wrong type"))])
+    failure = Refused("undeclared")
+    before = failure.found([DrawResult("shader", ("`x' undeclared", "wrong type"))])
     assert before is not None
     for messages, same in (
         (("`x' undeclared",), True),
@@ -199,11 +199,11 @@ def test_another_message_is_another_failure():
         (("`y' undeclared",), False),
         (("`x' undeclared", "syntax error"), False),
     ):
-        after = fault.found([Seen("shader", messages)])
+        after = failure.found([DrawResult("shader", messages)])
         assert after is not None
-        assert fault.same(before, after) == same, messages
-    assert fault.found([Seen("shader", ("syntax error",))]) is None
-    assert fault.found([Seen("refused", ("`x' undeclared",))]) is None
+        assert failure.same(before, after) == same, messages
+    assert failure.found([DrawResult("shader", ("syntax error",))]) is None
+    assert failure.found([DrawResult("refused", ("`x' undeclared",))]) is None
 
 
 # ── two ways to draw ─────────────────────────────────────────────────────────
@@ -228,8 +228,8 @@ def test_where_a_fast_variant_disagrees_only_its_fault_stays(sketch, worker, tmp
     )
     if not worker.info.compute:
         pytest.skip("no compute shaders here")
-    fault = Differs((Side(driver="fragment"), Side(driver="compute")), ("fragment", "compute"))
-    search = shrink(path, fault, worker, tmp_path / "scratch")
+    failure = Differs((Side(driver="fragment"), Side(driver="compute")), ("fragment", "compute"))
+    search = shrink(path, failure, worker, tmp_path / "scratch")
     variant = search.best.live[-1].variant
     assert "if (texel.x > 5) h" in variant
     assert "sin" not in variant
@@ -237,23 +237,23 @@ def test_where_a_fast_variant_disagrees_only_its_fault_stays(sketch, worker, tmp
 
 
 def test_a_difference_is_of_the_same_kind_where_it_is_as_large():
-    fault = Differs((Side(), Side()), ("one", "other"))
+    failure = Differs((Side(), Side()), ("one", "other"))
 
     def found(one, other):
-        return fault.found(seen(one) + seen(other))
+        return failure.found(results(one) + results(other))
 
     wide, last = found([[1, 2]], [[1, 2.5]]), found([[1, 2]], [[1, 2.0000002]])
     assert wide is not None
     assert last is not None
-    assert wide.word == "differs widely in places"
-    assert last.word == "differs in the last bits"
-    assert not fault.same(wide, last)
+    assert wide.kind == "differs widely in places"
+    assert last.kind == "differs in the last bits"
+    assert not failure.same(wide, last)
     assert found([[1, np.nan]], [[1, np.nan]]) is None
-    assert "not finite by one" in found([[1, np.nan]], [[1, 2]]).word
-    assert not fault.same(wide, found([[1, 2]], [[1.5, 2]])), "where they agreed they must agree"
-    assert fault.found([Seen("drawn", values=np.zeros((1, 1), np.float32)), Seen("crash")]).word.startswith(
-        "only by other: crash"
-    )
+    assert "not finite by one" in found([[1, np.nan]], [[1, 2]]).kind
+    assert not failure.same(wide, found([[1, 2]], [[1.5, 2]])), "where they agreed they must agree"
+    assert failure.found(
+        [DrawResult("drawn", values=np.zeros((1, 1), np.float32)), DrawResult("crash")]
+    ).kind.startswith("only by other: crash")
 
 
 @pytest.mark.slow
@@ -296,7 +296,7 @@ MAP = f'{PASS}[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\n{SHOT}'
 def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, tmp_path, capsys):
     path = sketch(BANDS, MAP)
     shot = load(path).shots[0]
-    good = worker.look(Task(load(path), "", "auto", shot.size))
+    good = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
     assert good.values is not None
     reference = reference_path(load(path), "noon", worker.info.slug)
     reference.parent.mkdir(parents=True)
@@ -304,7 +304,7 @@ def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, wor
     assert main(["--software", "reduce", str(path), "--shot", "noon"]) == 2
     assert "is as its reference" in capsys.readouterr().err
     sketch(BANDS.replace("0.125", "0.375"), MAP)
-    bad = worker.look(Task(load(path), "", "auto", shot.size))
+    bad = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
     search = shrink(
         path,
         OffReference(bad.values, [good.values], 1),
@@ -441,7 +441,7 @@ def test_a_hang_is_kept(sketch, tmp_path):
         f"    float x = float(texel.x);{LOOP * 200}\n    return other(x);\n}}\n",
         size="size = 65",
     )
-    with Worker(software=True, limit=2.0) as impatient:
+    with CandidateProcess(software=True, limit=2.0) as impatient:
         folder = tmp_path / "scratch"
         folder.mkdir()
         case = lay_flat(load(path), frame=(8, 8)).looking_at("height")
@@ -502,9 +502,9 @@ def test_a_shipped_sketch_laid_flat_draws_the_same_picture(name, worker, tmp_pat
     frame = (64, 36)
     case = lay_flat(sketch, frame=frame)
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
-    whole = worker.look(Task(sketch, "", "fragment", frame))
-    flat = worker.look(Task(str(tmp_path / "sketch.toml"), "", "fragment", frame))
-    assert whole.word == flat.word == "drawn", flat.told
+    whole = worker.draw(DrawTask(sketch=sketch, ref="", driver="fragment", frame=frame))
+    flat = worker.draw(DrawTask(sketch=str(tmp_path / "sketch.toml"), ref="", driver="fragment", frame=frame))
+    assert whole.kind == flat.kind == "drawn", flat.details
     np.testing.assert_array_equal(flat.values, whole.values)
 
 

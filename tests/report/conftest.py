@@ -49,7 +49,7 @@ def leave(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Reco
             }
             assert actual is not None
             pictures |= {"expected": expected, "difference": difference_picture(actual, expected)}
-        record = Record(sketch, shot, **values | fields)  # type: ignore[arg-type]
+        record = Record(sketch=sketch, shot=shot, **values | fields)  # type: ignore[arg-type]
         return write_result(tmp_path / "results", record, {} if record.ok else pictures)
 
     return leave

@@ -181,9 +181,9 @@ def test_a_record_cannot_lead_elsewhere(leave, change: dict[str, str]) -> None:
 
 def test_shots_are_named_or_matched() -> None:
     records = [
-        Record("a", "x", "differs", ""),
-        Record("a", "y", "same", ""),
-        Record("b[1]", "x", "differs", ""),
+        Record(sketch="a", shot="x", word="differs", sentence=""),
+        Record(sketch="a", shot="y", word="same", sentence=""),
+        Record(sketch="b[1]", shot="x", word="differs", sentence=""),
     ]
 
     def names(*patterns: str) -> list[str]:

@@ -265,6 +265,15 @@ def test_the_report_goes_where_it_is_asked_to_and_says_where(leave, tmp_path: Pa
 
 def test_every_kind_of_picture_has_its_caption(leave) -> None:
     html = report_html(
-        [Record("a", "b", "differs", "x", pictures={k: f"a/b.{k}.png" for k in CAPTIONS})], Path("results")
+        [
+            Record(
+                sketch="a",
+                shot="b",
+                word="differs",
+                sentence="x",
+                pictures={k: f"a/b.{k}.png" for k in CAPTIONS},
+            )
+        ],
+        Path("results"),
     )
     assert [text for _, text in Page(html).all("figcaption")] == list(CAPTIONS.values())

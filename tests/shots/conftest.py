@@ -11,21 +11,21 @@ import pytest
 # Here already, for what a run of pytest inside pytest imports first is forgotten after it.
 from playground.shots import checking, collect, fixture  # noqa: F401
 from playground.shots.fingerprint import Fingerprint
-from playground.shots.studio import Studio
+from playground.shots.renderer_process import RendererProcess
 from playground.shots.suite import ShotCase, Taken
 
 # What drew a reference, as one build of Mesa says it.
 OURS = Fingerprint(
-    "llvmpipe (LLVM 15.0.6, 256 bits)",
-    "4.5 Mesa 22.3.6",
-    "Mesa/X.org",
-    "22.3.6",
-    "15.0.6",
-    "GenuineIntel",
-    "avx fma f16c",
-    "ab12",
-    "64x32",
-    "tool 1",
+    renderer="llvmpipe (LLVM 15.0.6, 256 bits)",
+    version="4.5 Mesa 22.3.6",
+    vendor="Mesa/X.org",
+    mesa="22.3.6",
+    llvm="15.0.6",
+    cpu="GenuineIntel",
+    simd="avx fma f16c",
+    drawn="ab12",
+    size="64x32",
+    tool="tool 1",
 )
 
 KERNEL = """// land.glsl -- a slope.
@@ -64,27 +64,27 @@ Run = Callable[..., pytest.RunResult]
 
 
 @pytest.fixture(scope="session")
-def warm_studio() -> Iterator[Studio]:
+def warm_renderer() -> Iterator[RendererProcess]:
     """Give one child that draws, for all runs of pytest inside pytest: starting it takes the most time."""
-    with Studio() as studio:
-        yield studio
+    with RendererProcess() as process:
+        yield process
 
 
 class Lent:
-    """A studio that is not the borrower's to close; a few shots do not come off."""
+    """A renderer process that is not the borrower's to close; a few shots do not come off."""
 
-    def __init__(self, studio: Studio, ends: dict[str, Exception]) -> None:
-        self._studio = studio
+    def __init__(self, process: RendererProcess, ends: dict[str, Exception]) -> None:
+        self._process = process
         self._ends = ends  # by shot: what comes instead of a picture
-        self.renderer = studio.renderer
+        self.renderer = process.renderer
 
-    def take(self, case: ShotCase) -> Taken:
+    def render(self, case: ShotCase) -> Taken:
         if case.shot.name in self._ends:
             raise self._ends[case.shot.name]
-        return self._studio.take(case)
+        return self._process.render(case)
 
-    def said(self) -> str:
-        return self._studio.said()
+    def printed(self) -> str:
+        return self._process.printed()
 
     def close(self) -> None:
         pass
@@ -100,7 +100,7 @@ def ends() -> dict[str, Exception]:
 def run(
     pytester: pytest.Pytester,
     monkeypatch: pytest.MonkeyPatch,
-    warm_studio: Studio,
+    warm_renderer: RendererProcess,
     ends: dict[str, Exception],
 ) -> Run:
     """Give what runs pytest in a folder with the tiny sketch."""
@@ -108,7 +108,7 @@ def run(
         pytest.skip("the reference renderer, Mesa's llvmpipe, is chosen by name on Linux")
     for variable in ("CI", "GALLIUM_DRIVER", "PYTEST_ADDOPTS", "PYTEST_XDIST_TESTRUNUID"):
         monkeypatch.delenv(variable, raising=False)
-    monkeypatch.setattr(checking, "Studio", lambda *_: Lent(warm_studio, ends))
+    monkeypatch.setattr(checking, "RendererProcess", lambda *_: Lent(warm_renderer, ends))
     Path("land.glsl").write_text(KERNEL)
     Path("slope.toml").write_text(SKETCH)
     fixed = ("-p", "playground.shots.plugin", "-p", "no:cacheprovider", "-W", "error", "-ra")

@@ -16,6 +16,8 @@ from playground.engine.non_finite import NotFinite, not_finite_in
 from playground.shots.suite import shots_of, take
 from playground.sketch.load import load
 
+from ..cases import each
+
 NAN, INFINITY = "uintBitsToFloat(0x7fc00000u)", "uintBitsToFloat(0x7f800000u)"
 
 SOUND = """// sound.glsl -- a slope.
@@ -112,9 +114,9 @@ def slow(values: np.ndarray) -> tuple[tuple[int, int] | None, int]:
     return (wrong[0] if wrong else None), len(wrong)
 
 
-@pytest.mark.parametrize("dtype", ["f2", "f4"])
-@pytest.mark.parametrize("shape", [(9, 7), (9, 7, 2), (5, 6, 4)])
-@pytest.mark.parametrize("seed", range(6))
+@each("dtype", ["f2", "f4"])
+@each("shape", [(9, 7), (9, 7, 2), (5, 6, 4)])
+@each("seed", range(6))
 def test_agrees_with_looking_at_every_number(dtype: str, shape: tuple[int, ...], seed: int) -> None:
     rng = np.random.default_rng(seed)
     bits = rng.integers(0, 256, (*shape, int(dtype[1])), dtype=np.uint8).reshape(*shape[:-1], -1)

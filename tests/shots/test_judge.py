@@ -29,7 +29,9 @@ from .conftest import OURS
 SCREENSHOTS = Path(__file__).resolve().parent.parent.parent / "screenshots"
 SIZE = (200, 100)  # pixels; 0.5 % of them are 100
 NEWER = replace(OURS, version="4.5 Mesa 25.0.7", vendor="Mesa", mesa="25.0.7")
-CARD = Fingerprint("NVIDIA H200/PCIe/SSE2", "4.6.0 NVIDIA 570.86", "NVIDIA Corporation", drawn="ab12")
+CARD = Fingerprint(
+    renderer="NVIDIA H200/PCIe/SSE2", version="4.6.0 NVIDIA 570.86", vendor="NVIDIA Corporation", drawn="ab12"
+)
 
 
 def picture(seed: int = 7) -> np.ndarray:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.errors import TrialCrash, TrialTimeout
+from playground.errors import SandboxCrash, SandboxTimeout
 from playground.shots.result_paths import place_of
 
 Run = Callable[..., pytest.RunResult]
@@ -149,13 +149,13 @@ def test_a_renderer_that_is_missing_in_ci_is_on_the_page(
 
 RENDERS = """
 import pytest
-from playground.errors import TrialCrash
+from playground.errors import SandboxCrash
 
 def test_one(shot):
     shot.check(shot.render("slope.toml", shot="bright"), "one")
 
 def test_meant(shot):
-    with pytest.raises(TrialCrash, match="SIGSEGV"):
+    with pytest.raises(SandboxCrash, match="SIGSEGV"):
         shot.render("slope.toml", shot="plain")
 """
 
@@ -163,8 +163,8 @@ def test_meant(shot):
 @pytest.mark.parametrize(
     ("end", "word"),
     [
-        (TrialCrash("drawing it crashed: by SIGSEGV\n    | nir: wrong"), "crash"),
-        (TrialTimeout("took 9 s"), "hang"),
+        (SandboxCrash("drawing it crashed: by SIGSEGV\n    | nir: wrong"), "crash"),
+        (SandboxTimeout("took 9 s"), "hang"),
     ],
     ids=["crash", "hang"],
 )
@@ -173,11 +173,11 @@ def test_what_render_raised_is_told_in_its_word_and_on_the_page(
 ) -> None:
     Path("test_x.py").write_text(RENDERS)
     run("--shots-update", "-k", "one").assert_outcomes(passed=1, deselected=1)
-    ends["bright"], ends["plain"] = end, TrialCrash("drawing it crashed: by SIGSEGV")
+    ends["bright"], ends["plain"] = end, SandboxCrash("drawing it crashed: by SIGSEGV")
     result = run("--shots-report")
     result.assert_outcomes(passed=1, failed=1)
     said = str(end).partition("\n")[0]
-    result.stdout.fnmatch_lines([f"E *Trial*: {word}: {said}", "test_x.py:6: *"])
+    result.stdout.fnmatch_lines([f"E *Sandbox*: {word}: {said}", "test_x.py:6: *"])
     assert "playground/shots" not in result.stdout.str().replace("shots-report", "").replace("\\", "/")
     assert words() == {"test_x.py/test_one": word}, "and not what an earlier run has found"
     assert sentence("test_x.py/test_one") == said

@@ -22,7 +22,7 @@ from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.shots.mutants.redraw import commented
+from playground.shots.mutants.redraw_handler import commented
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.repeatability import Redrawn, again
 from playground.shots.mutants.suite import (
@@ -225,7 +225,7 @@ def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
     edit: Edit, said: str, default_sketch: Sketch
 ):
     with pytest.raises(DataError, match=said) as caught:
-        broken(Rendering("old", "It is old.", (edit,)), default_sketch)
+        broken(Rendering(name="old", broke="It is old.", edits=(edit,)), default_sketch)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
 
 
@@ -247,7 +247,7 @@ def test_a_shot_that_does_not_show_a_defect_says_so(bench: Bench):
         change = Finished("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
         return next(bench.run([change]))
 
-    (wire,) = bench.run([Rendering("none", "Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
+    (wire,) = bench.run([Rendering(name="none", broke="Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
     for result in (wire, shown(1)):
         assert result.unseen and result.well and not result.counts
     assert shown(2).counts and not shown(2).unseen
@@ -445,4 +445,4 @@ def test_every_mutant_has_a_name_to_be_asked_for():
     (one,) = named(["seam"])
     assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)
     with pytest.raises(DoesNotApply):
-        broken(Rendering("x", "X.", wires=(("colour.mix.grass", "nowhere"),)), load())
+        broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load())

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.errors import TrialCrash, TrialTimeout
+from playground.errors import SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
 from playground.images.files import read_png
 from playground.shots.references import write_reference
@@ -118,8 +118,8 @@ def test_each_failure_has_its_own_word_and_the_next_shot_still_runs(
 ) -> None:
     """Another size, a crash, a hang and a mistake beside a shot that passes, in one run."""
     crash = "drawing slope/crashed crashed: the process was ended by SIGSEGV\n    | nir: validation failed"
-    ends["crashed"] = TrialCrash(crash)
-    ends["hung"] = TrialTimeout("drawing slope/hung took more than 120 s and was stopped")
+    ends["crashed"] = SandboxCrash(crash)
+    ends["hung"] = SandboxTimeout("drawing slope/hung took more than 120 s and was stopped")
     edit("slope.toml", "size = [40, 32]", "size = [40, 31]")
     more = "".join(f'[[shot]]\nname = "{name}"\n' for name in ("crashed", "hung", "unreadable", "last"))
     edit("slope.toml", '[[shot]]\nname = "plain"', f'{more}[[shot]]\nname = "plain"')

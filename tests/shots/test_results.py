@@ -63,7 +63,7 @@ OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
 
 @pytest.mark.parametrize(
     "record",
-    [FULL, OTHER, Record("a", "b", "same", "every pixel")],
+    [FULL, OTHER, Record(sketch="a", shot="b", word="same", sentence="every pixel")],
     ids=["full", "in a folder of its own", "bare"],
 )
 def test_a_record_comes_back_as_it_was(record: Record) -> None:
@@ -99,7 +99,7 @@ def test_a_new_folder_stays_out_of_a_repository_but_a_given_one_is_left_alone(tm
 def test_results_come_by_sketch_and_shot(tmp_path: Path) -> None:
     for name in ("b/z", "b/a", "a/m"):
         sketch, shot = name.split("/")
-        write_result(tmp_path, Record(sketch, shot, "same", "every pixel"), {})
+        write_result(tmp_path, Record(sketch=sketch, shot=shot, word="same", sentence="every pixel"), {})
     assert [record.name for record in read_results(tmp_path)] == ["a/m", "b/a", "b/z"]
 
 
@@ -187,7 +187,7 @@ def test_an_empty_or_missing_folder_is_said_to_be_one(tmp_path: Path) -> None:
 )
 def test_names_that_lead_elsewhere_are_not_written(tmp_path: Path, sketch: str, shot: str) -> None:
     with pytest.raises(DataError, match="cannot be a"):
-        write_result(tmp_path / "out", Record(sketch, shot, "same", ""), {})
+        write_result(tmp_path / "out", Record(sketch=sketch, shot=shot, word="same", sentence=""), {})
     assert not (tmp_path / "out").exists()
 
 

@@ -13,11 +13,11 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import ContextError, OpenGLFault
 from playground.gpu.context import ContextInfo
-from playground.images.files import read_png, write_png
+from playground.images.files import write_png
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
 from playground.shots.references import read_reference, reference_path, write_reference
-from playground.shots.suite import Outcome, ShotCase, Taken, check, save_pictures, shots_of, take
+from playground.shots.suite import Outcome, ShotCase, Taken, check, images_of, shots_of, take
 from playground.sketch.model import Graph, Shot, Sketch
 
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
@@ -153,22 +153,19 @@ def test_a_frame_from_elsewhere_is_judged_too(case: ShotCase) -> None:
     assert (found.ok, found.fingerprint.drawn, found.differences) == (True, "", ())
 
 
-def test_pictures_are_left_to_look_at(case: ShotCase, tmp_path: Path) -> None:
+def test_images_to_look_at(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    files = save_pictures(checked(case, smooth(90), LLVMPIPE), tmp_path / "out")
-    assert list(files) == ["actual", "expected", "difference", "flip"]
-    assert [file.name for file in files.values()] == [f"dawn.{word}.png" for word in files]
-    np.testing.assert_array_equal(read_png(files["actual"])[0], smooth(90))
-    seen = read_png(files["flip"])[0]
-    assert seen.shape == smooth().shape
-    assert seen[30, 40, 0] > 20 and tuple(seen[5, 5]) == (0, 0, 4, 255)
+    images = images_of(checked(case, smooth(90), LLVMPIPE))
+    assert list(images) == ["actual", "expected", "difference", "flip"]
+    np.testing.assert_array_equal(images["actual"], smooth(90))
+    assert images["flip"].shape == smooth().shape
+    assert images["flip"][30, 40, 0] > 20 and tuple(images["flip"][5, 5]) == (0, 0, 4, 255)
 
 
-def test_without_a_like_reference_there_is_no_flip_picture(case: ShotCase, tmp_path: Path) -> None:
-    assert list(save_pictures(checked(case, smooth(), LLVMPIPE), tmp_path / "out")) == ["actual"]
+def test_without_a_like_reference_there_is_no_flip_image(case: ShotCase) -> None:
+    assert list(images_of(checked(case, smooth(), LLVMPIPE))) == ["actual"]
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth()[:-1], "ab12")
-    files = save_pictures(checked(case, smooth(), LLVMPIPE), tmp_path / "out")
-    assert list(files) == ["actual", "expected", "difference"]
+    assert list(images_of(checked(case, smooth(), LLVMPIPE))) == ["actual", "expected", "difference"]
 
 
 # ── taking ───────────────────────────────────────────────────────────────────

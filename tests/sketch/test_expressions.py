@@ -19,6 +19,8 @@ from playground.sketch.expressions import (
     nearest_accepted,
 )
 
+from ..cases import each
+
 NAMES = {"size.x": 513, "size.y": 257, "octaves": 5, "half": 0.5, "sea": True}
 
 
@@ -76,7 +78,7 @@ def test_random_expressions_agree_with_exact_arithmetic():
     assert exact > 1000
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "value"),
     [
         ("2**3**2", 512),
@@ -101,7 +103,7 @@ def test_what_an_expression_gives(text, value):
     assert found == value and type(found) is int
 
 
-@pytest.mark.parametrize("n", range(63))
+@each("n", range(63))
 def test_log2_is_exact_up_to_the_largest_power(n):
     assert evaluate("log2(x)", {"x": 2**n}) == n
     if n > 1:
@@ -109,7 +111,7 @@ def test_log2_is_exact_up_to_the_largest_power(n):
             evaluate("log2(x)", {"x": 2**n - 1})
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "",
@@ -306,3 +308,11 @@ def test_accepted_sizes_may_be_of_either_form():
     assert not is_accepted("2**n or 2**n + 1", (512, 513))
     assert nearest_accepted("2**n or 2**n + 1", (1000, 1000)) == ((513, 513), (1024, 1024))
     assert is_accepted("2**n or 2**n + 1, 2**m or 2**m + 1", (512, 65))
+
+
+def test_accepted_sizes_may_end():
+    assert accepted_sizes("2**n up to 16 or n up to 3", 100)[0] == (1, 2, 3, 4, 8, 16)
+    assert is_accepted("n up to 4097, m", (4097, 5000)) and not is_accepted("n up to 4097, m", (4098, 1))
+    for wrong in ("n up to", "n up to m", "n up to 4.5", "2 up to 1"):
+        with pytest.raises(ExpressionError):
+            accepted_sizes(wrong)

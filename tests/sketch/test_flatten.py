@@ -22,6 +22,7 @@ from playground.sketch.wiring import (
     takes_input,
 )
 
+from ..cases import each
 from ..loading import load
 
 
@@ -418,9 +419,7 @@ def test_an_edited_file_is_wired_anew(make):
     assert (first["light"]["height"], second["light"]["height"]) == ("b:height", "a:height")
 
 
-@pytest.mark.parametrize(
-    ("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS]))
-)
+@each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()
     for node in flatten(load(name), variants=variants).nodes:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.sandbox import TrialReport, TrySketch
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ShaderError
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
@@ -29,12 +29,12 @@ class Tried:
 
     def __init__(self) -> None:
         self.asked: list[Sketch] = []
-        self.answer = TrialReport(True)
+        self.answer = SandboxReport(True)
 
     def submit(self, request: TrySketch) -> None:
         self.asked.append(request.sketch)
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         return self.answer
 
 
@@ -83,10 +83,10 @@ def test_a_wrong_one_is_said_and_the_next_good_one_clears_it(saves: SaveFollower
 
 
 def test_what_fails_its_trial_is_not_handed_over(saves: SaveFollower, tried: Tried, tmp_path: Path) -> None:
-    tried.answer = TrialReport(False, ShaderError("no such name", file="land.glsl", line=5))
+    tried.answer = SandboxReport(False, ShaderError("no such name", file="land.glsl", line=5))
     (tmp_path / "land.glsl").write_text(LAND.replace("return level", "return levl"), encoding="utf-8")
     assert until(saves, "no such name") is None
-    tried.answer = TrialReport(True)
+    tried.answer = SandboxReport(True)
     (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
     assert until(saves, "") is not None and saves.error is None
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport, TrySketch
-from playground.errors import TrialTimeout
+from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.errors import SandboxTimeout
 from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
@@ -33,12 +33,12 @@ class SlowTrial:
 
     def __init__(self) -> None:
         self.asked: list[TrySketch] = []
-        self.answer: TrialReport | None = None
+        self.answer: SandboxReport | None = None
 
     def submit(self, request: TrySketch) -> None:
         self.asked.append(request)
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         found, self.answer = self.answer, None
         return found
 
@@ -63,9 +63,9 @@ class Desk:
         self.compare = Compare(self.session)
         self.rememberer = Rememberer(self.session, memory, found, compare=self.compare)
         self.session.frame(SIZE)
-        self.answer(TrialReport(True))
+        self.answer(SandboxReport(True))
 
-    def answer(self, report: TrialReport) -> None:
+    def answer(self, report: SandboxReport) -> None:
         self.trial.answer = report
         self.turn()
 
@@ -109,7 +109,7 @@ def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
     desk.turn()
     assert not desk.compare.on and desk.rememberer.waits, "it waits for the trial"
     assert values_of(desk.trial.asked[-1].sketch)["height.level"] == 0.75
-    desk.answer(TrialReport(True))
+    desk.answer(SandboxReport(True))
     desk.turn()
     compare = desk.compare
     assert (compare.mode, compare.split, compare.gain) == (Mode.DIFFERENCE, 0.25, 16.0)
@@ -128,7 +128,7 @@ def test_an_a_that_fails_the_trial_is_never_drawn(desk: Desk) -> None:
     desk.open()
     desk.turn()
     draws = desk.compare.draws
-    desk.answer(TrialReport(False, TrialTimeout("pass 'height' took longer than 10 s in the trial")))
+    desk.answer(SandboxReport(False, SandboxTimeout("pass 'height' took longer than 10 s in the trial")))
     desk.turn()
     assert not desk.compare.on and desk.compare.draws == draws
     assert any("A of the last session is left out: pass 'height' took" in note for note in desk.session.notes)
@@ -155,10 +155,10 @@ def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:
     desk.session.drafts.reload()
     desk.turn()
     assert len(desk.trial.asked) == asked + 1 and desk.session.drafts.testing
-    desk.answer(TrialReport(True))
+    desk.answer(SandboxReport(True))
     assert not desk.session.drafts.testing and not desk.compare.on
     desk.turn()
-    desk.answer(TrialReport(True))
+    desk.answer(SandboxReport(True))
     desk.turn()
     assert desk.compare.on and desk.session.error is None
 

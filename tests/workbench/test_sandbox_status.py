@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport
+from playground.engine.sandbox import SandboxReport
 from playground.live.overlay import PATIENCE, trial_text
 from playground.workbench.reload import Follower
 from playground.workbench.session import Session
@@ -44,7 +44,7 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
     try:
         clock[0] = 0.5
         assert session.drafts.checking == ("sketch.toml", 0.5)
-        trial.answer = TrialReport(True)
+        trial.answer = SandboxReport(True)
         session.frame((32, 32))
         assert session.drafts.checking is None
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport, TrySketch
-from playground.errors import ContextError, SketchError, TrialTimeout
+from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.errors import ContextError, SandboxTimeout, SketchError
 from playground.images.files import write_png
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
@@ -88,12 +88,12 @@ class FakeTrial:
 
     def __init__(self) -> None:
         self.requests: list[TrySketch] = []
-        self.answer: TrialReport | None = None
+        self.answer: SandboxReport | None = None
 
     def submit(self, request: TrySketch) -> None:
         self.requests.append(request)
 
-    def poll(self) -> TrialReport | None:
+    def poll(self) -> SandboxReport | None:
         answer, self.answer = self.answer, None
         return answer
 
@@ -360,12 +360,12 @@ def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
 def test_the_trial_comes_first(tried: tuple[Bench, FakeTrial]) -> None:
     bench, trial = tried
     assert bench.session.frame(SIZE) is None and bench.session.drafts.testing
-    trial.answer = TrialReport(True, seconds=0.01)
+    trial.answer = SandboxReport(True, seconds=0.01)
     before = bench.picture()
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
     np.testing.assert_array_equal(bench.picture(), before)
     assert bench.session.drafts.testing and len(trial.requests) == 2
-    trial.answer = TrialReport(True)
+    trial.answer = SandboxReport(True)
     assert not np.array_equal(bench.picture(), before)
     assert not bench.session.drafts.testing
 
@@ -379,7 +379,7 @@ def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_
     session = Session(any_engine, tmp_path / "sketch.toml", sandbox=trial)
     try:
         (tmp_path / "none.npy").unlink()
-        trial.answer = TrialReport(False, ContextError("no context"))
+        trial.answer = SandboxReport(False, ContextError("no context"))
         for _ in range(3):
             assert session.frame(SIZE) is None
         assert "none.npy" in str(session.error) and not session.is_preview
@@ -389,10 +389,10 @@ def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_
 
 def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -> None:
     bench, trial = tried
-    trial.answer = TrialReport(True)
+    trial.answer = SandboxReport(True)
     before = bench.picture()
     bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
-    trial.answer = TrialReport(False, TrialTimeout("the trial took longer than 10 s"))
+    trial.answer = SandboxReport(False, SandboxTimeout("the trial took longer than 10 s"))
     np.testing.assert_array_equal(bench.picture(), before)
     assert "longer than 10 s" in str(bench.session.error)
     bench.session.drafts.set("height.level", 0.5)
@@ -418,11 +418,11 @@ def test_what_the_driver_has_drawn_already_needs_no_trial(
     tried: tuple[Bench, FakeTrial], name: str, old: str, new: str, is_tried: bool
 ) -> None:
     bench, trial = tried
-    trial.answer = TrialReport(True)
+    trial.answer = SandboxReport(True)
     before = bench.picture()
     bench.change(name, old, new)
     assert bench.session.drafts.testing == is_tried and len(trial.requests) == (2 if is_tried else 1)
-    trial.answer = TrialReport(True)
+    trial.answer = SandboxReport(True)
     assert np.array_equal(bench.picture(), before) == (not is_tried)
     assert bench.session.error is None
     assert bench.session.drafts.coming is None, "the new text is the one shown"

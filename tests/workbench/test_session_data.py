@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import TrialReport
-from playground.errors import TrialCrash
+from playground.engine.sandbox import SandboxReport
+from playground.errors import SandboxCrash
 from playground.images.files import write_png
 from playground.sketch.model import Camera
 from playground.terrain import elevation, sources
@@ -66,7 +66,7 @@ def session(folder: Path, any_engine: Engine, read: list[str]) -> Iterator[Sessi
     made.release()
 
 
-def answer(session: Session, report: TrialReport) -> None:
+def answer(session: Session, report: SandboxReport) -> None:
     trial = session.drafts._checks.sandbox
     assert isinstance(trial, FakeTrial)
     trial.answer = report
@@ -76,26 +76,26 @@ def answer(session: Session, report: TrialReport) -> None:
 def test_the_first_picture_s_file_is_read_by_the_trial_first(session: Session, read: list[str]) -> None:
     session.frame(SIZE)
     assert session.drafts.testing and read == []
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     assert session.sketch is not None and set(read) == {"land.npy"}
 
 
 def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
     session: Session, folder: Path, read: list[str]
 ) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     read.clear()
     np.save(folder / "land.npy", np.eye(11, dtype=np.float32))
     session.drafts.reload()
     assert session.drafts.testing and read == []
-    answer(session, TrialReport(False, TrialCrash("ran out of memory")))
+    answer(session, SandboxReport(False, SandboxCrash("ran out of memory")))
     session.drafts.set_camera(Camera(azimuth=12.0))
     assert session.frame(SIZE) is not None, "the last good picture stays"
     assert session.drafts.stage is ReloadStage.FAILED and "ran out of memory" in str(session.error)
     assert read == []
     session.drafts.reload()
     assert session.drafts.testing, "it is tried again, not believed"
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     assert session.error is None and read == ["land.npy"]
     session.drafts.reload()
     assert not session.drafts.testing, "nothing of it is new by now"
@@ -105,11 +105,11 @@ def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
 def test_a_file_chosen_by_hand_is_tried_first(
     session: Session, folder: Path, read: list[str], name: str
 ) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     read.clear()
     session.drafts.set("height.elevation", str(folder / name))
     assert session.drafts.testing and read == []
-    answer(session, TrialReport(False, TrialCrash("the decoder crashed")))
+    answer(session, SandboxReport(False, SandboxCrash("the decoder crashed")))
     assert "the decoder crashed" in str(session.error) and read == []
     session.frame(SIZE)
     assert read == [], "what is shown stays as it was"
@@ -121,11 +121,11 @@ def test_a_file_chosen_by_hand_is_tried_first(
 def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     session: Session, folder: Path, read: list[str]
 ) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     before = session.draws
     session.drafts.set("height.elevation", str(folder / "other.npy"))
     session.drafts.set("view.channel", "red")
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     assert session.error is None and session.draws > before and "other.npy" in read
     assert session.shown is not None
     assert dict(session.shown.edits.values)["height.elevation"] == str(folder / "other.npy")
@@ -133,7 +133,7 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
 
 
 def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Session, folder: Path) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     other = str(folder / "other.npy")
     for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
         session.drafts.set("height.elevation", str(folder / "land.npy"))
@@ -144,7 +144,7 @@ def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Se
         (folder / "sketch.toml").write_text(text, encoding="utf-8")
         session.drafts.reload()
         assert session.drafts.testing, "it is tried with what was saved"
-        answer(session, TrialReport(True))
+        answer(session, SandboxReport(True))
         assert session.error is None and session.shown is not None
         assert dict(session.shown.edits.values)["height.elevation"] == other
         assert session.shown.sketch.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
@@ -152,8 +152,8 @@ def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Se
 
 @pytest.mark.parametrize("when", ["during its trial", "after it"])
 def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path, when: str) -> None:
-    answer(session, TrialReport(True))
-    bad = TrialReport(False, TrialCrash("the decoder crashed"))
+    answer(session, SandboxReport(True))
+    bad = SandboxReport(False, SandboxCrash("the decoder crashed"))
     session.drafts.set("height.elevation", str(folder / "other.npy"))
     if when == "after it":
         answer(session, bad)
@@ -165,7 +165,7 @@ def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path
 
 
 def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     before = session.draws
     path = folder / "land.npy"
     data = path.read_bytes()
@@ -180,13 +180,13 @@ def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path
 
 
 def test_other_values_wait_for_nothing(session: Session) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     session.drafts.set("view.channel", "red")
     assert not session.drafts.testing
 
 
 def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
-    from playground.engine.sandbox import Trial, TrySketch
+    from playground.engine.sandbox import Sandbox, TrySketch
     from playground.sketch.load import load
 
     with (folder / "land.npy").open("wb") as file:  # 4 GiB of float32 and of holes
@@ -194,7 +194,7 @@ def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engi
             file, {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
         )
         file.truncate(file.tell() + 8 * 16384**2)
-    with Trial(memory_bytes=2**30) as trial:
+    with Sandbox(memory_bytes=2**30) as trial:
         report = trial.run(TrySketch(load(folder)))
         assert not report.ok and report.error is not None
         assert "there is not enough memory to read it" in str(report.error)
@@ -205,7 +205,7 @@ def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engi
 
 
 def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     picture = session.frame(SIZE)
     assert picture is not None and session.rests
     inspector, thumbnails, compare = Inspector(session), Thumbnails(session), Compare(session)
@@ -222,7 +222,7 @@ def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Sessi
     compare.follow(picture)
     assert (thumbnails.made, compare.draws) == (made, draws)
     session.drafts.reload()
-    answer(session, TrialReport(True))
+    answer(session, SandboxReport(True))
     assert session.rests and inspector.at((6, 6), picture) is not None
     for made_there in (inspector, thumbnails, compare):
         made_there.release()

@@ -23,7 +23,7 @@ import PIL.Image
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Trial
+from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
@@ -246,7 +246,7 @@ class Truth:
 class Run:
     """One sequence: a session that goes on while files are saved under it."""
 
-    def __init__(self, folder: Folder, engine: Engine, seed: int, trial: Trial | None) -> None:
+    def __init__(self, folder: Folder, engine: Engine, seed: int, trial: Sandbox | None) -> None:
         self.folder = folder
         self.dice = random.Random(seed)
         self.woken = threading.Event()
@@ -320,13 +320,13 @@ class Run:
 
 
 @pytest.fixture(scope="module")
-def shared_trial() -> Iterator[Trial]:
-    with Trial(limit_seconds=PATIENCE) as made:
+def shared_trial() -> Iterator[Sandbox]:
+    with Sandbox(limit_seconds=PATIENCE) as made:
         made.start()
         yield made
 
 
-def check(tmp_path: Path, engine: Engine, seed: int, trial: Trial | None) -> None:
+def check(tmp_path: Path, engine: Engine, seed: int, trial: Sandbox | None) -> None:
     folder = Folder(tmp_path / "sketch")
     folder.path.mkdir()
     run = Run(folder, engine, seed, trial)
@@ -385,7 +385,7 @@ def is_data(name: str) -> bool:
 
 @pytest.mark.parametrize("seed", SHORT)
 def test_whatever_is_saved_it_is_shown_in_the_end(
-    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Trial
+    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Sandbox
 ) -> None:
     check(tmp_path, any_engine, seed, shared_trial if seed % 2 else None)
 
@@ -393,6 +393,6 @@ def test_whatever_is_saved_it_is_shown_in_the_end(
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", LONG)
 def test_whatever_is_saved_it_is_shown_in_the_end_again_and_again(
-    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Trial
+    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Sandbox
 ) -> None:
     check(tmp_path, any_engine, seed, shared_trial if seed % 2 else None)

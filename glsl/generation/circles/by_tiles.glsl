@@ -1,4 +1,4 @@
-// generation/circles/by_tiles.glsl -- domes added to the terrain, of each tile those that touch it.
+// generation/circles/by_tiles.glsl -- domes added to the terrain, tile by tile.
 //
 //   gives    height, for any terrain; not normalised
 //   needs    generation/circles/dome.glsl, generation/marks.glsl, maths/whole.glsl

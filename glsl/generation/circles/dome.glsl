@@ -20,7 +20,8 @@ float disc_share(vec2 offset, float radius) {
     return far < squared ? far / squared : 1.0;
 }
 
-// 1 in the middle, 0 at the rim: half a cosine, level at both, or a half sphere, vertical at the rim.
+// 1 in the middle, 0 at the rim: half a cosine, level at both, or a half sphere, vertical at the
+// rim.
 // anchor: dome
 float dome_of_share(float share, bool sphere) {
     return sphere ? sqrt(max(1.0 - share, 0.0)) : 0.5 + 0.5 * cos(3.14159265 * sqrt(share));

@@ -1,4 +1,4 @@
-// generation/delaunay/tables.glsl -- reading a triangulation's tables, and areas on its lattice without rounding.
+// generation/delaunay/tables.glsl -- a triangulation's tables, and areas without rounding.
 //
 //   gives    entry, lattice_sides, exact_cross, exact_place
 //   needs    maths/whole.glsl; the tables of generation/delaunay/triangulation.glsl
@@ -6,7 +6,7 @@
 //   source   derived here: products of whole numbers digit by digit, base 4096
 //   tested   tests/glsl/test_delaunay.py, against Python's whole numbers
 //
-// A triangle along the border may be as long as the land and thousands of times less high. In
+// A triangle along the border may be as long as the terrain and thousands of times less high. In
 // floats its area would be the small difference of large products: heights among ten thousand
 // points came out wrong by 1.5e-5. So the difference is taken in whole numbers, and rounded once.
 #ifndef GENERATION_DELAUNAY_TABLES
@@ -20,7 +20,7 @@ vec4 entry(sampler2D table, int k) {
     return texelFetch(table, ivec2(k - row * width, row), 0);
 }
 
-// The land's sides: the north-eastern corner is the fourth point.
+// The terrain's sides: the north-eastern corner is the fourth point.
 ivec2 lattice_sides(sampler2D places) {
     return ivec2(entry(places, 3).xy);
 }
@@ -40,7 +40,8 @@ float exact_cross(ivec2 a, ivec2 b) {
     return float(high) * 16777216.0 + float(((middle & 4095) << 12) | (low & 4095));
 }
 
-// Where a texel stands on a side of the lattice, a multiple of 4096: whole spacings, then the rest of one.
+// Where a texel stands on a side of the lattice, a multiple of 4096: whole spacings, then the rest
+// of one.
 vec2 exact_place(int texel, int texels, int side) {
     int intervals = max(texels - 1, 1);
     int upper = texel * (side >> 12);

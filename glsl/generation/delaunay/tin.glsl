@@ -1,4 +1,4 @@
-// generation/delaunay/tin.glsl -- a triangulation as land: the rasteriser draws its triangles, each a plane.
+// generation/delaunay/tin.glsl -- a triangulation as terrain: each triangle is drawn as a plane.
 //
 //   gives    height at every texel, not normalised
 //   needs    generation/delaunay/tables.glsl
@@ -7,13 +7,18 @@
 //            "Computing Dirichlet Tessellations in the Plane" (The Computer Journal 21)
 //   tested   tests/glsl/test_delaunay.py, against scipy.interpolate.LinearNDInterpolator
 //
-// Corners of triangles are rounded to parts of a texel before they are drawn, and the land's
+// In a triangle with the corners a, b, c the height at p is that of the plane through them:
+//
+//     h(p) = a.z + ((b.z - a.z) area(c, a, p) + (c.z - a.z) area(a, b, p)) / area(a, b, c)
+//
+// Corners of triangles are rounded to parts of a texel before they are drawn, and the terrain's
 // border runs through the middles of texels: what is drawn is a triangle near the texel. From
 // there each texel walks to the triangle that truly holds it, seldom more than one step, and
-// takes the height of its plane at its own place. The land's four corners are drawn half a
+// takes the height of its plane at its own place. The terrain's four corners are drawn half a
 // texel further out, so that no texel is missed.
 #include "generation/delaunay/tables.glsl"
-#pragma draw(mesh = "triangles", count = "2 * points + 2", output = "height:r32f", depth = "none", samples = 1)
+#pragma draw(mesh = "triangles", count = "2 * points + 2", output = "height:r32f", \
+             depth = "none", samples = 1)
 
 uniform sampler2D places;      //! input
 uniform sampler2D triangles;   //! input

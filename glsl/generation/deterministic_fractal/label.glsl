@@ -1,4 +1,4 @@
-// generation/deterministic_fractal/label.glsl -- how many copies, how small, and the dimension, in small letters.
+// generation/deterministic_fractal/label.glsl -- copies, scale and dimension, in small letters.
 //
 //   gives    LABEL, dimension_of, is_label
 //   needs    nothing: pure functions, no uniforms, no textures

@@ -1,16 +1,21 @@
-// generation/diamond_square/known.glsl -- which turn of diamond-square sets each texel: a mask of what is known so far.
+// generation/diamond_square/known.glsl -- which step of diamond-square sets each texel.
 //
 //   gives    phase: 0 for a texel that is not set yet, 1 for the corners, 2 for the first
 //            centres, 3 for the first edges, 4 for the second centres, ..
 //   needs    generation/diamond_square/lattice.glsl
 //   units    whole numbers
 //   source   Belaiche 2010, section 1.3.2, figures 1.8 to 1.11
-//   tested   tests/glsl/test_diamond_square.py: how many texels each turn sets, and which
+//   tested   tests/glsl/test_diamond_square.py: how many texels each step sets, and which
 //
-// Its turns are those of generation/diamond_square/raw.glsl: both stopped after as many turns
+// Its steps are those of generation/diamond_square/raw.glsl: both stopped after as many steps
 // are one picture of the algorithm on its way.
 #include "generation/diamond_square/lattice.glsl"
-#pragma kernel(output = "phase:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)")
+#pragma kernel(output = "phase:r32f", \
+               where = "level = (iteration - 1) // 2; \
+                        rows = 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2; \
+                        columns = 2 if iteration == 0 else 2**level + 1 - iteration % 2", \
+               repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", \
+               visits = "columns, rows", stride = "(size.x - 1) // 2**((iteration + 1) // 2)")
 
 ivec2 visit(ivec2 cell) {
     return texel_of_cell(cell, iteration, size.x - 1);

@@ -1,41 +1,42 @@
-// generation/diamond_square/lattice.glsl -- which texels a turn of diamond-square sets, and how far their neighbours are.
+// generation/diamond_square/lattice.glsl -- which texels a step of diamond-square sets.
 //
 //   gives    DIAMOND_SQUARE_SALT, half_spacing, texel_of_cell, is_set_by
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    texels; turns from 0; a side is a power of two, one less than a land's texels
+//   units    texels; steps from 0; a side is a power of two, one less than a terrain's texels
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
 //   tested   tests/glsl/test_diamond_square.py, against the thesis's loops
 //
-// Turn 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two turns:
-//   centres   (odd turns)   every texel in the middle of four known ones, s/2 diagonally away
-//   edges     (even turns)  every texel between known ones, s/2 along the axes
+// Step 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two steps:
+//   centres   (odd steps)   every texel in the middle of four known ones, s/2 diagonally away
+//   edges     (even steps)  every texel between known ones, s/2 along the axes
 #ifndef GENERATION_DIAMOND_SQUARE_LATTICE
 #define GENERATION_DIAMOND_SQUARE_LATTICE
 
 const uint DIAMOND_SQUARE_SALT = 0xfaac44f9u;  // CRC-32 of "generation/diamond_square"
 
-// Half the spacing of a turn, a power of two: half the side for turns 1 and 2, a quarter for 3 and 4, ..
-int half_spacing(int turn, int side) {
-    return side >> ((turn + 1) >> 1);
+// Half the spacing of a step, a power of two: half the side for steps 1 and 2, a quarter for 3
+// and 4, ..
+int half_spacing(int which, int side) {
+    return side >> ((which + 1) >> 1);
 }
 
-// The texel that a cell of a turn sets.
-ivec2 texel_of_cell(ivec2 cell, int turn, int side) {
-    if (turn == 0) return cell * side;
-    int r = half_spacing(turn, side);
-    if ((turn & 1) == 1) return (2 * cell + 1) * r;
+// The texel that a cell of a step sets.
+ivec2 texel_of_cell(ivec2 cell, int which, int side) {
+    if (which == 0) return cell * side;
+    int r = half_spacing(which, side);
+    if ((which & 1) == 1) return (2 * cell + 1) * r;
     // Along even rows of half spacings the edges are the odd places, along odd rows the even ones.
     int place = (cell.y & 1) == 0 ? 2 * cell.x + 1 : 2 * cell.x;
     return ivec2(place, cell.y) * r;
 }
 
 // The same the other way round. Masks, not division: a side is a power of two.
-bool is_set_by(ivec2 texel, int turn, int side) {
-    if (turn == 0) return (texel.x == 0 || texel.x == side) && (texel.y == 0 || texel.y == side);
-    int r = half_spacing(turn, side);
+bool is_set_by(ivec2 texel, int which, int side) {
+    if (which == 0) return (texel.x == 0 || texel.x == side) && (texel.y == 0 || texel.y == side);
+    int r = half_spacing(which, side);
     if (((texel.x | texel.y) & (r - 1)) != 0) return false;
     bool between_x = (texel.x & r) != 0;
     bool between_y = (texel.y & r) != 0;
-    return (turn & 1) == 1 ? between_x && between_y : between_x != between_y;
+    return (which & 1) == 1 ? between_x && between_y : between_x != between_y;
 }
 #endif

@@ -1,8 +1,8 @@
-// generation/diamond_square/order.glsl -- heights as whole numbers in the same order, for atomicMax.
+// generation/diamond_square/order.glsl -- heights as whole numbers in the same order.
 //
 //   gives    key_of_height, height_of_key
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    heights as they are; keys 32 bits
+//   units    heights as they are; keys 32 bits, for atomicMax
 //   source   derived here: the bits of positive floats are in order, those of negative ones in
 //            the reverse order
 //   tested   tests/glsl/test_diamond_square_variant.py, against sorting

@@ -1,31 +1,44 @@
-// generation/diamond_square/raw.glsl -- land by halving a square: its centres, then its edges, over and over.
+// generation/diamond_square/raw.glsl -- terrain by halving a square: its centres, then its edges.
 //
-//   gives    height, for any land of 2^n + 1 texels a side
+//   gives    height, for any terrain of 2^n + 1 texels a side
 //   needs    noise/finest.glsl, noise/hash.glsl, generation/diamond_square/lattice.glsl
 //   units    heights without unit; not normalised, so that smoothing means something
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1, after Fournier, Fussell and
 //            Carpenter 1982 (Communications of the ACM 25, 6)
 //   tested   tests/glsl/test_diamond_square.py, against a float64 twin with the same hash
 //
-// Turn 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two turns:
-//   centres   (odd turns)   the mean of four texels, s/2 diagonally away
-//   edges     (even turns)  the mean of four texels, s/2 along the axes; at the border three
-//                           of the four exist, and those are averaged
-// and each new height is   mean + random * (s / side) * smoothing.
+// Step 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two steps:
+//
+//     centres   (odd steps)   neighbours s/2 diagonally away
+//     edges     (even steps)  neighbours s/2 along the axes; at the border three of four exist
+//
+// and each new height is
+//
+//     h = mean(neighbours) + random * (s / side) * smoothing
 //
 // The thesis halves the spacing before the formula in section 1.3.2 and after it in 4.3.1;
-// this uses the full spacing, over the side, so that a land looks alike at every size.
-// The thesis calls the centres' turn "square" in one section and "diamond" in the other:
+// this uses the full spacing, over the side, so that a terrain looks alike at every size.
+// The thesis calls the centres' step "square" in one section and "diamond" in the other:
 // here they are centres and edges.
 #include "generation/diamond_square/lattice.glsl"
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", visits = "2 if iteration == 0 else 2**((iteration - 1) // 2) + 1 - iteration % 2, 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", between = "squares")
+#pragma kernel(output = "height:r32f", \
+               where = "level = (iteration - 1) // 2; \
+                        rows = 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2; \
+                        columns = 2 if iteration == 0 else 2**level + 1 - iteration % 2", \
+               repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", \
+               visits = "columns, rows", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", \
+               between = "squares")
 
-uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) Roughness: height added per side of land. Above 0.5 it looks like rubble
-uniform uint seed = 7u;         //! slider(0, 9999) Which land
-uniform int sign_of_random = 0; //! menu("centred", "positive") label("Random") The thesis adds only positive numbers, which leaves creases
-uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01) parts("SW", "SE", "NW", "NE") Heights of the corners: south-west, south-east, north-west, north-east
+uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) Roughness: height added per side of the
+                                //! terrain. Above 0.5 it looks like rubble
+uniform uint seed = 7u;         //! slider(0, 9999) Which terrain
+uniform int sign_of_random = 0; //! menu("centred", "positive") label("Random") The thesis adds
+                                //! only positive numbers, which leaves creases
+uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01)
+    //! parts("SW", "SE", "NW", "NE")
+    //! Heights of the corners: south-west, south-east, north-west, north-east
 
 ivec2 visit(ivec2 cell) {
     return texel_of_cell(cell, iteration, size.x - 1);
@@ -42,29 +55,28 @@ float kernel(ivec2 texel) {
     bool is_new = is_set_by(texel, iteration, side);
     if (iteration == 0) return is_new ? corner(texel) : previous(texel);
     // anchor: neighbours
-    int r = half_spacing(iteration, side);
+    // A texel that stays as it is has r = 0: it is its own neighbour, and no further read is due.
+    int r = is_new ? half_spacing(iteration, side) : 0;
     // The four neighbours lie along the diagonals of a centre, along the axes of an edge.
     ivec2 along = (iteration & 1) == 1 ? ivec2(r, r) : ivec2(r, 0);
     ivec2 across = ivec2(-along.y, along.x);
+    ivec2 neighbours[4] = ivec2[4](texel + along, texel + across, texel - along, texel - across);
     // end: neighbours
-    // In the loop's order. A centre is never at the border, an edge never at two.
-    bvec4 inside = bvec4(texel.x + r <= side, texel.y + r <= side, texel.x >= r, texel.y >= r);
-    float here = 0.0;
+    float heights[4];
     float total = 0.0;
+    float count = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec2 towards = (i & 1) == 0 ? along : across;
-        ivec2 other = i < 2 ? texel + towards : texel - towards;
-        // A texel that stays as it is reads itself in the first neighbour's place: a fifth
-        // read would cost a processor that goes both ways of an if a fifth of the turn.
-        float h = previous(i > 0 || is_new ? other : texel);
-        if (i == 0) here = h;
-        total += inside[i] ? h : 0.0;
+        heights[i] = previous(neighbours[i]);
+        bool inside = neighbours[i] == clamp(neighbours[i], ivec2(0), ivec2(side));
+        total += inside ? heights[i] : 0.0;
+        count += inside ? 1.0 : 0.0;
     }
+    if (!is_new) return heights[0];
     // anchor: height
     float share = float(2 * r) / float(side);
     ivec2 point = finest_point(texel, side);
     uint which = seed + DIAMOND_SQUARE_SALT;
     float number = sign_of_random == 0 ? random_signed(point, which) : random(point, which);
-    return is_new ? total / (all(inside) ? 4.0 : 3.0) + number * share * smoothing : here;
+    return total / count + number * share * smoothing;
     // end: height
 }

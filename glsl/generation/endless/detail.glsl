@@ -1,4 +1,4 @@
-// generation/endless/detail.glsl -- the one detail component of an endless land: a tile that fits beside its copy.
+// generation/endless/detail.glsl -- the one detail component of an endless terrain, a tile.
 //
 //   gives    detail, 0..1
 //   needs    noise/periodic.glsl
@@ -6,15 +6,17 @@
 //   source   Belaiche 2010, section 5.6: one component of detail is made, once, from layers
 //   tested   tests/glsl/test_endless.py, against a twin in float64, and against its own copy
 //
-// It reads nothing of any part, so no part makes it anew.
+// A tile that fits beside its copy. It reads nothing of any part, so no part makes it anew.
 #include "noise/periodic.glsl"
 #pragma kernel(output = "detail:r32f")
 
 uniform int frequency = 6;         //! log_slider(1, 64) Cells along a side in the first layer
 uniform int octaves = 6;           //! slider(1, 8) Layers, each twice as fine as the one before
-uniform float gain = 0.45;         //! slider(0, 1) step(0.01) Height of each layer over the one before
-uniform int form = 1;              //! menu("plain", "ridged") Hills as they come, or creased along their zeros
-uniform uint seed = 7u;            //! slider(0, 9999) Which land
+uniform float gain = 0.45;         //! slider(0, 1) step(0.01) Height of each layer over the one
+                                   //! before
+uniform int form = 1;              //! menu("plain", "ridged") Hills as they come, or creased along
+                                   //! their zeros
+uniform uint seed = 7u;            //! slider(0, 9999) Which terrain
 
 const uint SALT = 0x70a3c1cbu;  // CRC-32 of "generation/endless/detail"
 
@@ -27,7 +29,8 @@ float kernel(ivec2 texel) {
     float strength = 1.0;
     for (int k = 0; k < octaves; k++) {
         // Moved by uneven parts of a cell: else all layers were zero at the points of the first.
-        float noise = gradient_noise_periodic(place + float(k) * vec2(0.618, 0.382), period, seed + SALT + uint(k) * 101u);
+        vec2 moved = place + float(k) * vec2(0.618, 0.382);
+        float noise = gradient_noise_periodic(moved, period, seed + SALT + uint(k) * 101u);
         float crest = 1.0 - abs(noise);
         total += strength * (form == 1 ? crest * crest : 0.5 + 0.5 * noise);
         strengths += strength;

@@ -1,14 +1,15 @@
-// generation/endless/principle.glsl -- a picture of how an endless land is made: shape in parts, one detail, light on one part.
+// generation/endless/principle.glsl -- a picture of how an endless terrain is made.
 //
 //   gives    picture, linear light
-//   needs    lighting/diagram/ink.glsl, lighting/diagram/label.glsl; the shape of 5 x 5 parts, the detail,
+//   needs    lighting/diagram/ink.glsl, lighting/diagram/label.glsl; the shape, the detail,
 //            and height, colour and light of the 3 x 3 parts in their middle
 //   units    pixels
 //   source   Belaiche 2010, section 5.6, figure 5.15; drawn here from data
 //   tested   tests/glsl/test_endless.py, by what stands where
 //
-// Above on the left, the shape of the land, cut into parts; below it the one detail component.
-// On the right the detail put on a part and its neighbours, and only that part in light and colour.
+// Above on the left, the shape of the terrain, cut into parts; below it the one detail component.
+// On the right the detail put on a part and its neighbours, and only that part in light and
+// colour.
 #include "lighting/diagram/ink.glsl"
 #include "lighting/diagram/label.glsl"
 #pragma kernel(output = "picture:rgba16f")
@@ -26,11 +27,13 @@ uniform vec3 chosen = vec3(0.80, 0.28, 0.02); //! colour The part reached, and i
 const uvec4 TEXTS[6] = uvec4[6](  // shape, in parts / one detail / detail on nine, light on one
     uvec4(0x70616873u, 0x69202C65u, 0x6170206Eu, 0x00737472u), uvec4(0u, 0u, 0u, 0u),
     uvec4(0x20656E6Fu, 0x61746564u, 0x00006C69u, 0u), uvec4(0u, 0u, 0u, 0u),
-    uvec4(0x61746564u, 0x6F206C69u, 0x696E206Eu, 0x202C656Eu), uvec4(0x6867696Cu, 0x6E6F2074u, 0x656E6F20u, 0u)
+    uvec4(0x61746564u, 0x6F206C69u, 0x696E206Eu, 0x202C656Eu),
+    uvec4(0x6867696Cu, 0x6E6F2074u, 0x656E6F20u, 0u)
 );
 const int LENGTHS[3] = int[3](15, 10, 28);
 
-// Grey as light from the north-west would have it, on a field whose heights are `steep` texels high.
+// Grey as light from the north-west would have it, on a field whose heights are `steep` texels
+// high.
 vec3 shaded(sampler2D field, vec2 share, float steep) {
     ivec2 last = textureSize(field, 0) - 1;
     ivec2 node = clamp(ivec2(share * vec2(last) + 0.5), ivec2(1), last - 1);
@@ -93,11 +96,15 @@ vec4 kernel(ivec2 texel) {
     seen = mix(seen, ink, arrow_cover(place, vec2(182.0, 98.0), vec2(292.0, 138.0), 2.2, 9.0));
 
     for (int k = 0; k < 3; k++) {
-        vec2 foot = k == 0 ? first + vec2(0.5 * small, -19.0) : k == 1 ? second + vec2(0.5 * tile, -20.0) : third + vec2(0.5 * large, -22.0);
+        vec2 foot = third + vec2(0.5 * large, -22.0);
+        if (k == 0) foot = first + vec2(0.5 * small, -19.0);
+        if (k == 1) foot = second + vec2(0.5 * tile, -20.0);
         Label label = label_around(foot, LENGTHS[k], 1.15);
         vec3 cell = cell_of(label, place);
         if (cell.x >= 0.0) {
-            float away = letter_away(character_of(TEXTS[2 * k + (int(cell.x) >> 4)], int(cell.x) & 15), cell.yz);
+            int place_in_text = int(cell.x);
+            uvec4 text = TEXTS[2 * k + (place_in_text >> 4)];
+            float away = letter_away(character_of(text, place_in_text & 15), cell.yz);
             seen = mix(seen, ink, covered((0.75 - away) * 1.15 * unit));
         }
     }

@@ -1,4 +1,4 @@
-// generation/endless/sum.glsl -- the height of a part and of its neighbours around it: shape, and detail put on.
+// generation/endless/sum.glsl -- the height of a part and around it: shape, and detail put on.
 //
 //   gives    height, 0..1
 //   needs    terrain/parts.glsl, noise/periodic.glsl; a shape and a detail
@@ -7,7 +7,7 @@
 //   tested   tests/glsl/test_endless.py, against a twin in float64; borders to the last bit
 //
 // Weights sum to 1 where the shape is highest, so nothing leaves 0..1 and nothing needs
-// normalising, which would bring each part to a range of its own. Low land is given less of the
+// normalising, which would bring each part to a range of its own. Low terrain is given less of the
 // detail: one component then does not show that it repeats.
 #include "noise/periodic.glsl"
 #include "terrain/parts.glsl"
@@ -15,11 +15,16 @@
 
 uniform sampler2D shape;           //! input
 uniform sampler2D detail;          //! input
-uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the land, counted east and north
-uniform int apron = 0;             //! slider(0, 1024) unit("texels") Of the neighbours, so much around the part
-uniform float rough = 0.45;        //! slider(0, 1) step(0.01) Share of the detail in the highest land
-uniform float valleys = 0.15;      //! slider(0, 1) step(0.01) Of that share, what the lowest land has
-uniform float peaks = 0.7;         //! slider(0, 1) step(0.01) How much the shape is bent: wide valleys and steep mountains
+uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the terrain, counted
+                                   //! east and north
+uniform int apron = 0;             //! slider(0, 1024) unit("texels") Of the neighbours, so much
+                                   //! around the part
+uniform float rough = 0.45;        //! slider(0, 1) step(0.01) Share of the detail in the highest
+                                   //! terrain
+uniform float valleys = 0.15;      //! slider(0, 1) step(0.01) Of that share, what the lowest
+                                   //! terrain has
+uniform float peaks = 0.7;         //! slider(0, 1) step(0.01) How much the shape is bent: wide
+                                   //! valleys and steep mountains
 
 // anchor: sum
 float kernel(ivec2 texel) {

@@ -1,4 +1,4 @@
-// generation/fault_formation/lines.glsl -- random faults, one a texel: where each runs, and its height.
+// generation/fault_formation/lines.glsl -- random faults, one a texel: its line and height.
 //
 //   gives    fault: its line in red, green and blue; in alpha its height, in units
 //   needs    generation/fault_formation/line.glsl, noise/hash.glsl

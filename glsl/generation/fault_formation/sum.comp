@@ -1,4 +1,4 @@
-// generation/fault_formation/sum.comp -- the sum of many faults, row by row: each line crosses a row once.
+// generation/fault_formation/sum.comp -- the sum of many faults, row by row.
 //
 //   gives    height, for any terrain; not normalised
 //   needs    generation/fault_formation/line.glsl, maths/whole.glsl
@@ -7,10 +7,11 @@
 //   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
 //   agrees   exactly: sums of whole numbers are the same in any order
 //
-// A work group has a row. Its readers share the faults: a fault adds one number where the row
-// begins and one where the line crosses it. Then the numbers are summed along the row, each
-// reader a run of neighbours, twice: first for what the runs before add to each, then for the
-// heights. So a terrain costs faults times rows, and its texels, but not faults times texels.
+// Each line crosses a row once. A work group has a row. Its readers share the faults: a fault adds
+// one number where the row begins and one where the line crosses it. Then the numbers are summed
+// along the row, each reader a run of neighbours, twice: first for what the runs before add to
+// each, then for the heights. So a terrain costs faults times rows, and its texels, but not faults
+// times texels.
 #include "generation/fault_formation/line.glsl"
 #include "maths/whole.glsl"
 #pragma compute(groups = "1, size.y", local = "32, 1", overwrites = "height", agrees = "exact")

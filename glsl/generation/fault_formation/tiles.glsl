@@ -1,4 +1,4 @@
-// generation/fault_formation/tiles.glsl -- which faults cross a tile, and what all others do to it.
+// generation/fault_formation/tiles.glsl -- which faults cross a tile, and the sum of others.
 //
 //   gives    crossing: 96 marks, see generation/marks.glsl; still: the height, in units, that
 //            those faults add that do not cross

@@ -1,4 +1,4 @@
-// generation/fbm/curve.glsl -- fractional Brownian motion along a line, a curve for each row of texels.
+// generation/fbm/curve.glsl -- fractional Brownian motion along a line, one a row.
 //
 //   gives    height: of one variable, a row for each curve
 //   needs    noise/gradient.glsl, noise/lattice.glsl, noise/octaves.glsl
@@ -12,15 +12,19 @@
 #include "noise/octaves.glsl"
 #pragma kernel(output = "height:r32f")
 
-uniform vec4 hurst = vec4(0.8, 0.6, 0.4, 0.3);  //! slider(0, 1) step(0.01) label("Hurst exponents") parts("first", "second", "third", "fourth") Of the first four rows
-uniform float hurst_last = 0.2;                 //! slider(0, 1) step(0.01) label("Other exponents") Of all other rows
-uniform int octaves = 10;                       //! slider(0, 16) Sums of noise; those too fine for the texels are left out
-uniform float frequency = 4.0;                  //! log_slider(0.25, 1024) Cells along the row in the first octave
+uniform vec4 hurst = vec4(0.8, 0.6, 0.4, 0.3);  //! slider(0, 1) step(0.01)
+    //! label("Hurst exponents") parts("first", "second", "third", "fourth") Of the first four rows
+uniform float hurst_last = 0.2;                 //! slider(0, 1) step(0.01)
+    //! label("Other exponents") Of all other rows
+uniform int octaves = 10;                       //! slider(0, 16) Sums of noise; those too fine for
+    //! the texels are left out
+uniform float frequency = 4.0;                  //! log_slider(0.25, 1024) Cells along the row in
+    //! the first octave
 uniform uint seed = 7u;                         //! slider(0, 9999) Which curves
 
 const uint SALT = 0xe23d26d9u;  // CRC-32 of "generation/fbm/curve"
 
-// The noise's standard deviation, as a root of an integral: sqrt(2/3 integral of (1 - fade(t))^2 t^2).
+// The noise's standard deviation, sqrt(2/3 integral of (1 - fade(t))^2 t^2).
 const float DEVIATION = 0.140695;
 
 // Noise of one variable; each line of it has random slopes of its own.
@@ -28,7 +32,8 @@ float noise_along(float place, int line, uint which) {
     float cell = floor(place);
     float part = place - cell;
     // Upper bits as a number in [-1, 1).
-    vec2 slopes = vec2(ivec2(lattice_columns(int(cell), which) * lattice_rows(line, which).x)) / 2147483648.0;
+    uvec2 bits = lattice_columns(int(cell), which) * lattice_rows(line, which).x;
+    vec2 slopes = vec2(ivec2(bits)) / 2147483648.0;
     vec2 planes = slopes * (part - vec2(0.0, 1.0));
     return planes.x + (planes.y - planes.x) * quintic(part);
 }
@@ -42,7 +47,8 @@ float kernel(ivec2 texel) {
     float strength = 1.0;
     for (int k = 0; k < octaves && cells < nodes; k++) {
         float weight = strength * octave_weight(nodes / cells);
-        total += weight * noise_along(float(texel.x) * (cells / nodes) + OCTAVE_SHIFT.x, texel.y, lattice_seed(seed + SALT, k));
+        float place = float(texel.x) * (cells / nodes) + OCTAVE_SHIFT.x;
+        total += weight * noise_along(place, texel.y, lattice_seed(seed + SALT, k));
         squares += weight * weight;
         cells *= 2.0;
         strength *= falling;

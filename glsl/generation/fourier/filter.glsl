@@ -2,7 +2,7 @@
 //
 //   gives    filtered: a complex number for each frequency
 //   needs    maths/power.glsl
-//   units    as the spectrum; frequencies in waves per land, along its longer side
+//   units    as the spectrum; frequencies in waves per terrain, along its longer side
 //   source   Belaiche 2010, section 1.3.3, step 3, after Fournier, Fussell and Carpenter 1982
 //   tested   tests/glsl/test_fourier.py, against NumPy
 //
@@ -13,7 +13,8 @@
 #pragma kernel(output = "filtered:rg32f")
 
 uniform sampler2D spectrum;     //! input
-uniform float roughness = 2.0;  //! slider(0, 4) step(0.01) The r of 1 / f^r: 0 is noise, the higher the smoother
+uniform float roughness = 2.0;  //! slider(0, 4) step(0.01) The r of 1 / f^r: 0 is noise, the
+                                //! higher the smoother
 
 vec2 kernel(ivec2 texel) {
     // anchor: weight

@@ -1,4 +1,4 @@
-// generation/fourier/transform.glsl -- the discrete Fourier transform of a texture, one level of butterflies a turn.
+// generation/fourier/transform.glsl -- the Fourier transform, one level of butterflies a step.
 //
 //   gives    transformed: a complex number for each texel, its real part in red
 //   needs    maths/complex.glsl; `initial`, the numbers to transform, whose green is imaginary
@@ -7,26 +7,30 @@
 //            1992, "Computational Frameworks for the Fast Fourier Transform", section 1.7
 //   tested   tests/glsl/test_fourier.py, against scipy.fft
 //
-// The first log2(size.x) turns go along x, the others along y. After turn t of an axis each
-// number belongs to a transform of 2^(t+1) numbers that lay evenly apart:
-//   new[j] = old[i] + w old[i + n/2],   w = exp(-2 pi i (j mod 2h) / 2h),   h = 2^t,
-// with i = (j div 2h) h + j mod h; backward with +2 pi, and halved. The order comes out right
+// A transform of 2h numbers is made of two of h numbers: those at even places, and those at odd
+// places, which are turned by w. Over n numbers, at step t of an axis, with h = 2^t:
+//
+//     new[j] = old[i] + w old[i + n/2],   w = exp(-2 pi i (j mod 2h) / 2h)
+//
+// with i = (j div 2h) h + j mod h; backward with +2 pi, and halved. The first log2(size.x) steps
+// go along x, the others along y. The order comes out right
 // by itself. Texel 0 of an axis is then the mean, texel 1 one wave, and those above size / 2
 // are waves with a minus sign: texel size - 1 is the frequency -1.
 #include "maths/complex.glsl"
-#pragma kernel(output = "transformed:rg32f", repeat = "log2(size.x) + log2(size.y)", accepts = "2**n, 2**m")
+#pragma kernel(output = "transformed:rg32f", \
+               repeat = "log2(size.x) + log2(size.y)", accepts = "2**n, 2**m")
 
 uniform int direction = 0; //! menu("forward", "backward") From heights to frequencies, or back
 
 vec2 kernel(ivec2 texel) {
     // A power of two's logarithm, from a float's exponent.
-    int turns_along_x = (floatBitsToInt(float(size.x)) >> 23) - 127;
-    bool along_x = iteration < turns_along_x;
-    int turn = along_x ? iteration : iteration - turns_along_x;
+    int steps_along_x = (floatBitsToInt(float(size.x)) >> 23) - 127;
+    bool along_x = iteration < steps_along_x;
+    int t = along_x ? iteration : iteration - steps_along_x;
     int count = along_x ? size.x : size.y;
     int place = along_x ? texel.x : texel.y;
-    int h = 1 << turn;
-    int from = ((place >> (turn + 1)) << turn) | (place & (h - 1));
+    int h = 1 << t;
+    int from = ((place >> (t + 1)) << t) | (place & (h - 1));
     ivec2 here = along_x ? ivec2(from, texel.y) : ivec2(texel.x, from);
     ivec2 further = along_x ? ivec2(count >> 1, 0) : ivec2(0, count >> 1);
     // anchor: butterfly

@@ -1,4 +1,4 @@
-// generation/fourier/wave.glsl -- the random number of each wave, the same at every size of the terrain.
+// generation/fourier/wave.glsl -- the random number of each wave, the same at every size.
 //
 //   gives    wave_number
 //   needs    noise/hash.glsl

@@ -1,4 +1,4 @@
-// generation/fractalised_triangle/facets.glsl -- a divided triangle drawn flat: facets and their edges.
+// generation/fractalised_triangle/facets.glsl -- a divided triangle drawn flat, with its edges.
 //
 //   gives    colour
 //   needs    maths/whole.glsl, noise/hash.glsl
@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, section 1.2.1, figure 1.4
 //   tested   tests/glsl/test_deterministic_fractal.py, against facets and edges in NumPy
 //
-// Each pixel looks at every facet: a drawing for a lesson, not for a land. Of facets that
+// Each pixel looks at every facet: a drawing for a lesson, not for a terrain. Of facets that
 // overlap, the last is seen.
 #include "maths/whole.glsl"
 #include "noise/hash.glsl"
@@ -39,8 +39,8 @@ vec4 kernel(ivec2 texel) {
     ivec2 grid = panels ? ivec2(3, 2) : ivec2(1);
     ivec2 panel = ivec2(quotient(texel.x * grid.x, size.x), quotient(texel.y * grid.y, size.y));
     int most = textureSize(point, 0).x - 1;
-    int turns = panels ? min(panel.x + 3 * (1 - panel.y), depth) : depth;
-    int edges = min(1 << turns, most);
+    int halvings = panels ? min(panel.x + 3 * (1 - panel.y), depth) : depth;
+    int edges = min(1 << halvings, most);
     int stride = quotient(most, max(edges, 1));
     vec2 room = vec2(size) / vec2(grid);
     float side = max(0.8 * min(room.x, room.y), 1.0);
@@ -57,13 +57,14 @@ vec4 kernel(ivec2 texel) {
             vec2 b = texelFetch(point, (low + ivec2(1, 0)) * stride, 0).rg;
             vec2 c = texelFetch(point, (low + ivec2(0, 1)) * stride, 0).rg;
             vec3 sides = vec3(turned(a, b, place), turned(b, c, place), turned(c, a, place));
-            if (min(min(sides.x, sides.y), sides.z) >= 0.0 || max(max(sides.x, sides.y), sides.z) <= 0.0) {
-                shown = mix(DARK, BRIGHT, random(ivec2(n, j), uint(turns) + SALT));
+            if (all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)))) {
+                shown = mix(DARK, BRIGHT, random(ivec2(n, j), uint(halvings) + SALT));
             }
-            nearest = min(nearest, min(far_from_edge(place, b, c), min(far_from_edge(place, a, b), far_from_edge(place, c, a))));
+            nearest = min(nearest, far_from_edge(place, b, c));
+            nearest = min(nearest, min(far_from_edge(place, a, b), far_from_edge(place, c, a)));
         }
     }
     // Fainter where edges are many, or they would hide the facets.
-    float line = clamp(1.1 - nearest * side, 0.0, 1.0) * (1.0 - 0.1 * float(turns));
+    float line = clamp(1.1 - nearest * side, 0.0, 1.0) * (1.0 - 0.1 * float(halvings));
     return vec4(mix(shown, ink, line), 1.0);
 }

@@ -1,4 +1,4 @@
-// generation/fractalised_triangle/points.glsl -- a triangle's points: corners, then the middles of all edges, over and over.
+// generation/fractalised_triangle/points.glsl -- a triangle's corners, then edges' middles.
 //
 //   gives    point: x and y of each point (i, j) of a triangle's lattice, i + j at most the side
 //   needs    noise/hash.glsl
@@ -15,7 +15,8 @@
 
 uniform int depth = 5;          //! slider(0, 6) How many times each edge is halved
 uniform uint seed = 7u;         //! slider(0, 9999) Which triangle
-uniform float roughness = 0.15; //! slider(0, 0.5) step(0.01) How far a middle moves, over the edge's length
+uniform float roughness = 0.15; //! slider(0, 0.5) step(0.01) How far a middle moves, over the
+                                //! edge's length
 
 const uint SALT = 0x62d29298u;  // CRC-32 of "generation/fractalised_triangle"
 const int DEEPEST = 6;
@@ -28,7 +29,7 @@ vec2 kernel(ivec2 texel) {
         if (texel == ivec2(side, 0)) return vec2(0.5, -0.4330127);
         return texel == ivec2(0, side) ? vec2(0.0, 0.4330127) : vec2(0.0);
     }
-    // Half an edge of this turn, in texels.
+    // Half an edge of this step, in texels.
     int r = side >> iteration;
     ivec2 odd = ivec2(texel.x & r, texel.y & r);
     if (((texel.x | texel.y) & (r - 1)) != 0 || odd == ivec2(0)) return previous(texel);

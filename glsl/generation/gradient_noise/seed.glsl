@@ -1,4 +1,4 @@
-// generation/gradient_noise/seed.glsl -- the seed that gradient noise and fractional Brownian motion draw with.
+// generation/gradient_noise/seed.glsl -- the seed of gradient noise and of fbm.
 //
 //   gives    octaves_seed
 //   needs    noise/octaves.glsl

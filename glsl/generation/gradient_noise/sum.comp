@@ -1,29 +1,22 @@
-// generation/gradient_noise/sum.comp -- hills of gradient noise, walked along columns of texels.
+// generation/gradient_noise/sum.comp -- hills of gradient noise, along columns of texels.
 //
-//   gives    height, for any land; not normalised
-//   needs    generation/gradient_noise/seed.glsl, noise/columns.glsl
+//   gives    height, for any terrain; not normalised
+//   needs    generation/gradient_noise/{parameters/octaves,seed}.glsl, noise/columns.glsl
 //   units    heights without unit, as in the kernel beside it
 //   source   see noise/columns.glsl
-//   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py, against the kernel beside it
+//   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py,
+//            against the kernel beside it
 //   agrees   best at a low gain: both round places, in another order
 //
-// A thread walks 32 rows of one column. The two finest octaves cross a lattice row every few
+// A thread goes along 32 rows of one column. The two finest octaves cross a lattice row every few
 // texels; the coarser ones seldom do, so their sum is worked out apart, and moved along. Only
 // the plain sum of Perlin noise goes this way; the rest is worked out texel by texel.
 #include "generation/gradient_noise/seed.glsl"
 #include "noise/columns.glsl"
-#pragma compute(groups = "(size.x + 63) // 64, (size.y + 31) // 32", local = "64, 1", overwrites = "height", agrees = "1e-4")
+#pragma compute(groups = "(size.x + 63) // 64, (size.y + 31) // 32", local = "64, 1", \
+                overwrites = "height", agrees = "1e-4")
 
-uniform int basis = 0;           //! menu("Perlin", "simplex") On a lattice of squares or of triangles
-uniform int shape = 0;           //! menu("plain", "ridged", "billow", "warped") The sum itself; sharp ridges; soft hills between creases; a sum bent by two others
-uniform int octaves = 6;         //! slider(0, 16) Sums of noise; those too fine for the texels are left out
-uniform float frequency = 4.0;   //! log_slider(0.25, 1024) Cells along the land's width in the first octave
-uniform float lacunarity = 2.0;  //! slider(1.1, 4) step(0.05) Cells of an octave to one of the octave before
-uniform int strength = 0;        //! menu("gain", "Hurst exponent") What tells how octaves weaken
-uniform float gain = 0.5;        //! slider(0, 1) step(0.01) Strength of an octave over the one before, also called persistence
-uniform float hurst = 0.8;       //! slider(0, 1) step(0.01) label("Hurst exponent") The gain is lacunarity^-H: near 1 the land is smooth, near 0 it is rubble
-uniform float warp = 0.4;        //! slider(0, 2) step(0.01) Warped: how far a place is moved, in cells of the first octave
-uniform uint seed = 7u;          //! slider(0, 9999) Which land
+#include "generation/gradient_noise/parameters/octaves.glsl"
 
 const int ROWS = 32;
 const int FINE = 2;
@@ -39,18 +32,21 @@ void main() {
     if (x >= size.x) return;
     float scale = cells_a_metre(frequency, extent, spacing);
     float texels = 1.0 / (scale * max(spacing.x, spacing.y));
-    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity), texels, octaves_seed(strength, seed));
+    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity),
+                        texels, octaves_seed(strength, seed));
     if (basis != PERLIN || shape != PLAIN) {
-        for (; y < last; y++) store(x, y, octaves_shaped(shape, vec2(x, y) * (spacing * scale), o, warp).x);
+        for (; y < last; y++) {
+            store(x, y, octaves_sum(shape, vec2(x, y) * (spacing * scale), o, warp).x);
+        }
         return;
     }
     Rows rows = Rows(vec2(float(x) * (spacing.x * scale), 0.0), spacing.y * scale);
-    int seen = 0;
-    for (float finest = 1.0; seen < octaves && finest < texels; finest *= lacunarity) seen++;
-    int split = max(seen - FINE, 0);
+    int visible = 0;
+    for (float finest = 1.0; visible < octaves && finest < texels; finest *= lacunarity) visible++;
+    int split = max(visible - FINE, 0);
     Span coarse = octave_span(o, 0, split);
-    Span fine = octave_span(o, split, seen);
-    if (seen == 0) fine.strength = 0.0;
+    Span fine = octave_span(o, split, visible);
+    if (visible == 0) fine.strength = 0.0;
     do {
         int stop = last;
         if (split > 0) stop = min(stop, column_end(rows, y, o, coarse));
@@ -60,7 +56,8 @@ void main() {
         do {
             int end = min(stop, column_end(rows, y, o, fine));
             float middle = 0.5 * float(y + end - 1);
-            Column piece = column_add(column_moved(smooth_part, middle - around), rows, middle, o, fine);
+            Column piece = column_moved(smooth_part, middle - around);
+            piece = column_add(piece, rows, middle, o, fine);
             do {
                 store(x, y, column_height(piece, float(y) - middle));
                 y++;

@@ -1,4 +1,4 @@
-// generation/layered_noise/parts.glsl -- a land cut into parts that are all covered by one tile.
+// generation/layered_noise/parts.glsl -- a terrain cut into parts, one tile on each.
 //
 //   gives    place_in_part
 //   needs    maths/whole.glsl
@@ -12,13 +12,13 @@
 #define GENERATION_LAYERED_NOISE_PARTS
 #include "maths/whole.glsl"
 
-// Where a texel lies on the tile of its part. Where a land is no whole number of parts wide,
+// Where a texel lies on the tile of its part. Where a terrain is no whole number of parts wide,
 // the last part is cut.
 // anchor: place
 ivec2 place_in_part(ivec2 texel, ivec2 tile, int tiles) {
     ivec2 wide = max(tile - 1, ivec2(1));
-    ivec2 part = min(ivec2(quotient(texel.x, wide.x), quotient(texel.y, wide.y)), ivec2(tiles - 1));
-    return texel - part * wide;
+    ivec2 part = ivec2(quotient(texel.x, wide.x), quotient(texel.y, wide.y));
+    return texel - min(part, ivec2(tiles - 1)) * wide;
 }
 // end: place
 #endif

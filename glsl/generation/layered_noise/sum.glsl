@@ -34,12 +34,15 @@ uniform int interpolation = 1;   //! menu("linear", "smooth") Between nodes: a l
 uniform int random_layers = 0;   //! menu("one", "independent") All layers read one random layer,
                                  //! or each its own
 uniform int overflow = 0;        //! menu("divide", "clamp", "wrap") A sum above 1: divided by
-                                 //! the weights' sum, cut, or begun again at 0 (an error, to look at)
-uniform int layer = 0;           //! slider(0, 8) Show this layer alone, at full weight; 0: their sum
-uniform int left_out = 0;        //! slider(0, 8) Of these layers, so many of the coarsest are left out
+                                 //! the weights' sum, cut, or begun again at 0 (an error to see)
+uniform int layer = 0;           //! slider(0, 8) Show this layer alone, at full weight; 0: their
+                                 //! sum
+uniform int left_out = 0;        //! slider(0, 8) Of these layers, so many of the coarsest are left
+                                 //! out
 uniform int tiles = 1;           //! slider(1, 64) This is one of so many parts a side, and has its
                                  //! share of the intervals
-uniform int seams = 1;           //! menu("mended", "left") Whether its last nodes are its first ones again
+uniform int seams = 1;           //! menu("mended", "left") Whether its last nodes are its first
+                                 //! ones again
 
 // anchor: layer
 float curve(float a) {

@@ -1,4 +1,4 @@
-// generation/layered_noise_tiled/mix.glsl -- the coarsest layer of noise, with one tile of the finer ones on each part.
+// generation/layered_noise_tiled/mix.glsl -- the coarsest layer, and a tile of the finer ones.
 //
 //   gives    height, 0..1
 //   needs    generation/layered_noise/parts.glsl, generation/layered_noise/weights.glsl
@@ -13,7 +13,8 @@ uniform sampler2D shape;         //! input
 uniform sampler2D tile;          //! input
 uniform int tiles = 4;           //! slider(1, 64) Parts a side
 uniform int octaves = 2;         //! slider(0, 8) Layers, the shape among them
-uniform float persistence = 0.2; //! slider(0, 1) step(0.01) Weight of the first layer; each next layer has this share of it
+uniform float persistence = 0.2; //! slider(0, 1) step(0.01) Weight of the first layer; each next
+                                 //! layer has this share of it
 
 float kernel(ivec2 texel) {
     ivec2 place = place_in_part(texel, textureSize(tile, 0), tiles);

@@ -1,28 +1,32 @@
-// generation/midpoint_displacement/raw.glsl -- land by dividing a square in four and displacing what is in the middle.
+// generation/midpoint_displacement/raw.glsl -- terrain by displacing midpoints of squares.
 //
-//   gives    height, for any land of 2^n + 1 texels a side; not normalised
+//   gives    height, for any terrain of 2^n + 1 texels a side; not normalised
 //   needs    noise/finest.glsl, noise/hash.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.5
 //   tested   tests/glsl/test_midpoint_displacement.py, against squares that are divided one by
 //            one, in float64 with the same hash
 //
-// The land begins as 0 everywhere. Each turn divides every square in four: the middle of an
+// The terrain begins as 0 everywhere. Each step divides every square in four: the middle of an
 // edge is the mean of its two corners, the centre that of all four, and to each is added a
-// random number in [-d, d]. The first turn's d is 1, each next turn's `roughness` times the
+// random number in [-d, d]. The first step's d is 1, each next step's `roughness` times the
 // one before: the thesis names the factor for its next technique, "as for midpoint
 // displacement", and gives no value.
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", repeat = "log2(size.x - 1)", accepts = "2**n + 1", visits = "2**(iteration + 1) + 1, 2**(iteration + 1) + 1", stride = "(size.x - 1) // 2**(iteration + 1)", between = "squares")
+#pragma kernel(output = "height:r32f", where = "squares = 2**(iteration + 1)", \
+               repeat = "log2(size.x - 1)", accepts = "2**n + 1", \
+               visits = "squares + 1, squares + 1", stride = "(size.x - 1) // squares", \
+               between = "squares")
 
-uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each turn's random numbers, over those of the turn before
-uniform uint seed = 7u;         //! slider(0, 9999) Which land
+uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each step's random numbers, over those
+                                //! of the step before
+uniform uint seed = 7u;         //! slider(0, 9999) Which terrain
 
 const uint SALT = 0x370b75bau;  // CRC-32 of "generation/midpoint_displacement"
 
 ivec2 visit(ivec2 cell) {
-    // Of the cells of a turn, those with two even numbers were corners before.
+    // Of the cells of a step, those with two even numbers were corners before.
     return ((cell.x | cell.y) & 1) == 0 ? ivec2(-1) : cell * (size.x >> (iteration + 1));
 }
 
@@ -37,7 +41,7 @@ float kernel(ivec2 texel) {
     float across = previous(texel - falling) + previous(texel + falling);
     float mean = (along + across) * 0.25;
     float most = 1.0;
-    for (int turn = 0; turn < iteration; turn++) most *= roughness;
+    for (int k = 0; k < iteration; k++) most *= roughness;
     bool is_new = rising.x + rising.y > 0;
     ivec2 point = finest_point(texel, size.x - 1);
     return is_new ? mean + random_signed(point, seed + SALT) * most : mean;

@@ -1,4 +1,4 @@
-// generation/midpoint_displacement/segment.glsl -- a segment whose midpoints are displaced: one row after no step, one after one, ..
+// generation/midpoint_displacement/segment.glsl -- a segment with displaced midpoints, row by row.
 //
 //   gives    height, 2^n + 1 texels long; row k, from 0 in the south, is the line after k steps
 //   needs    noise/finest.glsl, noise/hash.glsl
@@ -14,7 +14,8 @@
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f", accepts = "2**n + 1, m + 1")
 
-uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each step's random numbers, over those of the step before
+uniform float roughness = 0.5;  //! slider(0, 1) step(0.01) Each step's random numbers, over those
+                                //! of the step before
 uniform uint seed = 7u;         //! slider(0, 9999) Which line
 
 const uint SALT = 0x4039243eu;  // CRC-32 of "generation/midpoint_displacement/segment"

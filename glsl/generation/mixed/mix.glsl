@@ -14,7 +14,8 @@
 uniform sampler2D shape;          //! input
 uniform sampler2D detail;         //! input
 uniform int octaves = 1;          //! slider(0, 8) Layers of detail
-uniform float persistence = 0.04; //! slider(0, 1) step(0.01) Weight of the first layer of detail; each next layer has this share of it
+uniform float persistence = 0.04; //! slider(0, 1) step(0.01) Weight of the first layer of detail;
+                                  //! each next layer has this share of it
 
 // anchor: sum
 float kernel(ivec2 texel) {

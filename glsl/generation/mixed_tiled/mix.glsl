@@ -13,7 +13,8 @@ uniform sampler2D shape;          //! input
 uniform sampler2D tile;           //! input
 uniform int tiles = 4;            //! slider(1, 64) Parts a side
 uniform int octaves = 1;          //! slider(0, 8) Layers of detail
-uniform float persistence = 0.04; //! slider(0, 1) step(0.01) Weight of the first layer of detail; each next layer has this share of it
+uniform float persistence = 0.04; //! slider(0, 1) step(0.01) Weight of the first layer of detail;
+                                  //! each next layer has this share of it
 
 float kernel(ivec2 texel) {
     ivec2 place = place_in_part(texel, textureSize(tile, 0), tiles);

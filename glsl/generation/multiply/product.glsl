@@ -1,4 +1,4 @@
-// generation/multiply/product.glsl -- the product of two lands.
+// generation/multiply/product.glsl -- the product of two terrains.
 //
 //   gives    height, 0..1; not above either factor
 //   needs    terrain/extremes.glsl
@@ -19,7 +19,7 @@ uniform sampler2D second_range; //! input
 float factor(float h, vec2 range) {
     if (range.x >= 0.0 && range.y <= 1.0) return h;
     float span = span_of(range);
-    // Flat land has no range to stretch.
+    // Flat terrain has no range to stretch.
     return span > 0.0 ? clamp((h - range.x) / span, 0.0, 1.0) : 0.0;
 }
 

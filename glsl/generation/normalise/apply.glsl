@@ -7,14 +7,16 @@
 //   tested   tests/glsl/test_normalise.py, against NumPy
 //
 // The thesis multiplies by 256 for bytes, which reaches 256 and wraps; here the highest is 1.
-// A flat land, roundings apart, has no range to stretch: it becomes 0 by "minmax", and stays by "max" unless
-// it is above 0. A land wholly below 0 stays by "max", for division would turn it over.
+// A flat terrain, roundings apart, has no range to stretch: it becomes 0 by "minmax", and stays by
+// "max" unless it is above 0. A terrain wholly below 0 stays by "max", for division would
+// put it upside down.
 #include "terrain/extremes.glsl"
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D height; //! input
 uniform sampler2D range;  //! input
-uniform int mode = 2;     //! menu("none", "max", "minmax") label("Normalise") What is stretched to 1: nothing, the highest, or lowest to highest
+uniform int mode = 2;     //! menu("none", "max", "minmax") label("Normalise") What is stretched to
+                          //! 1: nothing, the highest, or lowest to highest
 
 float kernel(ivec2 texel) {
     float h = texelFetch(height, texel, 0).r;

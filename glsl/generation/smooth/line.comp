@@ -1,4 +1,4 @@
-// generation/smooth/line.comp -- the mean along one axis by a sum that slides: two fetches a texel at any radius.
+// generation/smooth/line.comp -- the mean along one axis by a sum that slides.
 //
 //   gives    height
 //   needs    nothing
@@ -7,14 +7,19 @@
 //   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
 //   agrees   for heights in 0..1: the sum gathers roundings as it slides
 //
-// Each thread walks a run of texels. It sums one whole window, then adds what comes in and
-// takes away what goes out. A run is as long as its first window, so that the window costs
-// no more than the walk; it begins anew at each run, so that roundings cannot gather for
-// long. Threads that lie beside each other walk beside each other.
-#pragma compute(groups = "((size.y if axis == 0 else size.x) + 31) // 32, ((size.x if axis == 0 else size.y) - 1) // max(64, 2 * radius + 1) + 1", local = "32, 1", agrees = "2e-6")
+// Each thread goes along a run of texels, with two fetches a texel at any radius: it sums one
+// whole window, then adds what comes in and takes away what goes out. A run is as long as its
+// first window, so that the window costs no more than the rest; it begins anew at each run, so that
+// roundings cannot gather for long. Threads that lie beside each other go beside each other.
+#pragma compute(where = "lines = size.y if axis == 0 else size.x; \
+                         texels = size.x if axis == 0 else size.y; \
+                         run = max(64, 2 * radius + 1)", \
+                groups = "(lines + 31) // 32, (texels - 1) // run + 1", local = "32, 1", \
+                agrees = "2e-6")
 
 uniform sampler2D height; //! input
-uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of 11
+uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of
+                          //! 11
 uniform int axis = 0;     //! menu("x", "y") Along which axis
 
 ivec2 texel_at(int place, int beside) {
@@ -33,9 +38,12 @@ void main() {
     int low = max(from - radius, 0);
     int high = min(from + radius, last);
     float total = 0.0;
-    for (int k = low; k <= high; k++) total += texelFetch(height, texel_at(k, beside), 0).r - level;
+    for (int k = low; k <= high; k++) {
+        total += texelFetch(height, texel_at(k, beside), 0).r - level;
+    }
     for (int place = from; place <= to; place++) {
-        imageStore(out_height, texel_at(place, beside), vec4(level + total / float(high - low + 1)));
+        float mean = level + total / float(high - low + 1);
+        imageStore(out_height, texel_at(place, beside), vec4(mean));
         if (place - radius >= 0) total -= texelFetch(height, texel_at(low++, beside), 0).r - level;
         if (high < last) total += texelFetch(height, texel_at(++high, beside), 0).r - level;
     }

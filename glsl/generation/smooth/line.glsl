@@ -7,11 +7,12 @@
 //   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
 //
 // The mean over a square is the mean over rows of the means over columns, also at the border,
-// where what is left of the square is still a rectangle: two turns of this are the filter.
+// where what is left of the square is still a rectangle: two passes of this are the filter.
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D height; //! input
-uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of 11
+uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of
+                          //! 11
 uniform int axis = 0;     //! menu("x", "y") Along which axis
 
 float kernel(ivec2 texel) {

@@ -7,7 +7,8 @@
 //   tested   tests/glsl/test_air.py: the tables are those of the turbidity that is set
 #pragma kernel(output = "air:r32f")
 
-uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1) Haze: 2 very clear, 3 clear, 6 hazy
+uniform float turbidity = 2.5;     //! slider(1.5, 10) step(0.1)
+                                   //! Haze: 2 very clear, 3 clear, 6 hazy
 
 float kernel(ivec2 texel) {
     return turbidity;

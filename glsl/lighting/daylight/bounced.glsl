@@ -1,4 +1,4 @@
-// lighting/daylight/bounced.glsl -- light that air and ground have scattered twice or more, as if from all around.
+// lighting/daylight/bounced.glsl -- light that air and ground have scattered twice or more.
 //
 //   gives    bounced: the logarithm of it, by the sun's height along x and by height along y
 //   needs    sky/bounced.glsl, sky/slab.glsl; the columns, the air
@@ -6,6 +6,8 @@
 //   source   Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering
 //            Technique", eqs 5 to 10
 //   tested   tests/glsl/test_air.py, against a finer sum in float64
+//
+// It is taken as if it came from all around.
 //
 // Light scattered twice is summed over all directions. Each further time keeps the same part f
 // of it, so that all times together are 1 + f + f² + … = 1 / (1 - f) of the second.
@@ -15,7 +17,8 @@
 
 uniform sampler2D columns;         //! input
 uniform sampler2D air;             //! input
-uniform float ground = 0.2;        //! slider(0, 1) step(0.01) How much of its light the ground throws back to the sky
+uniform float ground = 0.2;        //! slider(0, 1) step(0.01)
+                                   //! How much of its light the ground throws back to the sky
 
 const int RISES = 12;
 const int SIDES = 6;
@@ -42,14 +45,18 @@ vec4 kernel(ivec2 texel) {
         for (int k = 0; k < STEPS; k++) {
             float before = float(k) / float(STEPS);
             float after = float(k + 1) / float(STEPS);
-            Slab here = slab(columns, scatters, start.y, rise, start.x, together, whole * before * before, whole * after * after);
+            Slab here = slab(columns, scatters, start.y, rise, start.x, together,
+                             whole * before * before, whole * after * after);
             second += left * (here.molecules + here.aerosol) * 0.0795775;  // 1 / 4 pi
             again += left * here.share;
             left *= here.left;
         }
         if (to_ground >= 0.0) {
-            float sun_rise = ((EARTH_RADIUS + start.y) * start.x + whole * together) / EARTH_RADIUS;
-            second += left * left_of_sunlight(columns, scatters, 0.0, sun_rise) * (max(sun_rise, 0.0) * ground * 0.3183099);  // 1 / pi
+            float sun_rise = ((EARTH_RADIUS + start.y) * start.x + whole * together)
+                    / EARTH_RADIUS;
+            // 1 / pi
+            second += left * left_of_sunlight(columns, scatters, 0.0, sun_rise)
+                    * (max(sun_rise, 0.0) * ground * 0.3183099);
         }
     }
     float count = float(RISES * SIDES);

@@ -1,10 +1,12 @@
-// lighting/daylight/columns.glsl -- how much air there is to the top of it, from every height in every direction.
+// lighting/daylight/columns.glsl -- how much air there is above, in every direction.
 //
 //   gives    columns: of molecules, aerosol and ozone; the same on every day, so made once
 //   needs    sky/columns.glsl
 //   units    kilometres of sea level's air, of ozone's densest
 //   source   the integral of sky/air.glsl's densities by the midpoint rule
 //   tested   tests/glsl/test_air.py, against a finer integral in float64
+//
+// From every height to the top of the air.
 #include "sky/columns.glsl"
 #pragma kernel(output = "columns:rgba32f")
 

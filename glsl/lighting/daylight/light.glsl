@@ -1,18 +1,21 @@
 // lighting/daylight/light.glsl -- what sun and sky come to, under clouds and to the adapted eye.
 //
-//   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2 the
-//            sky's light on level ground; 3 the zenith, what all is multiplied by for the eye; 4 the
-//            mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of open sky;
-//            from 7 on the mean horizon as seen from each height of sky/dome.glsl
-//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place, the air and two tables
-//   units    light without unit, 1 that of the sun outside the air on a surface that faces it; degrees
+//   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2
+//            the sky's light on level ground; 3 the zenith, what all is multiplied by for the eye;
+//            4 the mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of
+//            open sky; from 7 on the mean horizon as seen from each height of sky/dome.glsl
+//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place,
+//            the air and two tables
+//   units    light without unit, 1 that of the sun outside the air on a surface that faces it;
+//            degrees
 //   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
 //            light, whose reading to the power -adaptation is the exposure
 //   tested   tests/glsl/test_daylight.py, against float64, and for every place of the sun
 //
 // From noon to the end of twilight light falls by eight powers of ten, which neither the eye
-// nor half floats follow. So exposure by the light begins here, where floats are whole; view/present
-// has the rest. Adaptation 1 keeps level ground as bright all day, 0 keeps nature's numbers.
+// nor half floats follow. So exposure by the light begins here, where floats are whole;
+// view/present has the rest. Adaptation 1 keeps level ground as bright all day, 0 keeps nature's
+// numbers.
 #include "lighting/sun.glsl"
 #include "sky/clouds.glsl"
 #include "sky/columns.glsl"
@@ -23,8 +26,10 @@ uniform sampler2D place;           //! input
 uniform sampler2D columns;         //! input
 uniform sampler2D dome;            //! input
 uniform sampler2D air;             //! input
-uniform float clouds = 0.0;        //! slider(0, 1) step(0.01) Cover of cloud: dims the sun, whitens the sky
-uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01) How much of the light's loss the eye makes up for
+uniform float clouds = 0.0;        //! slider(0, 1) step(0.01)
+                                   //! Cover of cloud: dims the sun, whitens the sky
+uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01)
+                                   //! How much of the light's loss the eye makes up for
 
 const int AROUND = 24;
 const int UP = 24;
@@ -50,7 +55,8 @@ vec4 kernel(ivec2 texel) {
         float turned = (float(column) + 0.5) / float(AROUND) * 3.14159265;
         horizon += dome_at(dome, 0, towards(horizon_at, turned, sun), sun, height) / float(AROUND);
         for (int row = 0; row < UP; row++) {
-            // Equal steps of the squared sine weigh each direction by its sine, as level ground does.
+            // Equal steps of the squared sine weigh each direction by its sine, as level ground
+            // does.
             float rise = sqrt((float(row) + 0.5) / float(UP));
             sky += dome_at(dome, 0, towards(rise, turned, sun), sun, 0.0) / float(AROUND * UP);
         }
@@ -69,7 +75,9 @@ vec4 kernel(ivec2 texel) {
     if (texel.x == 1) found = vec4(eye * beam, at.x);
     if (texel.x == 2) found = vec4(eye * (open * sky + cloud), 1.0);
     if (texel.x == 3) found = vec4(eye * (open * zenith + cloud * overcast(1.0)), eye);
-    if (texel.x == 4 || texel.x >= 7) found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
+    if (texel.x == 4 || texel.x >= 7) {
+        found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
+    }
     if (texel.x == 5) found = vec4(eye * whole, 1.0);
     return found;
 }

@@ -1,22 +1,33 @@
-// lighting/daylight/place.glsl -- the sun's place in the sky: over some place on Earth at some hour, or anywhere.
+// lighting/daylight/place.glsl -- the sun's place in the sky, by place and hour or free.
 //
 //   gives    place: azimuth and elevation, as seen through the air
-//   needs    lighting/sun_position.glsl; the hours that have elapsed since the hour that is set, if any
+//   needs    lighting/sun_position.glsl; the hours that have elapsed since the hour that is set,
+//            if any
 //   units    degrees, azimuth clockwise from north; hours
 //   source   see lighting/sun_position.glsl
 //   tested   tests/glsl/test_daylight.py, against lighting/sun_position.glsl over days and zones
 #include "lighting/sun_position.glsl"
 #pragma kernel(output = "place:rg32f")
 
-uniform int position = 0;             //! menu("date and hour", "free") group("Sun") Whether the sun follows place, date and hour
+uniform int position = 0;             //! menu("date and hour", "free") group("Sun")
+                                      //! Whether the sun follows place, date and hour
 uniform vec2 sun = vec2(135.0, 25.0); //! direction group("Sun") Where it stands if it is free
-uniform float latitude = 34.85;       //! slider(-90, 90) step(0.05) unit("degrees") group("Place") North of the equator; Biskra's by default
-uniform float longitude = 5.73;       //! slider(-180, 180) step(0.05) unit("degrees") group("Place") East of Greenwich
-uniform int year = 2025;              //! slider(1950, 2050) group("Date") The year; it moves the sun by less than its width
-uniform int day = 120;                //! slider(1, 366) group("Date") Day of the year, 1 for the first of January
-uniform float hour = 9.0;             //! slider(0, 24) step(0.05) unit("h") group("Date") Hour of the day
-uniform int clock = 0;                //! menu("sun", "zone") group("Date") The sun's own hour, 12 as it crosses the meridian, or a time zone's
-uniform float zone = 0.0;             //! slider(-12, 14) step(0.25) unit("h") group("Date") How far that zone's clocks are ahead of universal time
+uniform float latitude = 34.85;       //! slider(-90, 90) step(0.05) unit("degrees") group("Place")
+                                      //! North of the equator; Biskra's by default
+uniform float longitude = 5.73;       //! slider(-180, 180) step(0.05) unit("degrees")
+                                      //! group("Place")
+                                      //! East of Greenwich
+uniform int year = 2025;              //! slider(1950, 2050) group("Date")
+                                      //! The year; it moves the sun by less than its width
+uniform int day = 120;                //! slider(1, 366) group("Date")
+                                      //! Day of the year, 1 for the first of January
+uniform float hour = 9.0;             //! slider(0, 24) step(0.05) unit("h") group("Date")
+                                      //! Hour of the day
+uniform int clock = 0;                //! menu("sun", "zone") group("Date")
+                                      //! The sun's own hour, 12 as it crosses the meridian, or a
+                                      //! time zone's
+uniform float zone = 0.0;             //! slider(-12, 14) step(0.25) unit("h") group("Date")
+                                      //! How far that zone's clocks are ahead of universal time
 uniform sampler2D elapsed;            //! input("black")
 
 vec2 kernel(ivec2 texel) {

@@ -1,4 +1,4 @@
-// lighting/diagram/grid.glsl -- the texels around one, from above: which place towards the sun the height difference reads.
+// lighting/diagram/grid.glsl -- the texels around one, from above.
 //
 //   gives    diagram: a colour
 //   needs    lighting/diagram/ink.glsl, lighting/diagram/label.glsl, lighting/diagram/paints.glsl,
@@ -6,6 +6,8 @@
 //   units    heights are written in grey levels, 255 from height 0 to 1; colours linear
 //   source   Belaiche 2010, section 3.5.1, figure 3.5
 //   tested   tests/glsl/test_diagrams.py, by colours at their places and against the method itself
+//
+// It shows which place towards the sun the height difference reads.
 //
 // The picture is a map, north on top, of the texel in its middle. Texels higher than that one are
 // brown, lower ones blue; the deepest brown takes all light. The method reads the ring, between
@@ -18,12 +20,16 @@
 #pragma kernel(output = "diagram:rgba16f")
 
 uniform sampler2D height;                //! input
-uniform int column = 32;                 //! slider(0, 4096) group("Place") Of the texel in the middle, from the west
-uniform int row = 32;                    //! slider(0, 4096) group("Place") Of the texel in the middle, from the south
-uniform float texels = 13.0;             //! slider(3, 40) step(1) group("Place") How many texels fill the picture's width
-uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north; this method knows no elevation
-uniform float softness = 0.05;           //! log_slider(0.001, 1) How much higher the place towards the sun may be before all light is gone
-uniform float reach = 1.0;               //! slider(0, 16) step(0.5) unit("texels") How far away that place is, along the axis that the sun is nearer to
+uniform int column = 32;                 //! slider(0, 4096) group("Place")
+                                         //! Of the texel in the middle, from the west
+uniform int row = 32;                    //! slider(0, 4096) group("Place")
+                                         //! Of the texel in the middle, from the south
+uniform float texels = 13.0;             //! slider(3, 40) step(1) group("Place")
+                                         //! How many texels fill the picture's width
+#include "lighting/parameters/one_step.glsl"
+uniform float softness = 0.05;           //! log_slider(0.001, 1)
+                                         //! How much higher the place towards the sun may be
+                                         //! before all light is gone
 uniform int steps = 4;                   //! slider(1, 64) Places shown, the first of which is read
 uniform bool text = true;                //! Write the numbers
 
@@ -36,10 +42,18 @@ const int TEXTS = 5;
 const int LENGTHS[TEXTS] = int[TEXTS](10, 21, 25, 19, 23);
 const uvec4 WORDS[2 * TEXTS] = uvec4[2 * TEXTS](
     uvec4(0x65726568u, 0x83828180u, 0x00008584u, 0u), uvec4(0u, 0u, 0u, 0u),  // here######
-    uvec4(0x61776F74u, 0x20736472u, 0x20656874u, 0x906E7573u), uvec4(0x94939291u, 0x00000095u, 0u, 0u),  // towards the sun######
-    uvec4(0x65736972u, 0xA3A2A1A0u, 0x202CA5A4u, 0x74666F73u), uvec4(0x7373656Eu, 0xB3B2B1B0u, 0x000000B4u, 0u),  // rise######, softness#####
-    uvec4(0x72616873u, 0x666F2065u, 0x67696C20u, 0xC1C07468u), uvec4(0x00C4C3C2u, 0u, 0u, 0u),  // share of light#####
-    uvec4(0x61776F74u, 0x20736472u, 0x20656874u, 0x206E7573u), uvec4(0x6C206F6Eu, 0x00646E61u, 0u, 0u)  // towards the sun no land
+    // towards the sun######
+    uvec4(0x61776F74u, 0x20736472u, 0x20656874u, 0x906E7573u),
+    uvec4(0x94939291u, 0x00000095u, 0u, 0u),
+    // rise######, softness#####
+    uvec4(0x65736972u, 0xA3A2A1A0u, 0x202CA5A4u, 0x74666F73u),
+    uvec4(0x7373656Eu, 0xB3B2B1B0u, 0x000000B4u, 0u),
+    // share of light#####
+    uvec4(0x72616873u, 0x666F2065u, 0x67696C20u, 0xC1C07468u),
+    uvec4(0x00C4C3C2u, 0u, 0u, 0u),
+    // towards the sun no terrain
+    uvec4(0x61776F74u, 0x20736472u, 0x20656874u, 0x206E7573u),
+    uvec4(0x6C206F6Eu, 0x00646E61u, 0u, 0u)
 );
 const int WIDE[5] = int[5](6, 6, 6, 5, 5);
 const int DECIMALS[5] = int[5](1, 1, 1, 1, 2);
@@ -52,7 +66,7 @@ vec4 kernel(ivec2 texel) {
     ivec2 last = grid - 1;
     ivec2 here = clamp(ivec2(column, row), ivec2(0), last);
     float pitch = paper.x / max(texels, 1.0);
-    // Texels of the land, whole ones at their middles.
+    // Texels of the terrain, whole ones at their middles.
     vec2 spot = (place - 0.5 * paper) / pitch + vec2(here);
     ivec2 cell = ivec2(floor(spot + 0.5));
     bool on_land = all(greaterThanEqual(cell, ivec2(0))) && all(lessThanEqual(cell, last));
@@ -74,8 +88,11 @@ vec4 kernel(ivec2 texel) {
     colour = mix(colour, EDGE, 0.55 * covered(0.5 * u - min(from_side.x, from_side.y)));
     // The four texels that the place is read between.
     ivec2 low = ivec2(clamp(floor(read), vec2(0.0), vec2(last)));
-    bool around = all(greaterThanEqual(cell, low)) && all(lessThanEqual(cell, low + ivec2(ceil(read - vec2(low)))));
-    if (around && !off) colour = mix(colour, PARTLY, 0.9 * covered(3.0 * u - min(from_side.x, from_side.y)));
+    bool around = all(greaterThanEqual(cell, low))
+            && all(lessThanEqual(cell, low + ivec2(ceil(read - vec2(low)))));
+    if (around && !off) {
+        colour = mix(colour, PARTLY, 0.9 * covered(3.0 * u - min(from_side.x, from_side.y)));
+    }
     if (cell == here) colour = mix(colour, INK, covered(2.6 * u - min(from_side.x, from_side.y)));
 
     vec2 middle = 0.5 * paper;
@@ -90,7 +107,8 @@ vec4 kernel(ivec2 texel) {
     for (int k = 2; k <= steps; k++) {
         beyond += max(reach, 0.25) * way;
         vec2 at = middle + (beyond - vec2(here)) * pitch;
-        bool inside = all(greaterThanEqual(beyond, vec2(-1e-3))) && all(lessThanEqual(beyond, vec2(last) + 1e-3));
+        bool inside = all(greaterThanEqual(beyond, vec2(-1e-3)))
+                && all(lessThanEqual(beyond, vec2(last) + 1e-3));
         bool before = dot(at - middle, along) < min(room.x, room.y) - 20.0 * u;
         if (inside && before) colour = mix(colour, INK, dot_cover(place, at, 3.2 * u));
     }
@@ -101,7 +119,8 @@ vec4 kernel(ivec2 texel) {
     over = max(over, dot_cover(place, ring, 7.0 * u));
     if (!text) return vec4(colour, 1.0);
 
-    float values[5] = float[5](255.0 * foot, 255.0 * there, 255.0 * (there - foot), 255.0 * softness, share);
+    float values[5] = float[5](255.0 * foot, 255.0 * there, 255.0 * (there - foot),
+                               255.0 * softness, share);
     int board = -1;
     vec3 found = vec3(-1.0);
     // One board behind four lines.
@@ -109,7 +128,8 @@ vec4 kernel(ivec2 texel) {
     float behind = covered(min(inside.x, inside.y));
     for (int k = 0; k < 4; k++) {
         int which = k == 1 && off ? 4 : k;
-        Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k)) * u), k == 2 && off ? 0 : LENGTHS[which], u);
+        Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k)) * u),
+                                    k == 2 && off ? 0 : LENGTHS[which], u);
         vec3 at = cell_of(label, place);
         if (at.x >= 0.0 && label.length > 0) {
             board = which;
@@ -122,7 +142,8 @@ vec4 kernel(ivec2 texel) {
         character = character_of(WORDS[2 * board + (at >> 4)], at & 15);
         if (character >= 128) {
             int number = (character >> 4) & 7;
-            character = number_character(values[number], DECIMALS[number], character & 15, WIDE[number]);
+            character = number_character(values[number], DECIMALS[number], character & 15,
+                                         WIDE[number]);
         }
         over = 0.0;
     } else if (on_land && pitch > 34.0 * u && behind == 0.0) {
@@ -132,7 +153,9 @@ vec4 kernel(ivec2 texel) {
         found = cell_of(label, place);
         // A number that the board would cut is left out.
         bool cut = label.corner.x < 250.0 * u && label.corner.y > paper.y - 101.0 * u;
-        if (found.x >= 0.0 && !cut) character = number_character(255.0 * level, 0, int(found.x), 3);
+        if (found.x >= 0.0 && !cut) {
+            character = number_character(255.0 * level, 0, int(found.x), 3);
+        }
     }
     colour = mix(colour, SKY, 0.92 * behind);
     float pen = covered((0.75 - letter_away(character, found.yz)) * u) * (1.0 - over);

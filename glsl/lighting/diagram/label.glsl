@@ -1,4 +1,4 @@
-// lighting/diagram/label.glsl -- where a label stands, and which of its characters a pixel belongs to.
+// lighting/diagram/label.glsl -- where a label stands, and the character under a pixel.
 //
 //   gives    Label, label_on_left, label_on_right, label_around, board_cover, cell_of
 //   needs    lighting/diagram/ink.glsl, lighting/diagram/letters.glsl
@@ -29,17 +29,20 @@ Label label_around(vec2 foot, int length, float unit) {
 
 // How much of a pixel the board behind the letters covers, which is a unit larger than they are.
 float board_cover(Label label, vec2 place) {
-    vec2 half_board = 0.5 * vec2(float(label.length) * LETTER.x + 2.0, LETTER.y + 2.0) * label.unit;
+    vec2 half_board = 0.5 * vec2(float(label.length) * LETTER.x + 2.0, LETTER.y + 2.0)
+            * label.unit;
     vec2 middle = label.corner + 0.5 * vec2(float(label.length) * LETTER.x, LETTER.y) * label.unit;
     vec2 inside = half_board - abs(place - middle);
     return label.length > 0 ? covered(min(inside.x, inside.y)) : 0.0;
 }
 
-// The number of a pixel's character, and where it is in that character's room; a number below 0 is none.
+// The number of a pixel's character, and where it is in that character's room; a number below 0 is
+// none.
 vec3 cell_of(Label label, vec2 place) {
     vec2 at = (place - label.corner) / label.unit;
     float cell = floor(at.x / LETTER.x);
-    bool outside = cell < 0.0 || cell >= float(label.length) || at.y < -1.0 || at.y > LETTER.y + 1.0;
+    bool outside = cell < 0.0 || cell >= float(label.length) || at.y < -1.0
+            || at.y > LETTER.y + 1.0;
     // The strokes stand in the middle of their room.
     return vec3(outside ? -1.0 : cell, at.x - cell * LETTER.x - 1.0, at.y);
 }

@@ -6,7 +6,8 @@
 //   source   strokes drawn here
 //   tested   tests/glsl/test_diagrams.py, which reads what pictures say
 //
-// A character is its ASCII code; 96 is the degree sign. Characters that no picture writes are blank.
+// A character is its ASCII code; 96 is the degree sign. Characters that no picture writes are
+// blank.
 #ifndef LIGHTING_DIAGRAM_LETTERS
 #define LIGHTING_DIAGRAM_LETTERS
 #include "maths/whole.glsl"
@@ -109,7 +110,8 @@ const uvec4 STROKES[86] = uvec4[86](
 // How far a place is from a character's strokes; far where it has none.
 float letter_away(int character, vec2 place) {
     int index = character - FIRST_CHARACTER;
-    uvec4 strokes = index < 0 || index >= STROKES.length() ? uvec4(0u) : STROKES[clamp(index, 0, STROKES.length() - 1)];
+    uvec4 strokes = index < 0 || index >= STROKES.length() ? uvec4(0u)
+            : STROKES[clamp(index, 0, STROKES.length() - 1)];
     float nearest = 1e3;
     vec2 from = vec2(0.0);
     for (int k = 0; k < 16; k++) {

@@ -1,16 +1,17 @@
-// lighting/diagram/paints.glsl -- the colours of the diagrams, told apart by people with colour-blindness, too.
+// lighting/diagram/paints.glsl -- the diagrams' colours, told apart by the colour-blind too.
 //
 //   gives    SKY, GROUND, EDGE, INK, FREE, PARTLY, HIDDEN, SUN, DULL
 //   needs    nothing
 //   units    linear
-//   source   blue and amber as in Okabe and Ito 2002, "Color Universal Design"; the rest chosen here
+//   source   blue and amber as in Okabe and Ito 2002, "Color Universal Design"; the rest chosen
+//            here
 //   tested   tests/glsl/test_diagrams.py, by where they stand
 #ifndef LIGHTING_DIAGRAM_PAINTS
 #define LIGHTING_DIAGRAM_PAINTS
 
 const vec3 SKY = vec3(0.86, 0.90, 0.93);
 const vec3 GROUND = vec3(0.58, 0.47, 0.33);
-const vec3 EDGE = vec3(0.05, 0.035, 0.02);   // the land's surface
+const vec3 EDGE = vec3(0.05, 0.035, 0.02);   // the terrain's surface
 const vec3 INK = vec3(0.012, 0.012, 0.014);  // letters, level lines
 const vec3 FREE = vec3(0.0, 0.168, 0.445);   // where nothing hides the sun
 const vec3 PARTLY = vec3(0.79, 0.347, 0.0);

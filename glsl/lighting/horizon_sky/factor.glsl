@@ -1,31 +1,32 @@
-// lighting/horizon_sky/factor.glsl -- how much of the sky's light a texel has, with what the land throws back and forth.
+// lighting/horizon_sky/factor.glsl -- how much of the sky's light a texel receives.
 //
 //   gives    factor: f, red, green, blue; k: K(p), the open sky's share alone
-//   needs    lighting/horizon_sky/ground.glsl, lighting/horizons/map_reading.glsl,
-//            lighting/horizons/open_sky.glsl, lighting/sun.glsl, terrain/heightfield.glsl; horizons, and the table of sectors
+//   needs    lighting/horizon_sky/ground.glsl, terrain/maps.glsl,
+//            lighting/horizons/open_sky.glsl, lighting/sun.glsl, terrain/heightfield.glsl;
+//            horizons, and the table of sectors
 //   units    shares of what an open sky gives level ground; the ground's colour linear
 //   source   Belaiche 2010, section 3.4, eqs 3.9 to 3.13, after Stewart and Langer 1997
 //   tested   tests/glsl/test_sky.py, against quadrature and closed forms
 //
-// f = K / (1 - C (1 - K)). Where no sky is seen, land is, and land that is seen is taken to be as
-// bright as the place itself; C is the mean colour of the ground under the texel.
+// f = K / (1 - C (1 - K)). Where no sky is seen, terrain is, and terrain that is seen is taken to
+// be as bright as the place itself; C is the mean colour of the ground under the texel.
 #include "lighting/horizon_sky/ground.glsl"
-#include "lighting/horizons/map_reading.glsl"
+#include "terrain/maps.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "factor:rgba16f, k:r32f")
 
 uniform sampler2D height;     //! input
-uniform sampler2D ahead;      //! input
-uniform sampler2D behind;     //! input
+#include "lighting/parameters/eight_horizons.glsl"
 uniform sampler2D sky;        //! input
 uniform sampler2D table;      //! input
 uniform sampler2D colour;     //! input("linear", "mipmap", "white")
-uniform float first = 0.0;    //! angle(-360, 360) unit("°") Azimuth of the first horizon; the others follow counterclockwise by 45 degrees
-uniform int summed = 0;       //! menu("by the table", "by the formula", "over all directions") How K is found: of eight horizons by the table or the formula, or of all that were measured
+uniform int summed = 0;       //! menu("by the table", "by the formula", "over all directions")
+                              //! How K is found: of eight horizons by the table or the formula, or
+                              //! of all that were measured
 uniform vec3 ground = vec3(0.3);  //! colour The ground's mean colour, where no colour is wired
-uniform int normal = 0;       //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/normal.glsl"
 
 // Between two places of a row of the table.
 vec3 sector_of(int row, float tangent) {
@@ -54,12 +55,14 @@ float k_of_eight(vec4 before, vec4 after, vec2 slope) {
 
 void kernel(ivec2 texel, out vec4 factor, out float k) {
     ivec2 grid = textureSize(height, 0);
-    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
+    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent),
+                                   normal);
     if (summed == 2) {
         k = map_at(sky, texel, size).r;
     } else {
         k = k_of_eight(map_at(ahead, texel, size), map_at(behind, texel, size), slope);
     }
     k = clamp(k, 0.0, 1.0);
-    factor = vec4(k * thrown_back(ground_under(wired_colour, colour, texel, size, ground), k), 1.0);
+    factor = vec4(k * thrown_back(ground_under(wired_colour, colour, texel, size, ground), k),
+                  1.0);
 }

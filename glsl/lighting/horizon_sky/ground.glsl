@@ -1,7 +1,8 @@
-// lighting/horizon_sky/ground.glsl -- the mean colour of the ground that a texel of a light map stands for.
+// lighting/horizon_sky/ground.glsl -- the mean colour of the ground under a texel.
 //
 //   gives    ground_under
-//   needs    maths/drape.glsl, maths/land.glsl; the texture comes as an argument, no uniform of its own
+//   needs    maths/drape.glsl, maths/land.glsl; the texture comes as an argument, no uniform of
+//            its own
 //   units    linear colour, 0..1
 //   source   C(p) in Belaiche 2010, section 3.4
 //   tested   tests/glsl/test_sky.py, by a colour finer than the light
@@ -10,7 +11,8 @@
 #include "maths/drape.glsl"
 #include "maths/land.glsl"
 
-// By the level of detail whose texels are as large as the light's; `unwired` where no colour is wired.
+// By the level of detail whose texels are as large as the light's; `unwired` where no colour is
+// wired.
 vec3 ground_under(bool wired, sampler2D colour, ivec2 texel, ivec2 light, vec3 unwired) {
     if (!wired) return clamp(unwired, 0.0, 1.0);
     ivec2 texels = textureSize(colour, 0);

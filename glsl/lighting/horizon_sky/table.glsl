@@ -1,10 +1,13 @@
-// lighting/horizon_sky/table.glsl -- what each of eight sectors of the sky adds, by its horizon: the thesis's table of 256 x 8.
+// lighting/horizon_sky/table.glsl -- what each of eight sectors of the sky adds.
 //
 //   gives    table: a vector whose product with the normal is the sector's part of K
 //   needs    lighting/horizons/open_sky.glsl, maths/angle.glsl
-//   units    shares of an open, even sky; texel i of a row is the tangent t with t / (1 + t) = i / 255
+//   units    shares of an open, even sky; texel i of a row is the tangent t with t / (1 + t) = i /
+//            255
 //   source   Belaiche 2010, section 3.4, eqs 3.13 to 3.15
 //   tested   tests/glsl/test_sky.py, against quadrature
+//
+// The thesis's table of 256 x 8, by the sector's horizon.
 //
 // By the tangent, as the thesis advises; bent so that all tangents have a place. Rows are the
 // sectors, counterclockwise from the first. 2 pi is already divided by.

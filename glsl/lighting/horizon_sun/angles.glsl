@@ -1,27 +1,28 @@
-// lighting/horizon_sun/angles.glsl -- horizons as the sun's method keeps them: shares of a quarter circle, over the slope.
+// lighting/horizon_sun/angles.glsl -- horizons as angles over the slope.
 //
 //   gives    upright, slanting: the horizons' elevations, 0 level and 1 straight up, in the order
 //            first, opposite, third, seventh; second, sixth, fourth, eighth: a sun on its arc
-//            asks the first texture alone; facing: the normal, by its place in the table of sunlight
-//   needs    lighting/horizons/map_reading.glsl, lighting/horizons/open_sky.glsl,
+//            asks the first texture alone; facing: the normal, by its place in the table of
+//            sunlight
+//   needs    terrain/maps.glsl, lighting/horizons/open_sky.glsl,
 //            lighting/sun.glsl, terrain/heightfield.glsl; the horizons' tangents
 //   units    shares of 90 degrees, in 16 bits
 //   source   Belaiche 2010, section 3.4, figures 3.1 and 3.2
 //   tested   tests/glsl/test_analytic.py, against float64
 //
+// They are shares of a quarter circle, as the sun's method needs them.
+//
 // An effective horizon is never below the slope itself, nor below the level. The sun has no
 // part in this: a sun that moves finds it done.
-#include "lighting/horizons/map_reading.glsl"
+#include "terrain/maps.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "upright:rgba16, slanting:rgba16, facing:rg8")
 
 uniform sampler2D height;     //! input
-uniform sampler2D ahead;      //! input
-uniform sampler2D behind;     //! input
-uniform float first = 0.0;    //! angle(-360, 360) unit("°") Azimuth of the first horizon; the others follow counterclockwise by 45 degrees
-uniform int normal = 0;       //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/eight_horizons.glsl"
+#include "lighting/parameters/normal.glsl"
 
 float angle_over(float tangent, vec2 slope, vec2 towards) {
     return atan(horizon_over_slope(tangent, slope, towards)) / 1.57079633;
@@ -29,7 +30,8 @@ float angle_over(float tangent, vec2 slope, vec2 towards) {
 
 void kernel(ivec2 texel, out vec4 upright, out vec4 slanting, out vec2 facing) {
     ivec2 grid = textureSize(height, 0);
-    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
+    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent),
+                                   normal);
     vec4 before = map_at(ahead, texel, size);
     vec4 after = map_at(behind, texel, size);
     for (int k = 0; k < 4; k++) {

@@ -1,6 +1,7 @@
-// lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, which horizons count, and how much of its disc is over them.
+// lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, and how much of it is seen.
 //
-//   gives    ARC, EIGHT, directions_for, on_arc, Weights, weights_of, elevation_of, in_diameters, disc_seen
+//   gives    ARC, EIGHT, directions_for, on_arc, Weights, weights_of, elevation_of, in_diameters,
+//            disc_seen
 //   needs    maths/angle.glsl
 //   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
 //   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
@@ -10,8 +11,8 @@
 //
 // The thesis has the sun rise in one direction, go through the zenith and set in the opposite
 // one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it;
-// a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may stand
-// anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
+// a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may
+// stand anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
 // rounds off what stands between them. The sun of a daylight keeps to no arc, and no parameter
 // knows its azimuth: it takes the eight.
 #ifndef LIGHTING_HORIZON_SUN_ARC
@@ -72,8 +73,9 @@ float in_diameters(float angle, float diameter) {
     return angle / max(diameter, 1e-6);
 }
 
-// Eq. 3.8: how much of the sun's diameter is over the horizon, from the elevation of its upper edge
-// and the horizon's, both in diameters. The part of the disc's area differs from this by up to 0.058.
+// Eq. 3.8: how much of the sun's diameter is over the horizon, from the elevation of its upper
+// edge and the horizon's, both in diameters. The part of the disc's area differs from this by up
+// to 0.058.
 float disc_seen(float edge, float horizon) {
     return clamp(edge - horizon, 0.0, 1.0);
 }

@@ -3,18 +3,18 @@
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is
 //            turned away from it; visibility: the part of the sun that is over the horizon
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl,
-//            lighting/horizons/map_reading.glsl, lighting/sun.glsl, terrain/heightfield.glsl; angles, normals,
+//            terrain/maps.glsl, lighting/sun.glsl, terrain/heightfield.glsl; angles, normals,
 //            the table of sunlight, and where the sun stands
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
 //   tested   tests/glsl/test_analytic.py, against float64
 //
-// All that is done when the sun moves: a few fetches a texel, and no look at the land. Eq. 3.3
+// All that is done when the sun moves: a few fetches a texel, and no look at the terrain. Eq. 3.3
 // has no 1/pi: its sunlight is already divided by it. The thesis looks up no texel whose light
 // stays the same; here all are looked up at once.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/horizon_sun/arc.glsl"
-#include "lighting/horizons/map_reading.glsl"
+#include "terrain/maps.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f, visibility:r32f")
@@ -26,28 +26,35 @@ uniform sampler2D facing;                //! input
 uniform sampler2D table;                 //! input
 uniform sampler2D stand;                 //! input
 uniform sampler2D sky_factor;            //! input("white")
-uniform sampler2D daylight;              //! input("black")
-uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform vec3 sun_colour = vec3(1.0);     //! colour group("Sun") Colour of the sun's light
-uniform float gain = 2.0;                //! slider(0, 4) step(0.05) group("Sun") The sun's light is multiplied by it
-uniform float clouds = 0.0;              //! slider(0, 1) step(0.01) group("Sun") How much of the sun's light clouds keep back
-uniform int measured = 0;                //! menu("on its arc", "eight directions") group("Sun") A sun that keeps to its arc needs two horizons; with eight it may stand anywhere, as that of a daylight always does
-uniform float arc = -360.0;              //! angle follows("sun", "measured", "on its arc") group("Sun") Azimuth of the first horizon, and of the sun's arc, which goes on through the zenith. Unless set, the arc is under the sun, and its horizons are worked out anew when the sun's azimuth changes
-uniform int sun_term = 0;                //! menu("table", "each texel") group("Sun") Sunlight from a table of normals, or worked out for each texel
-uniform int normal = 0;                  //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/sun.glsl"
+#include "lighting/parameters/sunlight.glsl"
+uniform float clouds = 0.0;              //! slider(0, 1) step(0.01) group("Sun")
+                                         //! How much of the sun's light clouds keep back
+#include "lighting/parameters/arc.glsl"
+uniform int sun_term = 0;                //! menu("table", "each texel") group("Sun")
+                                         //! Sunlight from a table of normals, or worked out for
+                                         //! each texel
+#include "lighting/parameters/normal.glsl"
 
 vec4 received_at(ivec2 texel) {
-    if (sun_term == 0) return texelFetch(table, ivec2(texelFetch(facing, texel, 0).rg * 255.0 + 0.5), 0);
+    if (sun_term == 0) {
+        return texelFetch(table, ivec2(texelFetch(facing, texel, 0).rg * 255.0 + 0.5), 0);
+    }
     Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, vec3(0.0));
     ivec2 grid = textureSize(height, 0);
-    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
-    float received = max(dot(normal_of_slope(slope), on_arc(given.direction, arc, directions_for(measured, wired_daylight))), 0.0);
+    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent),
+                                   normal);
+    float received = max(dot(normal_of_slope(slope),
+                             on_arc(given.direction, arc,
+                                    directions_for(measured, wired_daylight))), 0.0);
     return vec4(given.sun * (gain * (1.0 - clouds) * received), received > 0.0 ? 1.0 : 0.0);
 }
 
 void kernel(ivec2 texel, out vec4 light, out float visibility) {
     float horizon = dot(texelFetch(upright, texel, 0), texelFetch(stand, ivec2(0), 0));
-    if (directions_for(measured, wired_daylight) == EIGHT) horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
+    if (directions_for(measured, wired_daylight) == EIGHT) {
+        horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
+    }
     vec4 over = texelFetch(stand, ivec2(2, 0), 0);
     visibility = disc_seen(over.a, horizon);
     vec4 received = received_at(texel);

@@ -1,28 +1,33 @@
-// lighting/horizon_sun/stand.glsl -- where the sun stands among the horizons: what is the same for all texels, worked out once.
+// lighting/horizon_sun/stand.glsl -- where the sun stands among the horizons.
 //
-//   gives    stand: texels 0 and 1, by what the two textures of angles are multiplied and summed to
-//            give the horizon; texel 2, the sky's light on open level ground, and in alpha the
+//   gives    stand: texels 0 and 1, by what the two textures of angles are multiplied and summed
+//            to give the horizon; texel 2, the sky's light on open level ground, and in alpha the
 //            elevation of the disc's upper edge
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl
 //   units    horizon and edge in diameters of the sun; the angles are shares of 90 degrees
 //   source   Belaiche 2010, section 3.4, eq. 3.8
 //   tested   tests/glsl/test_analytic.py, against float64
+//
+// It is the same for all texels, and is worked out once.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/horizon_sun/arc.glsl"
 #pragma kernel(output = "stand:rgba32f")
 
-uniform sampler2D daylight;              //! input("black")
-uniform vec2 sun = vec2(135.0, 25.0);    //! direction group("Sun") Azimuth clockwise from north, elevation above the horizon
-uniform float diameter = 0.53;           //! slider(0, 20) step(0.01) group("Sun") unit("°") How wide the sun is
-uniform int measured = 0;                //! menu("on its arc", "eight directions") group("Sun") A sun that keeps to its arc needs two horizons; with eight it may stand anywhere, as that of a daylight always does
-uniform float arc = -360.0;              //! angle follows("sun", "measured", "on its arc") group("Sun") Azimuth of the first horizon, and of the sun's arc, which goes on through the zenith. Unless set, the arc is under the sun, and its horizons are worked out anew when the sun's azimuth changes
+#include "lighting/parameters/sun.glsl"
+uniform float diameter = 0.53;           //! slider(0, 20) step(0.01) group("Sun") unit("°")
+                                         //! How wide the sun is
+#include "lighting/parameters/arc.glsl"
 uniform vec3 sky_colour = vec3(1.0);     //! colour group("Sky") Colour of the sky's light
-uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky") Strength of the sky's light
+uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky")
+                                         //! Strength of the sky's light
 
 vec4 kernel(ivec2 texel) {
     Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, vec3(0.0), sky_colour);
     vec3 to_sun = on_arc(given.direction, arc, directions_for(measured, wired_daylight));
     Weights weights = weights_of(to_sun, arc, directions_for(measured, wired_daylight));
-    if (texel.x < 2) return (texel.x == 0 ? weights.upright : weights.slanting) * in_diameters(90.0, diameter);
-    return vec4(given.sky * ambient, in_diameters(elevation_of(to_sun) + 0.5 * diameter, diameter));
+    if (texel.x < 2) {
+        return (texel.x == 0 ? weights.upright : weights.slanting) * in_diameters(90.0, diameter);
+    }
+    float upper_edge = elevation_of(to_sun) + 0.5 * diameter;
+    return vec4(given.sky * ambient, in_diameters(upper_edge, diameter));
 }

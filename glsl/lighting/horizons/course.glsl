@@ -1,4 +1,4 @@
-// lighting/horizons/course.glsl -- how a direction crosses a grid: row after row, drifting a part of a texel sideways.
+// lighting/horizons/course.glsl -- how a direction crosses a grid.
 //
 //   gives    Course, course_towards, drifted, beside_of, texel_of, pairs_of, pair_towards
 //   needs    maths/angle.glsl
@@ -8,11 +8,13 @@
 //            Self-Shadowing", section 3; the eight directions: Belaiche 2010, section 3.4
 //   tested   tests/glsl/test_horizons.py, against angles in float64
 //
+// It goes row after row, and drifts a part of a texel sideways.
+//
 // A row is a line of texels across the axis that the direction follows more. Rows are counted
-// towards the direction from the land's far edge. A line of sight drifts drift / 65536 texels
+// towards the direction from the terrain's far edge. A line of sight drifts drift / 65536 texels
 // to the side from one row to the next. That is a whole number so that every machine takes the
 // same texels; over 4097 rows it is true to 0.03 texels. Parallel lines go through the middles of
-// the texels of one row in the land's middle, so that opposite directions have the same lines.
+// the texels of one row in the terrain's middle, so that opposite directions have the same lines.
 #ifndef LIGHTING_HORIZONS_COURSE
 #define LIGHTING_HORIZONS_COURSE
 #include "maths/angle.glsl"
@@ -52,7 +54,8 @@ int drifted(Course course, int row) {
 
 // How far beside the middle of that texel it is there: -0.5 to 0.5.
 float beside_of(Course course, int row) {
-    return float((row - course.middle) * course.drift - (drifted(course, row) << 16)) * (1.0 / 65536.0);
+    return float((row - course.middle) * course.drift - (drifted(course, row) << 16))
+            * (1.0 / 65536.0);
 }
 
 // The texel of a row.

@@ -1,32 +1,33 @@
-// lighting/horizons/march.glsl -- the horizons around each texel, and the sky over them, by a walk in every direction.
+// lighting/horizons/march.glsl -- the horizons around each texel, by a march in every direction.
 //
 //   gives    ahead, behind: tangents of the horizons' elevations in four directions and in the
 //            four opposite; sky: K(p), the share of an even sky's light; land: the heights here
-//   needs    lighting/horizons/course.glsl, lighting/horizons/open_sky.glsl, terrain/heightfield.glsl;
-//            the range of the heights
+//   needs    lighting/horizons/course.glsl, lighting/horizons/open_sky.glsl,
+//            terrain/heightfield.glsl; the range of the heights
 //   units    tangents are rises over runs, 0 and up, at most 60000; heights without unit
 //   source   Belaiche 2010, section 3.4, after Max 1988, "Horizon Mapping: Shadows for Bump-Mapped
 //            Surfaces"; K(p) by eqs 3.12 to 3.15
 //   tested   tests/glsl/test_horizons.py, against brute force in float64
 //
-// The plain form: from each texel a walk over the whole land, in steps of one row of the finer of
-// two grids, the heights' and this pass's own. It ends where the highest land could not be seen
-// over the horizon found so far. A turn walks two opposite directions: no single draw lasts so
-// long that a graphics driver would give it up. Half a texel beyond the land's edge a walk leaves the land.
+// The plain form: from each texel a march over the whole terrain, in steps of one row of the finer
+// of two grids, the heights' and this pass's own. It ends where the highest terrain could not be
+// seen over the horizon found so far. A step of the repeat marches in two opposite directions: no
+// single draw lasts so long that a graphics driver would give it up. Half a texel beyond the
+// terrain's edge a march leaves the terrain.
 #include "lighting/horizons/course.glsl"
 #include "lighting/horizons/open_sky.glsl"
+#include "lighting/horizons/slope.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f", repeat = "max(directions // 8 * 4, 1)")
+#pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f", \
+               repeat = "max(directions // 8 * 4, 1)")
 
 uniform sampler2D height;               //! input
 uniform sampler2D range;                //! input
-uniform int directions = 8;             //! slider(2, 64) step(2) Directions around, a multiple of eight; below eight, two opposite ones, each for half of the sky. K is of all of them
-uniform float first = 0.0;              //! angle(-360, 360) unit("°") Azimuth of the first direction; the others follow counterclockwise
-uniform bool keep = true;               //! Keep the horizons of eight directions; without, only K is found
-uniform int normal = 0;                 //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/directions.glsl"
+#include "lighting/parameters/normal.glsl"
 
-// The highest tangent on a walk from a place on the grid, in rows and texels of the course.
-float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
+// The highest tangent on a march from a place on the grid, in rows and texels of the course.
+float steepest_from(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
     Course course = course_towards(towards, grid, metres);
     float aside = float(course.drift) / 65536.0;
     float ahead_by = course.upwards ? 1.0 : -1.0;
@@ -41,8 +42,11 @@ float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, floa
     for (int k = 1; k < course.rows; k++) {
         float rows = float(k);
         vec2 at = start + rows * way;
-        if (any(lessThan(at, vec2(-0.5))) || any(greaterThan(at, reach)) || most <= found * rows) break;
-        float land_there = on_texels ? height_on_line(height, at, across) : height_at(height, at * scale);
+        if (any(lessThan(at, vec2(-0.5))) || any(greaterThan(at, reach)) || most <= found * rows) {
+            break;
+        }
+        float land_there = on_texels ? height_on_line(height, at, across)
+                : height_at(height, at * scale);
         found = max(found, (land_there - foot) * course.steep / rows);
     }
     // end: horizon
@@ -53,33 +57,27 @@ float land_at(ivec2 texel) {
     return height_at(height, place_on(textureSize(height, 0), texel, size));
 }
 
-// The rise to the east and to the north, on this pass's own grid.
-vec2 slope_here(ivec2 texel, vec2 metres) {
-    ivec2 low = max(texel - 1, ivec2(0));
-    ivec2 high = min(texel + 1, size - 1);
-    int row = normal == ONE_TRIANGLE ? low.y : texel.y;
-    int column = normal == ONE_TRIANGLE ? high.x : texel.x;
-    vec2 rise = vec2(land_at(ivec2(high.x, row)) - land_at(ivec2(low.x, row)), land_at(ivec2(column, high.y)) - land_at(ivec2(column, low.y)));
-    return relief * rise / (vec2(max(high - low, ivec2(1))) * metres);
-}
-
 void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out float land) {
     ivec2 heights = textureSize(height, 0);
     ivec2 grid = max(heights, size);
     vec2 start = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
-    vec2 slope = slope_here(texel, spacing_of(size, extent));
+    vec2 slope = slope_here(texel, size, spacing_of(size, extent), relief, normal);
     land = land_at(texel);
     float highest = texelFetch(range, ivec2(0), 0).g;
     float shape = sector_shape(2 * iterations);
     vec2 towards = pair_towards(iteration, iterations, first);
-    float there = min(relief * walked(grid, start, towards, metres, land, highest), 60000.0);
-    float back = min(relief * walked(grid, start, -towards, metres, land, highest), 60000.0);
+    float there = relief * steepest_from(grid, start, towards, metres, land, highest);
+    float back = relief * steepest_from(grid, start, -towards, metres, land, highest);
+    there = min(there, 60000.0);
+    back = min(back, 60000.0);
     // A single pair stands in all channels.
-    bvec4 here = equal(ivec4(keep ? iteration : -1), iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));
+    bvec4 here = equal(ivec4(keep ? iteration : -1),
+                       iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));
     ahead = mix(previous_ahead(texel), vec4(there), here);
     behind = mix(previous_behind(texel), vec4(back), here);
-    float both = sky_of_sector(there, slope, towards, shape) + sky_of_sector(back, slope, -towards, shape);
+    float both = sky_of_sector(there, slope, towards, shape)
+            + sky_of_sector(back, slope, -towards, shape);
     sky = previous_sky(texel) + both / (float(2 * iterations) * sqrt(1.0 + dot(slope, slope)));
     if (iteration == iterations - 1) sky = max(sky, 0.0);
 }

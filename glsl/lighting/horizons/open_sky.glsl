@@ -2,7 +2,8 @@
 //
 //   gives    above_horizon, horizon_over_slope, sector_shape, sky_of_sector, thrown_back
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    tangents of elevations and slopes: rises over runs; shares of what an open, even sky gives
+//   units    tangents of elevations and slopes: rises over runs; shares of what an open, even sky
+//            gives
 //   source   Belaiche 2010, section 3.4, eqs 3.11 to 3.15, after Stewart and Langer 1997, "Towards
 //            Accurate Recovery of Shape from Shading under Diffuse Lighting"
 //   tested   tests/glsl/test_sky.py, against quadrature
@@ -13,7 +14,7 @@
 // level unit vector to a sector's middle, dsin and dcos are 2 sin(w/2) u, and
 //   K = 1/n of the sum of  N_z sin² phi + (N · u) (phi - sin 2phi / 2) sin(w/2) / (w/2).
 // The thesis begins the sectors at the directions in which the horizon is measured; here they are
-// centred on them, for else mirrored land would not have mirrored light.
+// centred on them, for else mirrored terrain would not have mirrored light.
 #ifndef LIGHTING_HORIZONS_OPEN_SKY
 #define LIGHTING_HORIZONS_OPEN_SKY
 

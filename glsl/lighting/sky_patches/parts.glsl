@@ -1,17 +1,20 @@
-// lighting/sky_patches/parts.glsl -- the shares of five patches of the sky: overhead, and low in the four quarters.
+// lighting/sky_patches/parts.glsl -- the shares of five patches of the sky.
 //
-//   gives    low: K of the patches in the north, east, south and west; high: 1 / (1 - C (1 - K)) in
-//            red, green, blue, and K of the patch overhead
-//   needs    lighting/horizon_sky/ground.glsl, lighting/horizons/map_reading.glsl,
-//            lighting/horizons/open_sky.glsl, maths/angle.glsl, terrain/heightfield.glsl; eight horizons, the first in the north
+//   gives    low: K of the patches in the north, east, south and west; high: 1 / (1 - C (1 - K))
+//            in red, green, blue, and K of the patch overhead
+//   needs    lighting/horizon_sky/ground.glsl, terrain/maps.glsl,
+//            lighting/horizons/open_sky.glsl, maths/angle.glsl, terrain/heightfield.glsl; eight
+//            horizons, the first in the north
 //   units    shares of what an open, even sky gives
 //   source   Belaiche 2010, section 3.4, the patches and eq. 3.13
 //   tested   tests/glsl/test_sky.py, against quadrature
 //
+// One is overhead, the others are low in the four quarters.
+//
 // f of a patch is K of the patch / (1 - C (1 - K)), where K below is that of all patches: what one
-// patch lights is thrown back by land that all of them light.
+// patch lights is thrown back by terrain that all of them light.
 #include "lighting/horizon_sky/ground.glsl"
-#include "lighting/horizons/map_reading.glsl"
+#include "terrain/maps.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "maths/angle.glsl"
 #include "terrain/heightfield.glsl"
@@ -21,9 +24,10 @@ uniform sampler2D height;     //! input
 uniform sampler2D ahead;      //! input
 uniform sampler2D behind;     //! input
 uniform sampler2D colour;     //! input("linear", "mipmap", "white")
-uniform float split = 40.0;   //! slider(1, 89) step(1) unit("°") Elevation over which the sky is overhead
+uniform float split = 40.0;   //! slider(1, 89) step(1) unit("°")
+                              //! Elevation over which the sky is overhead
 uniform vec3 ground = vec3(0.3);  //! colour The ground's mean colour, where no colour is wired
-uniform int normal = 0;       //! menu("central differences", "one triangle") How the slope is found; the thesis takes one triangle, to one side
+#include "lighting/parameters/normal.glsl"
 
 // What half a sector gives over a horizon, half of it on either side of a direction.
 float half_sector(float tangent, vec2 slope, vec2 towards) {
@@ -33,7 +37,8 @@ float half_sector(float tangent, vec2 slope, vec2 towards) {
 
 void kernel(ivec2 texel, out vec4 low, out vec4 high) {
     ivec2 grid = textureSize(height, 0);
-    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent), normal);
+    vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent),
+                                   normal);
     vec4 before = map_at(ahead, texel, size);
     vec4 after = map_at(behind, texel, size);
     vec2 edge = cos_sin_degrees(split);

@@ -1,6 +1,7 @@
-// lighting/sun_sweep/band.glsl -- bands of land between parallel lines, walked away from the sun, and each texel's horizon on the way.
+// lighting/sun_sweep/band.glsl -- bands of terrain between parallel lines, and their horizons.
 //
-//   gives    Lines, lines_towards, slopes_around, POINT, CONE, DISC, Band, band_at, first_row, last_row, enter_row, texel_of, horizon_of, NO_HORIZON
+//   gives    Lines, lines_towards, slopes_around, POINT, CONE, DISC, Band, band_at, first_row,
+//            last_row, enter_row, texel_of, horizon_of, NO_HORIZON
 //   needs    nothing of its own; the texture of heights comes as an argument
 //   units    rows and places in texels; heights and lengths in metres; tangents: rise over run
 //   source   the upper hull of a line, as in V. Timonen and J. Westerholm 2010, "Scalable Height
@@ -24,7 +25,7 @@
 #ifndef LIGHTING_SUN_SWEEP_BAND
 #define LIGHTING_SUN_SWEEP_BAND
 
-// A tangent below all others: no land stands towards the sun.
+// A tangent below all others: no terrain stands towards the sun.
 const float NO_HORIZON = -10000.0;
 const float NOWHERE = -1e30;  // metres
 
@@ -62,13 +63,15 @@ const int DISC = 2;  // `spread`: its diameter in degrees
 // Half of what tangents the sun covers, from its own.
 float half_window(vec3 light, int shape, float spread) {
     float level = max(length(light.xy), 1e-6);
-    return shape == POINT ? 0.0 : (shape == CONE ? spread : tan(radians(0.5 * spread)) / level) / level;
+    return shape == POINT ? 0.0 : (shape == CONE ? spread : tan(radians(0.5 * spread)) / level)
+            / level;
 }
 
 // Four slopes in what the sun covers, in metres a row.
 vec4 slopes_around(Lines lines, vec3 light, int shape, float spread) {
     float tangent = light.z / max(length(light.xy), 1e-6);
-    return (tangent + half_window(light, shape, spread) * vec4(-0.75, -0.25, 0.25, 0.75)) * lines.run;
+    return (tangent + half_window(light, shape, spread) * vec4(-0.75, -0.25, 0.25, 0.75))
+            * lines.run;
 }
 
 // For each of four slopes, the point of a line on which a line of that slope rests.
@@ -88,7 +91,7 @@ struct Band {
     vec3 texels2;
     vec3 texels3;
     vec3 parts;
-    vec2 feet1;    // one to four rows ago; NOWHERE beside the land
+    vec2 feet1;    // one to four rows ago; NOWHERE beside the terrain
     vec2 feet2;
     vec2 feet3;
     vec2 feet4;
@@ -100,7 +103,8 @@ Band band_at(int line) {
     vec3 no_texels = vec3(NOWHERE);
     vec2 no_feet = vec2(NOWHERE);
     Casters none = Casters(vec4(NOWHERE), vec4(1.0));
-    return Band(line, 0, 0, 0.0, no_texels, no_feet, no_texels, no_texels, no_texels, vec3(0.0), no_feet, no_feet, no_feet, no_feet, none, none);
+    return Band(line, 0, 0, 0.0, no_texels, no_feet, no_texels, no_texels, no_texels, vec3(0.0),
+                no_feet, no_feet, no_feet, no_feet, none, none);
 }
 
 // Texels that lines have moved across until a row, whole ones and the part of one.
@@ -112,17 +116,20 @@ float moved_part(Lines lines, int row) {
     return all - floor(all);
 }
 
-// The first row on which a band may hold texels, with those that are near it; and the row after the last.
+// The first row on which a band may hold texels, with those that are near it; and the row after
+// the last.
 int first_row(Lines lines, int line) {
-    float entry = lines.drift == 0.0 ? 0.0 : float((lines.drift > 0.0 ? -1 : lines.last + 1) - line) / lines.drift;
+    int start = lines.drift > 0.0 ? -1 : lines.last + 1;
+    float entry = lines.drift == 0.0 ? 0.0 : float(start - line) / lines.drift;
     return max(int(clamp(entry, 0.0, 65000.0)) - NEAR_ROWS - 1, 0);
 }
 int last_row(Lines lines, int line) {
-    float leave = lines.drift == 0.0 ? 65000.0 : float((lines.drift > 0.0 ? lines.last + 1 : -1) - line) / lines.drift;
+    int end = lines.drift > 0.0 ? lines.last + 1 : -1;
+    float leave = lines.drift == 0.0 ? 65000.0 : float(end - line) / lines.drift;
     return min(int(clamp(leave, -2.0, 65000.0)) + 2, lines.rows);
 }
 
-// The texel of the land on a row.
+// The texel of the terrain on a row.
 ivec2 texel_on(Lines lines, int row, int across) {
     int ahead = lines.from_high ? lines.rows - 1 - row : row;
     return lines.along_x ? ivec2(ahead, across) : ivec2(across, ahead);
@@ -134,7 +141,8 @@ float height_across(sampler2D field, Lines lines, int row, int across) {
 
 Casters one_row_on(Casters casters, float height, vec4 climb) {
     vec4 rows = casters.rows + 1.0;
-    bvec4 higher = greaterThanEqual(vec4(height), casters.height - climb * (rows - float(NEAR_ROWS)));
+    bvec4 higher = greaterThanEqual(vec4(height),
+                                    casters.height - climb * (rows - float(NEAR_ROWS)));
     return Casters(mix(casters.height, vec4(height), higher), mix(rows, vec4(NEAR_ROWS), higher));
 }
 
@@ -156,7 +164,7 @@ void enter_row(inout Band band, sampler2D field, Lines lines, int row, vec4 clim
         height_across(field, lines, row, band.across + 2)
     );
     band.feet = band.texels.xy + (band.texels.yz - band.texels.xy) * band.part;
-    // Beside the land a line has a foot, on the land's edge, but throws no shadow.
+    // Beside the terrain a line has a foot, on the terrain's edge, but throws no shadow.
     int beyond = lines.last - (band.part > 0.0 ? 1 : 0);
     band.feet4 = band.feet3;
     band.feet3 = band.feet2;
@@ -167,7 +175,7 @@ void enter_row(inout Band band, sampler2D field, Lines lines, int row, vec4 clim
     );
 }
 
-// The band's texel on the row that it has reached: across the row, perhaps beside the land.
+// The band's texel on the row that it has reached: across the row, perhaps beside the terrain.
 int texel_of(Band band) {
     return band.across + (band.part > 0.0 ? 1 : 0);
 }
@@ -177,10 +185,12 @@ float tangent_over(Casters casters, float height, float run) {
     return max(max(max(tangent.x, tangent.y), max(tangent.z, tangent.w)), NO_HORIZON);
 }
 
-// The rise from a height to what the texel's own way meets some rows before: `lead` texels after the first line.
+// The rise from a height to what the texel's own way meets some rows before: `lead` texels after
+// the first line.
 float near_rise(vec3 texels, float part, float lead, float foot) {
     float at = part + lead;
-    float land = at < 1.0 ? texels.x + (texels.y - texels.x) * at : texels.y + (texels.z - texels.y) * (at - 1.0);
+    float land = at < 1.0 ? texels.x + (texels.y - texels.x) * at
+            : texels.y + (texels.z - texels.y) * (at - 1.0);
     return land - foot;
 }
 
@@ -190,7 +200,7 @@ float horizon_of(Band band, Lines lines) {
     float lead = between ? 1.0 - band.part : 0.0;
     float one = tangent_over(band.first, band.feet.x, lines.run);
     float two = tangent_over(band.second, band.feet.y, lines.run);
-    // A line that has met no land says nothing of what lies beside it.
+    // A line that has met no terrain says nothing of what lies beside it.
     if (between && one <= NO_HORIZON) one = two;
     if (two <= NO_HORIZON) two = one;
     float tangent = one + (two - one) * lead;
@@ -200,7 +210,7 @@ float horizon_of(Band band, Lines lines) {
         near_rise(band.texels2, band.parts.y, lead, foot),
         near_rise(band.texels3, band.parts.z, lead, foot)
     );
-    // The way leaves the land at its sides; rows before the first are nowhere already.
+    // The way leaves the terrain at its sides; rows before the first are nowhere already.
     vec3 steps = vec3(1.0, 2.0, 3.0);
     vec3 place = float(texel_of(band)) - steps * lines.drift;
     vec3 near = rise / (steps * lines.run);

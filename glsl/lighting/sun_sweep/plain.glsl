@@ -1,4 +1,4 @@
-// lighting/sun_sweep/plain.glsl -- one texel's horizon as the sweep finds it, without those of the others.
+// lighting/sun_sweep/plain.glsl -- one texel's horizon as the sweep finds it.
 //
 //   gives    swept_horizon
 //   needs    lighting/sun_sweep/band.glsl; the texture of heights comes as an argument
@@ -14,7 +14,9 @@ float swept_horizon(sampler2D field, ivec2 texel, Lines lines, vec4 climb, float
     int row = lines.from_high ? lines.rows - 1 - turned.x : turned.x;
     int before = moved_part(lines, row) > 0.0 ? 1 : 0;
     Band band = band_at(turned.y - before - moved(lines, row));
-    for (int k = first_row(lines, band.line); k <= row; k++) enter_row(band, field, lines, k, climb, metres);
+    for (int k = first_row(lines, band.line); k <= row; k++) {
+        enter_row(band, field, lines, k, climb, metres);
+    }
     return horizon_of(band, lines);
 }
 #endif

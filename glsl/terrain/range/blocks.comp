@@ -1,6 +1,6 @@
-// terrain/range/blocks.comp -- the lowest and the highest height in each block of a land, sixty-four readers a block.
+// terrain/range/blocks.comp -- the range of heights in each block, by 64 readers.
 //
-//   gives    range: lowest in red, highest in green; a block of the land for each texel
+//   gives    range: lowest in red, highest in green; a block of the terrain for each texel
 //   needs    terrain/extremes.glsl, maths/whole.glsl
 //   units    as the heights
 //   source   a tree reduction in shared memory, as in M. Harris 2007, "Optimizing Parallel
@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_fast_variants.py, against terrain/range/blocks.glsl
 //   agrees   exactly: the lowest of numbers is the same in any order
 //
-// The kernel beside it has one thread walk a whole block. Here a work group shares the block:
+// The kernel beside it has one thread read a whole block. Here a work group shares the block:
 // each reader takes every eighth texel of every eighth row, so that neighbours read
 // neighbours, then pairs of readers are joined until one is left.
 #include "maths/whole.glsl"
@@ -16,7 +16,8 @@
 #pragma compute(groups = "size.x, size.y", local = "8, 8", agrees = "exact")
 
 uniform sampler2D height; //! input
-uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest") With nothing, 0 and 1 are told without a look at the land
+uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest")
+                          //! With nothing, 0 and 1 are told without a look at the terrain
 
 const int READERS = 64;
 shared vec2 found[READERS];
@@ -27,11 +28,14 @@ void main() {
     int mine = int(gl_LocalInvocationIndex);
     ivec2 land = textureSize(height, 0);
     ivec2 from = ivec2(quotient(texel.x * land.x, size.x), quotient(texel.y * land.y, size.y));
-    ivec2 to = ivec2(quotient((texel.x + 1) * land.x, size.x), quotient((texel.y + 1) * land.y, size.y));
+    ivec2 to = ivec2(quotient((texel.x + 1) * land.x, size.x),
+                     quotient((texel.y + 1) * land.y, size.y));
     if (sought == 0) to = from;
     vec2 seen = NO_RANGE;
     for (int y = from.y + reader.y; y < to.y; y += 8) {
-        for (int x = from.x + reader.x; x < to.x; x += 8) seen = widened(seen, vec2(texelFetch(height, ivec2(x, y), 0).r));
+        for (int x = from.x + reader.x; x < to.x; x += 8) {
+            seen = widened(seen, vec2(texelFetch(height, ivec2(x, y), 0).r));
+        }
     }
     found[mine] = seen;
     barrier();
@@ -39,5 +43,7 @@ void main() {
         if (mine < half_of) found[mine] = widened(found[mine], found[mine + half_of]);
         barrier();
     }
-    if (mine == 0) imageStore(out_range, texel, vec4(sought == 0 ? vec2(0.0, 1.0) : found[0], 0.0, 1.0));
+    if (mine == 0) {
+        imageStore(out_range, texel, vec4(sought == 0 ? vec2(0.0, 1.0) : found[0], 0.0, 1.0));
+    }
 }

@@ -14,7 +14,9 @@ vec2 kernel(ivec2 texel) {
     ivec2 all_blocks = textureSize(blocks, 0);
     vec2 found = NO_RANGE;
     for (int y = 0; y < all_blocks.y; y++) {
-        for (int x = 0; x < all_blocks.x; x++) found = widened(found, texelFetch(blocks, ivec2(x, y), 0).rg);
+        for (int x = 0; x < all_blocks.x; x++) {
+            found = widened(found, texelFetch(blocks, ivec2(x, y), 0).rg);
+        }
     }
     return found;
 }

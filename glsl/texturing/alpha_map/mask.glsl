@@ -10,5 +10,9 @@
 // is resampled, corners on corners; where `texels` states a size, another is refused.
 #pragma source("mask_file", output = "mask:rgba8")
 
-uniform sampler2D image;            //! file("sketches/data/splat_mask.png", "paint") PNG, JPEG or WebP: red, green, blue and alpha are the weights of the first to the fourth layer; without an alpha channel there is no fourth
-uniform ivec2 texels = ivec2(0);    //! label("Size of the image") parts("width", "height") Width and height that the image must have; 0: any
+uniform sampler2D image;            //! file("sketches/data/splat_mask.png", "paint")
+                                    //! PNG, JPEG or WebP: red, green, blue and alpha are the
+                                    //! weights of the first to the fourth layer; without an alpha
+                                    //! channel there is no fourth
+uniform ivec2 texels = ivec2(0);    //! label("Size of the image") parts("width", "height")
+                                    //! Width and height that the image must have; 0: any

@@ -1,8 +1,8 @@
-// texturing/alpha_map/path.glsl -- where a path covers the land: a smooth line through four points.
+// texturing/alpha_map/path.glsl -- where a path lies: a smooth line through four points.
 //
 //   gives    cover, 0..1
 //   needs    maths/land.glsl, maths/segment.glsl, noise/periodic.glsl
-//   units    points as shares of the land, east and north; widths in metres
+//   units    points as shares of the terrain, east and north; widths in metres
 //   source   Belaiche 2010, section 2.5: a texture of its own for the paths that people walk on;
 //            the line: Catmull and Rom 1974, "A Class of Local Interpolating Splines"
 //   tested   tests/glsl/test_splat_rules.py: on the points, on a straight line, and its width
@@ -19,8 +19,10 @@ uniform vec2 second = vec2(0.35, 0.25);  //! point group("Points") Where it goes
 uniform vec2 third = vec2(0.6, 0.6);     //! point group("Points") Where it goes through next
 uniform vec2 fourth = vec2(1.0, 0.7);    //! point group("Points") Where it ends
 uniform float width = 60.0;              //! log_slider(0.5, 2000) unit("m") How wide it is
-uniform float verge = 30.0;              //! slider(0, 500) step(1) unit("m") Over how much it ends on either side
-uniform float wander = 0.0;              //! slider(0, 500) step(1) unit("m") How far chance moves it aside
+uniform float verge = 30.0;              //! slider(0, 500) step(1) unit("m")
+                                         //! Over how much it ends on either side
+uniform float wander = 0.0;              //! slider(0, 500) step(1) unit("m")
+                                         //! How far chance moves it aside
 uniform float strength = 1.0;            //! slider(0, 1) step(0.01) How much it covers
 
 const uint SALT = 0x98bd00cbu;  // CRC-32 of "texturing/alpha_map/path"
@@ -51,6 +53,7 @@ float kernel(ivec2 texel) {
         nearest = min(nearest, distance_to_segment(place, from, to));
         from = to;
     }
-    float cover = verge > 0.0 ? clamp((0.5 * width - nearest) / verge + 1.0, 0.0, 1.0) : nearest <= 0.5 * width ? 1.0 : 0.0;
+    float cover = verge > 0.0 ? clamp((0.5 * width - nearest) / verge + 1.0, 0.0, 1.0)
+            : nearest <= 0.5 * width ? 1.0 : 0.0;
     return strength * cover;
 }

@@ -1,4 +1,4 @@
-// texturing/height_blend/ragged.glsl -- heights moved a little by chance, so that a line drawn along one is no contour line.
+// texturing/height_blend/ragged.glsl -- heights moved a little, for lines that are no contours.
 //
 //   gives    height 0..1, and somewhat beyond
 //   needs    noise/periodic.glsl, terrain/heightfield.glsl; a height 0..1
@@ -11,8 +11,12 @@
 
 uniform sampler2D height;      //! input
 
-uniform float ragged = 0.0;    //! slider(0, 80) step(1) group("Heights") How far chance moves a height, in grey levels, before it chooses. 0 draws contour lines, as the thesis does
-uniform float repeats = 24.0;  //! slider(1, 256) step(1) How fine chance is: as the images that stand so often side by side from west to east
+uniform float ragged = 0.0;    //! slider(0, 80) step(1) group("Heights")
+                               //! How far chance moves a height, in grey levels, before it
+                               //! chooses. 0 draws contour lines, as the thesis does
+uniform float repeats = 24.0;  //! slider(1, 256) step(1)
+                               //! How fine chance is: as the images that stand so often side by
+                               //! side from west to east
 
 const uint SALT = 0x080b4970u;  // CRC-32 of "texturing/height_blend"
 

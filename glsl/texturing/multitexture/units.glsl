@@ -1,15 +1,15 @@
-// texturing/multitexture/units.glsl -- three textures in one pass, each with coordinates of its own.
+// texturing/multitexture/units.glsl -- three textures in one pass, each with its coordinates.
 //
 //   gives    colour, linear light, the shadow map in it
 //   needs    maths/angle.glsl, maths/drape.glsl, maths/land.glsl; two images that repeat, and
-//            a light for the whole land, each of any size
+//            a light for the whole terrain, each of any size
 //   units    images stand so many times side by side from west to east; turns in degrees,
 //            counter-clockwise; shifts in images
 //   source   Belaiche 2010, section 2.4
 //   tested   tests/glsl/test_texturing_multitexture.py, against bilinear sampling in NumPy
 //
 // As the thesis says of the hardware of its time: textures and coordinates may differ, the
-// transparency may not. `share` is one for all the land; where it should change with the
+// transparency may not. `share` is one for all the terrain; where it should change with the
 // place, take height_blend or splat.
 #include "maths/angle.glsl"
 #include "maths/drape.glsl"
@@ -20,15 +20,24 @@ uniform sampler2D first;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D second;  //! input("linear", "repeat", "mipmap")
 uniform sampler2D shadow;  //! input("linear")
 
-uniform int combine = 0;               //! menu("mix", "product", "sum") How the two images become one colour
-uniform float share = 0.35;            //! slider(0, 1) step(0.01) How much of the second: of the mixture, or of its effect
-uniform float first_repeats = 24.0;    //! slider(1, 256) step(1) group("First") How often it stands side by side
+uniform int combine = 0;               //! menu("mix", "product", "sum")
+                                       //! How the two images become one colour
+uniform float share = 0.35;            //! slider(0, 1) step(0.01)
+                                       //! How much of the second: of the mixture, or of its effect
+uniform float first_repeats = 24.0;    //! slider(1, 256) step(1) group("First")
+                                       //! How often it stands side by side
 uniform float first_turn = 0.0;        //! angle group("First") How far it is turned
-uniform vec2 first_shift = vec2(0.0);  //! slider(0, 1) step(0.01) group("First") parts("east", "north") How far it is moved, east and north
-uniform float second_repeats = 5.0;    //! slider(1, 256) step(1) group("Second") How often it stands side by side
+uniform vec2 first_shift = vec2(0.0);  //! slider(0, 1) step(0.01) group("First")
+                                       //! parts("east", "north")
+                                       //! How far it is moved, east and north
+uniform float second_repeats = 5.0;    //! slider(1, 256) step(1) group("Second")
+                                       //! How often it stands side by side
 uniform float second_turn = 30.0;      //! angle group("Second") How far it is turned
-uniform vec2 second_shift = vec2(0.0); //! slider(0, 1) step(0.01) group("Second") parts("east", "north") How far it is moved, east and north
-uniform float shadows = 1.0;           //! slider(0, 1) step(0.01) group("Shadow map") How much of the shadow map is seen
+uniform vec2 second_shift = vec2(0.0); //! slider(0, 1) step(0.01) group("Second")
+                                       //! parts("east", "north")
+                                       //! How far it is moved, east and north
+uniform float shadows = 1.0;           //! slider(0, 1) step(0.01) group("Shadow map")
+                                       //! How much of the shadow map is seen
 
 vec3 unit(sampler2D image, vec2 share_of_land, float repeats, float turn, vec2 shift) {
     vec2 way = cos_sin_degrees(turn);

@@ -1,8 +1,8 @@
-// texturing/splat/mix.glsl -- one texture for the whole land from four layers and their weights.
+// texturing/splat/mix.glsl -- one texture for the terrain from four layers by weights.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl, texturing/splat_weights.glsl; weights as of texturing/alpha_map,
-//            four colours for the whole land, and texturing/splat/means of their tiles; each
+//            four colours for the whole terrain, and texturing/splat/means of their tiles; each
 //            of any size
 //   units    weights 0..1; contrast: odds are multiplied by e^contrast for a material twice as
 //            bright as its mean
@@ -25,8 +25,11 @@ uniform sampler2D snow;     //! input
 uniform sampler2D path;     //! input
 uniform sampler2D means;    //! input
 
-uniform int blend = 0;           //! menu("even", "by heights") group("Blend") How materials mix where they meet: as in a mist, or what stands higher comes through
-uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend") How strictly heights decide; 0 is even
+uniform int blend = 0;           //! menu("even", "by heights") group("Blend")
+                                 //! How materials mix where they meet: as in a mist, or what
+                                 //! stands higher comes through
+uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend")
+                                 //! How strictly heights decide; 0 is even
 
 vec3 nearest(sampler2D field, ivec2 texel) {
     return texelFetch(field, ivec2(place_on(textureSize(field, 0), texel, size) + 0.5), 0).rgb;

@@ -1,4 +1,4 @@
-// texturing/splat_many/choose.glsl -- which four of sixteen materials a place shows, and how much of each.
+// texturing/splat_many/choose.glsl -- which four of sixteen materials a place shows.
 //
 //   gives    chosen, the numbers of four materials from 0 in 255ths, the most first; weights,
 //            theirs, which sum to 1 in every texel
@@ -19,27 +19,67 @@
 
 uniform sampler2D height;  //! input
 
-uniform vec4 band_1 = vec4(0.0, 0.12, 0.0, 20.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 1
-uniform vec4 band_2 = vec4(0.0, 0.2, 0.0, 90.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 2
-uniform vec4 band_3 = vec4(0.05, 0.3, 0.0, 14.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 3
-uniform vec4 band_4 = vec4(0.08, 0.45, 0.0, 24.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 4
-uniform vec4 band_5 = vec4(0.1, 0.5, 8.0, 30.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 5
-uniform vec4 band_6 = vec4(0.2, 0.6, 0.0, 22.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 6
-uniform vec4 band_7 = vec4(0.25, 0.7, 10.0, 34.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 7
-uniform vec4 band_8 = vec4(0.35, 0.75, 0.0, 26.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 8
-uniform vec4 band_9 = vec4(0.15, 0.6, 26.0, 48.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 9
-uniform vec4 band_10 = vec4(0.3, 0.85, 28.0, 56.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 10
-uniform vec4 band_11 = vec4(0.5, 1.0, 30.0, 90.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 11
-uniform vec4 band_12 = vec4(0.1, 0.8, 44.0, 90.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 12
-uniform vec4 band_13 = vec4(0.55, 0.9, 14.0, 34.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 13
-uniform vec4 band_14 = vec4(0.6, 0.95, 0.0, 20.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 14
-uniform vec4 band_15 = vec4(0.7, 1.0, 0.0, 36.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 15
-uniform vec4 band_16 = vec4(0.82, 1.0, 0.0, 44.0);  //! group("Bands") parts("from", "to", "slope from", "slope to") Height from and to, slope from and to in degrees, of material 16
+uniform vec4 band_1 = vec4(0.0, 0.12, 0.0, 20.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 1
+uniform vec4 band_2 = vec4(0.0, 0.2, 0.0, 90.0);  //! group("Bands")
+                                                  //! parts("from", "to", "slope from", "slope to")
+                                                  //! Height from and to, slope from and to in
+                                                  //! degrees, of material 2
+uniform vec4 band_3 = vec4(0.05, 0.3, 0.0, 14.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 3
+uniform vec4 band_4 = vec4(0.08, 0.45, 0.0, 24.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 4
+uniform vec4 band_5 = vec4(0.1, 0.5, 8.0, 30.0);  //! group("Bands")
+                                                  //! parts("from", "to", "slope from", "slope to")
+                                                  //! Height from and to, slope from and to in
+                                                  //! degrees, of material 5
+uniform vec4 band_6 = vec4(0.2, 0.6, 0.0, 22.0);  //! group("Bands")
+                                                  //! parts("from", "to", "slope from", "slope to")
+                                                  //! Height from and to, slope from and to in
+                                                  //! degrees, of material 6
+uniform vec4 band_7 = vec4(0.25, 0.7, 10.0, 34.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 7
+uniform vec4 band_8 = vec4(0.35, 0.75, 0.0, 26.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 8
+uniform vec4 band_9 = vec4(0.15, 0.6, 26.0, 48.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 9
+uniform vec4 band_10 = vec4(0.3, 0.85, 28.0, 56.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 10
+uniform vec4 band_11 = vec4(0.5, 1.0, 30.0, 90.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 11
+uniform vec4 band_12 = vec4(0.1, 0.8, 44.0, 90.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 12
+uniform vec4 band_13 = vec4(0.55, 0.9, 14.0, 34.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 13
+uniform vec4 band_14 = vec4(0.6, 0.95, 0.0, 20.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 14
+uniform vec4 band_15 = vec4(0.7, 1.0, 0.0, 36.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 15
+uniform vec4 band_16 = vec4(0.82, 1.0, 0.0, 44.0);  //! group("Bands")
+    //! parts("from", "to", "slope from", "slope to")
+    //! Height from and to, slope from and to in degrees, of material 16
 uniform int materials = 16;           //! slider(1, 16) How many there are, from the first on
-uniform float height_fade = 0.08;     //! slider(0.001, 1) step(0.001) Over how much height a band begins and ends
-uniform float slope_fade = 8.0;       //! slider(0.1, 45) step(0.1) unit("degrees") Over how much slope it does
-uniform float chance = 0.7;           //! slider(0, 1) step(0.01) group("Chance") How much of a claim is chance: patches of materials that all would fit
-uniform float grain = 120.0;          //! log_slider(1, 2000) unit("m") group("Chance") How wide the largest patches are
+uniform float height_fade = 0.08;     //! slider(0.001, 1) step(0.001)
+                                      //! Over how much height a band begins and ends
+uniform float slope_fade = 8.0;       //! slider(0.1, 45) step(0.1) unit("degrees")
+                                      //! Over how much slope it does
+uniform float chance = 0.7;           //! slider(0, 1) step(0.01) group("Chance")
+                                      //! How much of a claim is chance: patches of materials that
+                                      //! all would fit
+uniform float grain = 120.0;          //! log_slider(1, 2000) unit("m") group("Chance")
+                                      //! How wide the largest patches are
 uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which chance
 
 const uint SALT = 0xb9faabefu;  // CRC-32 of "texturing/splat_many"
@@ -55,7 +95,8 @@ float claim(int number, vec4 band, vec2 site, vec2 patch_place) {
                * rise(site.y, band.z, slope_fade) * rise(-site.y, -band.w, slope_fade);
     // Noise is 0 on its lattice: on one lattice all materials would tie there.
     vec2 moved = patch_place + float(number) * vec2(0.618, 0.382);
-    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5, 64u * seed + SALT + 4u * uint(number));
+    uint own = 64u * seed + SALT + 4u * uint(number);
+    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5, own);
     return fits * mix(1.0, clamp(luck, 0.0, 1.0), chance);
 }
 
@@ -79,9 +120,10 @@ void kernel(ivec2 texel, out vec4 chosen, out vec4 weights) {
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
-    float incline = degrees(atan(length(relief * slope_at(height, place, metres, CENTRAL_DIFFERENCES))));
+    float incline = degrees(atan(length(relief
+                                        * slope_at(height, place, metres, CENTRAL_DIFFERENCES))));
     vec2 site = vec2(height_at(height, place), incline);
-    // Land that is not a number has the first material, and stays visible as such in the view.
+    // Terrain that is not a number has the first material, and stays visible as such in the view.
     if (!(abs(site.x) < 1e30 && abs(site.y) < 1e30)) site = vec2(band_1.x, 0.0);
     vec2 patch_place = share_of_texel(texel, size) * extent / grain;
     // Where nothing claims, the first material lies.

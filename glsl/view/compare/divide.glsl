@@ -9,9 +9,13 @@
 
 uniform sampler2D left;        //! input
 uniform sampler2D right;       //! input
-uniform int mode = 0;          //! menu("side by side", "difference") group("Compare") label("Compare") One on each side of a line, or how far they are apart
-uniform float divider = 0.5;   //! divider step(0.005) group("Compare") Where the line stands, from the left
-uniform float amplified = 4.0; //! log_slider(1, 64) group("Compare") The difference is multiplied by it; grey where there is none
+uniform int mode = 0;          //! menu("side by side", "difference") group("Compare")
+                               //! label("Compare")
+                               //! One on each side of a line, or how far they are apart
+uniform float divider = 0.5;   //! divider step(0.005) group("Compare")
+                               //! Where the line stands, from the left
+uniform float amplified = 4.0; //! log_slider(1, 64) group("Compare")
+                               //! The difference is multiplied by it; grey where there is none
 
 vec4 kernel(ivec2 texel) {
     vec3 one = texelFetch(left, texel, 0).rgb;
@@ -20,6 +24,8 @@ vec4 kernel(ivec2 texel) {
     float place = divider * float(size.x);
     float away = abs(float(texel.x) + 0.5 - place);
     // A light line with a dark rim is seen on any picture.
-    if (divider > 0.0 && divider < 1.0 && away < 2.0) return vec4(vec3(away < 1.0 ? 1.0 : 0.0), 1.0);
+    if (divider > 0.0 && divider < 1.0 && away < 2.0) {
+        return vec4(vec3(away < 1.0 ? 1.0 : 0.0), 1.0);
+    }
     return vec4(float(texel.x) + 0.5 < place ? one : other, 1.0);
 }

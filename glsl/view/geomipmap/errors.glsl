@@ -1,17 +1,20 @@
-// view/geomipmap/errors.glsl -- how far each level of a tile lies from the land, and between which heights the tile lies.
+// view/geomipmap/errors.glsl -- how far each level of a tile lies from the terrain.
 //
 //   gives    spans: lowest and highest height of a tile; errors: of levels 1, 2, 3 and 4
 //   needs    view/geomipmap/tiles.glsl; a height
 //   units    of the height, all four
 //   source   Belaiche 2010, section 2.5; de Boer 2000, "Fast Terrain Rendering Using Geometrical
-//            MipMapping", for the error of a level as the largest height between it and the land
+//            MipMapping", for the error of a level as the largest height between it and the
+//            terrain
 //   tested   tests/glsl/test_view_geomipmap.py, against planes through the corners of each
 //            triangle in float64, with every set of coarser neighbours
+//
+// And between which heights the tile lies.
 //
 // A level's triangles lie as fans around the middles of blocks of 2 x 2 quads; a coarser
 // neighbour takes the middle of a block's side out of the fan, so two triangles become one.
 // So each triangle of any such mesh is made of whole triangles of any finer one, and two
-// meshes of a tile lie farthest apart at a node of the finer one, which is on the land. That
+// meshes of a tile lie farthest apart at a node of the finer one, which is on the terrain. That
 // is why an error, taken over all nodes, is the largest jump to any finer level as well, and
 // why a level that fits within a number of pixels changes within that number. What lies on
 // the side itself counts for the neighbour, whose triangles end there too.
@@ -33,7 +36,8 @@ float node(ivec2 at) {
     return nodes[at.y * ROW + at.x];
 }
 
-// The corners and the middles of a block's sides, counter-clockwise from the south-west; even ones are corners.
+// The corners and the middles of a block's sides, counter-clockwise from the south-west; even ones
+// are corners.
 ivec2 around(int k, int half_side) {
     ivec2 sign = ivec2(k >= 2 && k <= 4 ? 1 : k == 1 || k == 5 ? 0 : -1,
                        k >= 4 && k <= 6 ? 1 : k == 3 || k == 7 ? 0 : -1);
@@ -55,15 +59,19 @@ float error_of_block(ivec2 middle, int half_side) {
             float outward = float(max(abs(x), abs(y))) / float(half_side);
             int turned = side == 0 ? x : side == 1 ? y : side == 2 ? -x : -y;
             float along = float(turned) / float(half_side);
-            float first = side == 0 ? ring[0] : side == 1 ? ring[2] : side == 2 ? ring[4] : ring[6];
+            float first = side == 0 ? ring[0] : side == 1 ? ring[2] : side == 2 ? ring[4]
+                    : ring[6];
             float mid = side == 0 ? ring[1] : side == 1 ? ring[3] : side == 2 ? ring[5] : ring[7];
             float last = side == 0 ? ring[2] : side == 1 ? ring[4] : side == 2 ? ring[6] : ring[0];
             float ends = along < 0.0 ? mid - first : last - mid;
             worst = max(worst, abs(centre + outward * (mid - centre) + along * ends - truth));
-            ivec2 reach = middle + ivec2(side == 1 ? 1 : side == 3 ? -1 : 0, side == 2 ? 1 : side == 0 ? -1 : 0) * half_side;
-            bool at_rim = upright ? reach.y == 0 || reach.y == TILE : reach.x == 0 || reach.x == TILE;
+            ivec2 reach = middle + ivec2(side == 1 ? 1 : side == 3 ? -1 : 0,
+                                         side == 2 ? 1 : side == 0 ? -1 : 0) * half_side;
+            bool at_rim = upright ? reach.y == 0 || reach.y == TILE
+                    : reach.x == 0 || reach.x == TILE;
             if (at_rim && outward < 1.0) {
-                float joined = centre + outward * (0.5 * (first + last) - centre) + along * 0.5 * (last - first);
+                float joined = centre + outward * (0.5 * (first + last) - centre)
+                        + along * 0.5 * (last - first);
                 worst = max(worst, abs(joined - truth));
             }
         }
@@ -93,8 +101,9 @@ float error_of_two(bool turned) {
             vec2 s = vec2(x, y) / float(TILE);
             float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
                                  : corner + s.y * (north - corner) + s.x * (far - north);
-            float other = x + y <= TILE ? corner + s.x * (east - corner) + s.y * (north - corner)
-                                        : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
+            float other = x + y <= TILE
+                ? corner + s.x * (east - corner) + s.y * (north - corner)
+                : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
             worst = max(worst, abs((turned ? other : plane) - node(ivec2(x, y))));
             // end: two
         }

@@ -47,7 +47,8 @@ int digits_in(int number, int decimals) {
     return max(found, decimals + 1);
 }
 
-// Pixels from a number's west to its east: `number` is its value times 10 to the power of `decimals`.
+// Pixels from a number's west to its east: `number` is its value times 10 to the power of
+// `decimals`.
 int number_width(int number, int decimals) {
     int signs = digits_in(number, decimals) + (number < 0 ? 1 : 0) + (decimals > 0 ? 1 : 0);
     return signs * SIGN_ADVANCE - 1;

@@ -1,8 +1,8 @@
-// view/profile/line.glsl -- elevations under a straight line over the land, from its start to its finish.
+// view/profile/line.glsl -- elevations under a straight line, from its start to its finish.
 //
 //   gives    height, in metres above sea level, a row of it
 //   needs    terrain/heightfield.glsl; a height
-//   units    ends as shares of the land, east and north
+//   units    ends as shares of the terrain, east and north
 //   source   none: heights between texels, as every kernel reads them
 //   tested   tests/glsl/test_view_profile.py, against interpolation in float64
 #include "terrain/heightfield.glsl"
@@ -10,8 +10,7 @@
 
 uniform sampler2D height;  //! input
 
-uniform vec2 start = vec2(0.1, 0.5);   //! point group("Line") Where the line begins
-uniform vec2 finish = vec2(0.9, 0.5);  //! point group("Line") Where it ends
+#include "view/parameters/profile_line.glsl"
 
 float kernel(ivec2 texel) {
     vec2 share = mix(start, finish, float(texel.x) / float(max(size.x - 1, 1)));

@@ -1,9 +1,9 @@
-// view/profile/plot.glsl -- the land's height under a line: a map with the line, and the section beside it.
+// view/profile/plot.glsl -- the heights under a line: a map with the line, and a section.
 //
 //   gives    frame, display-encoded
-//   needs    colour/encode.glsl, maths/segment.glsl, terrain/heightfield.glsl, view/profile/digits.glsl; a height,
-//            the lowest and the highest elevation under the line; a colour and a light if
-//            there are
+//   needs    colour/encode.glsl, maths/segment.glsl, terrain/heightfield.glsl,
+//            view/profile/digits.glsl; a height, the lowest and the highest elevation under the
+//            line; a colour and a light if there are
 //   units    elevations in metres above sea level, distances along the line in metres, or in
 //            kilometres from 10 km up; widths in pixels
 //   source   none: a picture of numbers. A pixel is covered by how far it is from the curve
@@ -22,11 +22,13 @@ uniform sampler2D range;   //! input
 uniform sampler2D colour;  //! input("linear", "mipmap", "white")
 uniform sampler2D light;   //! input("linear", "mipmap", "white")
 
-uniform vec2 start = vec2(0.1, 0.5);   //! point group("Line") Where the line begins
-uniform vec2 finish = vec2(0.9, 0.5);  //! point group("Line") Where it ends
-uniform int elevations = 0;            //! menu("of the line", "of the land") group("Section") Which elevations the section has room for
-uniform float width = 2.0;             //! slider(0.5, 8) step(0.1) unit("pixels") group("Section") Of the curve
-uniform vec3 curve = vec3(0.35, 0.03, 0.02);    //! colour group("Colours") The curve, and the line on the map
+#include "view/parameters/profile_line.glsl"
+uniform int elevations = 0;            //! menu("of the line", "of the land") group("Section")
+                                       //! Which elevations the section has room for
+uniform float width = 2.0;             //! slider(0.5, 8) step(0.1) unit("pixels") group("Section")
+                                       //! Of the curve
+uniform vec3 curve = vec3(0.35, 0.03, 0.02);    //! colour group("Colours")
+                                                //! The curve, and the line on the map
 uniform vec3 ground = vec3(0.60, 0.50, 0.36);   //! colour group("Colours") Below the curve
 uniform vec3 paper = vec3(1.0);                 //! colour group("Colours") Behind it all
 uniform vec3 ink = vec3(0.03);                  //! colour group("Colours") Axes and numbers
@@ -46,7 +48,8 @@ Layout arranged() {
     vec2 land = floor(room * extent / max(extent.x, extent.y));
     vec4 map = vec4(margin, floor(0.5 * (float(size.y) - land.y)), land);
     vec2 corner = vec2(margin + floor(room) + margin + 32.0 * float(s), margin + 16.0 * float(s));
-    vec2 sides = vec2(float(size.x) - 1.5 * margin, float(size.y) - margin - 12.0 * float(s)) - corner;
+    vec2 sides = vec2(float(size.x) - 1.5 * margin, float(size.y) - margin - 12.0 * float(s))
+            - corner;
     return Layout(s, map, vec4(corner, max(sides, vec2(1.0))));
 }
 
@@ -99,12 +102,16 @@ vec3 mean_at(sampler2D image, vec2 share, float side) {
 
 vec3 map_at(vec2 share, float side) {
     vec2 grid = vec2(textureSize(height, 0) - 1);
-    if (textureSize(colour, 0).x > 1) return mean_at(colour, share, side) * mean_at(light, share, side);
+    if (textureSize(colour, 0).x > 1) {
+        return mean_at(colour, share, side) * mean_at(light, share, side);
+    }
     // Without a colour: greys by height, lit from the north-west.
-    vec2 slope = relief * slope_at(height, share * grid, spacing_of(ivec2(grid) + 1, extent), CENTRAL_DIFFERENCES);
+    vec2 slope = relief * slope_at(height, share * grid, spacing_of(ivec2(grid) + 1, extent),
+                                   CENTRAL_DIFFERENCES);
     vec3 normal = normalize(vec3(-slope, 1.0));
     float lit = max(dot(normal, normalize(vec3(-1.0, 1.0, 1.4))), 0.0);
-    return vec3(mix(0.12, 0.85, clamp(height_at(height, share * grid), 0.0, 1.0)) * (0.3 + 0.9 * lit));
+    return vec3(mix(0.12, 0.85, clamp(height_at(height, share * grid), 0.0, 1.0))
+                * (0.3 + 0.9 * lit));
 }
 
 vec4 kernel(ivec2 texel) {
@@ -117,16 +124,20 @@ vec4 kernel(ivec2 texel) {
     vec2 share = (place - at.map.xy) / at.map.zw;
     vec2 begins = at.map.xy + start * at.map.zw;
     vec2 ends = at.map.xy + finish * at.map.zw;
-    if (all(greaterThanEqual(share, vec2(0.0))) && all(lessThanEqual(share, vec2(1.0)))) seen = map_at(share, at.map.z);
+    if (all(greaterThanEqual(share, vec2(0.0))) && all(lessThanEqual(share, vec2(1.0)))) {
+        seen = map_at(share, at.map.z);
+    }
     float line = distance_to_segment(place, begins, ends);
     seen = mix(seen, vec3(1.0), 0.8 * cover(line, width + 2.0 * s));
     seen = mix(seen, curve, cover(line, width));
-    seen = mix(seen, vec3(1.0), mark(place - begins, 5.0 * s, false) + mark(place - ends, 5.0 * s, false));
+    seen = mix(seen, vec3(1.0), mark(place - begins, 5.0 * s, false)
+               + mark(place - ends, 5.0 * s, false));
     seen = mix(seen, curve, mark(place - begins, 4.0 * s, false));
     seen = mix(seen, curve, mark(place - ends, 4.0 * s, true));
 
     // The section: elevations from low to high, distances from 0.
-    vec2 found = elevations == 1 ? base_elevation + vec2(0.0, relief) : texelFetch(range, ivec2(0), 0).rg;
+    vec2 found = elevations == 1 ? base_elevation + vec2(0.0, relief)
+            : texelFetch(range, ivec2(0), 0).rg;
     float span = max(found.y - found.x, 1e-2);
     float low = found.x - 0.06 * span;
     float high = found.y + 0.06 * span + (found.y - found.x < 1e-2 ? 1e-2 : 0.0);
@@ -160,28 +171,40 @@ vec4 kernel(ivec2 texel) {
         seen = mix(seen, curve, cover(nearest, width));
     }
     // Axes, ticks outside of them, numbers beside the ticks.
-    if (in_plot.y >= -5.0 * s && in_plot.y < at.plot.w && in_plot.x >= -5.0 * s && in_plot.x < at.plot.z + s) {
-        bool axis = (abs(in_plot.x) < 0.5 * s + 0.01 && in_plot.y > -s) || (abs(in_plot.y) < 0.5 * s + 0.01 && in_plot.x > -s);
+    if (in_plot.y >= -5.0 * s && in_plot.y < at.plot.w && in_plot.x >= -5.0 * s
+        && in_plot.x < at.plot.z + s) {
+        bool axis = (abs(in_plot.x) < 0.5 * s + 0.01 && in_plot.y > -s)
+                || (abs(in_plot.y) < 0.5 * s + 0.01 && in_plot.x > -s);
         bool up_ticks = up_shown && in_plot.x < 0.0 && abs(in_plot.y - up_at) < 0.5 * s + 0.01;
-        bool along_ticks = along_shown && in_plot.y < 0.0 && abs(in_plot.x - along_at) < 0.5 * s + 0.01;
+        bool along_ticks = along_shown && in_plot.y < 0.0
+                && abs(in_plot.x - along_at) < 0.5 * s + 0.01;
         if (axis || up_ticks || along_ticks) seen = ink;
     }
     float written = 0.0;
     ivec2 origin = ivec2(at.plot.xy);
     int decimals = decimals_of(up_by);
     int number = label_of(up_tick, up_by, decimals);
-    ivec2 corner = origin + ivec2(-7 * at.dot_size - number_width(number, decimals) * at.dot_size, int(floor(up_at)) - 3 * at.dot_size);
+    ivec2 corner = origin + ivec2(-7 * at.dot_size - number_width(number, decimals) * at.dot_size,
+                                  int(floor(up_at)) - 3 * at.dot_size);
     ivec2 from_corner = texel - corner;
-    if (up_shown && in_plot.x < 0.0) written += number_at(ivec2(floor(vec2(from_corner) / s)), number, decimals);
+    if (up_shown && in_plot.x < 0.0) {
+        written += number_at(ivec2(floor(vec2(from_corner) / s)), number, decimals);
+    }
     decimals = decimals_of(along_by);
     number = label_of(along_tick, along_by, decimals);
-    corner = origin + ivec2(int(floor(along_at)) - number_width(number, decimals) * at.dot_size / 2, -15 * at.dot_size);
+    corner = origin + ivec2(int(floor(along_at))
+                            - number_width(number, decimals) * at.dot_size / 2, -15 * at.dot_size);
     from_corner = texel - corner;
-    if (along_shown && in_plot.y < 0.0) written += number_at(ivec2(floor(vec2(from_corner) / s)), number, decimals);
+    if (along_shown && in_plot.y < 0.0) {
+        written += number_at(ivec2(floor(vec2(from_corner) / s)), number, decimals);
+    }
     // Units: metres over the one axis, metres or kilometres at the end of the other.
-    ivec2 dot_of = ivec2(floor(vec2(texel - origin - ivec2(-8 * at.dot_size, int(at.plot.w) + 4 * at.dot_size)) / s));
+    ivec2 dot_of = ivec2(floor(vec2(texel - origin
+                                    - ivec2(-8 * at.dot_size, int(at.plot.w) + 4 * at.dot_size))
+                                    / s));
     written += sign_at(SIGN_METRES, dot_of);
-    dot_of = ivec2(floor(vec2(texel - origin - ivec2(int(at.plot.z) - at.dot_size, 4 * at.dot_size)) / s));
+    dot_of = ivec2(floor(vec2(texel - origin
+                              - ivec2(int(at.plot.z) - at.dot_size, 4 * at.dot_size)) / s));
     written += sign_at(SIGN_METRES, dot_of);
     if (unit > 1.0) written += sign_at(SIGN_KILO, dot_of + ivec2(SIGN_ADVANCE, 0));
     seen = mix(seen, ink, min(written, 1.0));

@@ -1,10 +1,10 @@
-// view/splat/land.glsl -- the land, four textures mixed at every pixel by their weights.
+// view/splat/land.glsl -- the terrain, four textures mixed at every pixel by their weights.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl, view/surface.glsl,
-//            view/vertices.glsl; a height 0..1, weights as of texturing/alpha_map, four tiles;
-//            a light and texturing/splat/means if there are, and for tiles of the mesh what
-//            view/geomipmap/errors gives
+//   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl,
+//            view/surface.glsl, view/vertices.glsl; a height 0..1, weights as of
+//            texturing/alpha_map, four tiles; a light and texturing/splat/means if there are, and
+//            for tiles of the mesh what view/geomipmap/errors gives
 //   units    metres; colours linear; a tile stands so many times side by side from west to east
 //   source   Belaiche 2010, section 2.5, figure 2.9; by heights: see texturing/splat/mix.glsl
 //   tested   tests/glsl/test_splat_view.py, against the same mixture baked, and against float64
@@ -18,7 +18,7 @@
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f")
 
-uniform sampler2D height;   //! input("linear")
+#include "view/parameters/mesh.glsl"
 uniform sampler2D weights;  //! input("linear", "mipmap")
 uniform sampler2D grass;    //! input("linear", "repeat", "mipmap")
 uniform sampler2D rock;     //! input("linear", "repeat", "mipmap")
@@ -26,41 +26,39 @@ uniform sampler2D snow;     //! input("linear", "repeat", "mipmap")
 uniform sampler2D path;     //! input("linear", "repeat", "mipmap")
 uniform sampler2D means;    //! input("white")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
-uniform sampler2D spans;    //! input("black")
-uniform sampler2D errors;   //! input("black")
 
-uniform int detail = 0;               //! menu("full grid", "geomipmap", "morph") group("Mesh") How fine the mesh is where: alike everywhere, by tiles, or by tiles that morph into each other
-uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side of the full grid
-uniform float tolerance = 1.0;        //! slider(0, 16) step(0.1) unit("pixels") group("Mesh") How far a coarser level may lie from the land
-uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
-uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
-uniform float grass_repeats = 48.0;   //! slider(1, 512) step(1) group("Layers") How often its tile stands side by side from west to east
-uniform float rock_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers") How often its tile does
-uniform float snow_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers") How often its tile does
-uniform float path_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers") How often its tile does
-uniform int blend = 0;                //! menu("even", "by heights") group("Layers") How materials mix where they meet: as in a mist, or what stands higher comes through
-uniform float contrast = 6.0;         //! slider(0, 20) step(0.1) group("Layers") How strictly heights decide; 0 is even
-uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
-uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
+uniform float grass_repeats = 48.0;   //! slider(1, 512) step(1) group("Layers")
+                                      //! How often its tile stands side by side from west to east
+uniform float rock_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
+                                      //! How often its tile does
+uniform float snow_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
+                                      //! How often its tile does
+uniform float path_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
+                                      //! How often its tile does
+uniform int blend = 0;                //! menu("even", "by heights") group("Layers")
+                                      //! How materials mix where they meet: as in a mist, or what
+                                      //! stands higher comes through
+uniform float contrast = 6.0;         //! slider(0, 20) step(0.1) group("Layers")
+                                      //! How strictly heights decide; 0 is even
+#include "view/parameters/haze.glsl"
 
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
-    vec4 place = place_of_vertex(height, share_of_vertex(height, detail, corner, tile), corner.z, extent, relief, skirt);
-    position = place.xyz;
-    mark = place.w;
-    return clip_from_world * vec4(position, 1.0);
+    return vertex_of_mesh(height, detail, corner, tile, skirt, position, mark);
 }
 
 vec4 fragment(vec3 position, float mark) {
     vec2 share = position.xy / extent;
-    // Tiles are square on the ground, so a long land has more of them along its length.
+    // Tiles are square on the ground, so a long terrain has more of them along its length.
     vec2 tile = share * vec2(1.0, extent.y / extent.x);
     vec3 one = texture(grass, tile * grass_repeats).rgb;
     vec3 two = texture(rock, tile * rock_repeats).rgb;
     vec3 three = texture(snow, tile * snow_repeats).rgb;
     vec3 four = texture(path, tile * path_repeats).rgb;
     vec4 weight = weights_seen(weights, share);
-    if (blend == 1) weight = weights_by_heights(weight, vec4(one.g, two.g, three.g, four.g) / texelFetch(means, ivec2(0), 0), contrast);
+    if (blend == 1) {
+        weight = weights_by_heights(weight, vec4(one.g, two.g, three.g, four.g)
+                                    / texelFetch(means, ivec2(0), 0), contrast);
+    }
     vec3 shown = weight.x * one + weight.y * two + weight.z * three + weight.w * four;
-    float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));
-    return vec4(surface_seen(shown, light, share, mark, earth, horizon, clear), 1.0);
+    return vec4(surface_seen(shown, light, position, mark, earth, horizon, haze), 1.0);
 }

@@ -1,10 +1,12 @@
-// view/splat/parts.glsl -- what a splatted land is made of: four tiles, their alpha maps below, the result beside them.
+// view/splat/parts.glsl -- what a splatted terrain is made of.
 //
 //   gives    frame, display-encoded
 //   needs    colour/encode.glsl; four tiles, weights, the baked colour; a light if there is one
 //   units    tiles and colour linear, weights 0..1 shown as greys; the picture's parts in pixels
 //   source   Belaiche 2010, figure 2.9
 //   tested   tests/glsl/test_splat_view.py, by what stands in each part
+//
+// Four tiles, their alpha maps below, the result beside them.
 #include "colour/encode.glsl"
 #pragma kernel(output = "frame:rgba8")
 
@@ -16,7 +18,8 @@ uniform sampler2D weights;  //! input("linear", "mipmap")
 uniform sampler2D colour;   //! input("linear", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
 
-uniform float gap = 6.0;                  //! slider(0, 50) step(1) unit("pixels") Left free between the parts
+uniform float gap = 6.0;                  //! slider(0, 50) step(1) unit("pixels")
+                                          //! Left free between the parts
 uniform vec3 paper = vec3(1.0);           //! colour Behind them
 
 // An image where 0..1 is one side of a part, `side` pixels wide.
@@ -35,13 +38,16 @@ vec4 kernel(ivec2 texel) {
     vec2 part = (place - vec2(column, row) * (side + gap)) / side;
     bool inside = all(greaterThanEqual(part, vec2(0.0))) && all(lessThan(part, vec2(1.0)));
     if (inside && column >= 0 && column < 4 && row == 1) {
-        vec3 tile = column == 0 ? shown_at(grass, part, side) : column == 1 ? shown_at(rock, part, side)
+        vec3 tile = column == 0 ? shown_at(grass, part, side) : column == 1
+                ? shown_at(rock, part, side)
                   : column == 2 ? shown_at(snow, part, side) : shown_at(path, part, side);
         seen = srgb_from_linear(tile);
     }
     if (inside && column >= 0 && column < 4 && row == 0) {
-        vec4 weight = textureLod(weights, part, max(log2(float(textureSize(weights, 0).x) / side), 0.0));
-        seen = vec3(column == 0 ? weight.x : column == 1 ? weight.y : column == 2 ? weight.z : weight.w);
+        vec4 weight = textureLod(weights, part,
+                                 max(log2(float(textureSize(weights, 0).x) / side), 0.0));
+        seen = vec3(column == 0 ? weight.x : column == 1 ? weight.y : column == 2 ? weight.z
+                    : weight.w);
     }
     float large = 2.0 * side + gap;
     vec2 result = vec2(place.x - 4.0 * (side + gap), place.y) / large;

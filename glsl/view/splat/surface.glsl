@@ -1,4 +1,4 @@
-// view/splat/surface.glsl -- what the draws of a splatted land share: its mesh, its cut, its light and air.
+// view/splat/surface.glsl -- the surface that draws of a splatted terrain share.
 //
 //   gives    in a draw's fragment stage weights_seen, surface_seen
 //   needs    maths/drape.glsl, maths/number.glsl, view/surface.glsl; textures come as arguments
@@ -19,12 +19,13 @@ vec4 weights_seen(sampler2D weights, vec2 share) {
     return found / (found.x + found.y + found.z + found.w);
 }
 
-// A pixel of the land: its texture in its light; the cut earth where `mark` is above 0; the air before it.
-vec3 surface_seen(vec3 shown, sampler2D light, vec2 share, float mark, vec3 earth, vec3 air, float clear) {
-    vec3 seen = shown * texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
-    if (mark > 0.0) seen = cut_of_land(earth, share, mark);
-    if (mark < BROKEN || !is_number(seen.r + seen.g + seen.b)) seen = NOT_A_NUMBER;
-    return mix(air, seen, clear);
+// A pixel of the terrain: its texture in its light, or the cut earth, and the air before it.
+vec3 surface_seen(vec3 shown, sampler2D light, vec3 position, float mark, vec3 earth, vec3 air,
+                  float haze) {
+    vec2 share = position.xy / extent;
+    vec3 lit = shown * texture(light, drape_uv(share, textureSize(light, 0)), SHARPER).rgb;
+    vec3 seen = cut_or(lit, earth, share, mark);
+    return through_air(seen, air, haze, distance(eye, position), extent);
 }
 #endif
 #endif

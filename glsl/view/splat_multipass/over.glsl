@@ -1,10 +1,12 @@
-// view/splat_multipass/over.glsl -- the land again in another texture, blended over what was drawn of it.
+// view/splat_multipass/over.glsl -- the terrain in another texture, blended over the first.
 //
 //   gives    frame, linear light, over an earlier draw of the same mesh
-//   needs    maths/drape.glsl, maths/number.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl, view/surface.glsl,
-//            view/vertices.glsl; a height 0..1, weights as of texturing/alpha_map, a tile; a
-//            light if there is one, and for tiles of the mesh what view/geomipmap/errors gives
-//   units    metres; colours linear; the tile stands `repeats` times side by side from west to east
+//   needs    maths/drape.glsl, maths/number.glsl, texturing/splat_weights.glsl,
+//            view/splat/surface.glsl, view/surface.glsl, view/vertices.glsl; a height 0..1,
+//            weights as of texturing/alpha_map, a tile; a light if there is one, and for tiles of
+//            the mesh what view/geomipmap/errors gives
+//   units    metres; colours linear; the tile stands `repeats` times side by side from west to
+//            east
 //   source   Belaiche 2010, section 2.6, whose blender does
 //            result = alpha texture + (1 - alpha) previous                              (1)
 //   tested   tests/glsl/test_splat_view.py: four layers give the picture of view/splat
@@ -20,9 +22,9 @@
 //
 // Light and air belong to each draw, since (1) is a mean, and the mean of colours in one light
 // is the mean colour in that light. Equal depth: it draws where the first layer is seen. Where two
-// parts of the land tie in depth, both draw, and the second is blended over the first: at a crest,
-// where the slope beyond begins at the depth of the one in front. There alone, in less than one
-// pixel in ten thousand, the picture differs from that of view/splat by more than 2 of 255.
+// parts of the terrain tie in depth, both draw, and the second is blended over the first: at a
+// crest, where the slope beyond begins at the depth of the one in front. There alone, in less than
+// one pixel in ten thousand, the picture differs from that of view/splat by more than 2 of 255.
 #include "maths/drape.glsl"
 #include "maths/number.glsl"
 #include "texturing/splat_weights.glsl"
@@ -31,29 +33,22 @@
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "frame:rgba16f", blend = "alpha", depth = "equal")
 
-uniform sampler2D height;   //! input("linear")
+#include "view/parameters/mesh.glsl"
 uniform sampler2D weights;  //! input("linear", "mipmap")
 uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
-uniform sampler2D spans;    //! input("black")
-uniform sampler2D errors;   //! input("black")
 
-uniform int detail = 0;               //! menu("full grid", "geomipmap", "morph") group("Mesh") How fine the mesh is where: alike everywhere, by tiles, or by tiles that morph into each other
-uniform int grid = 257;               //! slider(2, 1025) group("Mesh") Vertices a side of the full grid
-uniform float tolerance = 1.0;        //! slider(0, 16) step(0.1) unit("pixels") group("Mesh") How far a coarser level may lie from the land
-uniform float skirt = 0.03;           //! slider(0, 0.5) step(0.005) group("Mesh") How far the cut earth reaches below height 0, over the land's width
-uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
-uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers") How often the tile stands side by side from west to east
-uniform int layer = 1;                //! slider(1, 3) group("Layers") Which channel of the weights is its own, from 0
-uniform int alphas = 0;               //! menu("shares", "as in the map") group("Layers") Its share of what has been drawn so far, or its weight as if it were that
-uniform float haze = 0.0;             //! slider(0, 2) step(0.01) group("Sky") Air between the eye and the land: how much a land's width of it takes away
-uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
+uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers")
+                                      //! How often the tile stands side by side from west to east
+uniform int layer = 1;                //! slider(1, 3) group("Layers")
+                                      //! Which channel of the weights is its own, from 0
+uniform int alphas = 0;               //! menu("shares", "as in the map") group("Layers")
+                                      //! Its share of what has been drawn so far, or its weight as
+                                      //! if it were that
+#include "view/parameters/haze.glsl"
 
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
-    vec4 place = place_of_vertex(height, share_of_vertex(height, detail, corner, tile), corner.z, extent, relief, skirt);
-    position = place.xyz;
-    mark = place.w;
-    return clip_from_world * vec4(position, 1.0);
+    return vertex_of_mesh(height, detail, corner, tile, skirt, position, mark);
 }
 
 vec4 fragment(vec3 position, float mark) {
@@ -62,8 +57,7 @@ vec4 fragment(vec3 position, float mark) {
     vec4 weight = weights_seen(weights, share);
     float own = layer == 1 ? weight.y : layer == 2 ? weight.z : weight.w;
     float alpha = alphas == 1 ? own : alpha_of_layer(weight, layer);
-    float clear = exp(-haze * distance(eye, position) / max(extent.x, extent.y));
-    vec3 seen = surface_seen(shown, light, share, mark, earth, horizon, clear);
+    vec3 seen = surface_seen(shown, light, position, mark, earth, horizon, haze);
     // The cut earth is no mixture, nor is what is not a number.
     if (mark > 0.0 || !is_number(alpha) || seen == NOT_A_NUMBER) alpha = 1.0;
     return vec4(seen, alpha);

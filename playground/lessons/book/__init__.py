@@ -1,11 +1,11 @@
 """The book: lessons as pages that need no network.
 
 build       pictures, then pages, into one folder
-pictures    every picture of every lesson, as WebP
+images      every picture of every lesson, as WebP
 html        Markdown and formulas as HTML
 blocks      each kind of block as HTML
 page        the page around them; the contents
 gallery     the page of the thesis's figures
 book.css    how pages look: narrow and wide, light and dark, on paper
-book.js     what moves: sliders, swiping, choices. Without it all can be read
+book.js     what moves: sliders, swiping, choices; without it everything can still be read
 """

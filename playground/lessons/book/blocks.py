@@ -1,7 +1,7 @@
 """Each kind of block of a lesson as HTML.
 
-Everything is there without a script: all pictures of a series beside each other, both of a
-comparison, answers to be unfolded. The script makes of them what one drags.
+Everything is there without a script: all pictures of a series side by side, both of a
+comparison, answers to be unfolded. The script turns them into sliders and swipes.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.lessons.book.html import Address, code_block, line, plain, prose
-from playground.lessons.bugs import around
+from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import Picture, pictures_in
-from playground.lessons.library import SOURCE
+from playground.lessons.library import SOURCE, Labels
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import (
     Block,
@@ -25,6 +25,7 @@ from playground.lessons.model import (
     Figure,
     Lesson,
     Measure,
+    Named,
     Prose,
     Question,
     Slider,
@@ -39,25 +40,21 @@ class Setting:
     """What the blocks of one lesson are written with."""
 
     lesson: Lesson
-    words: Mapping[str, str]  # around the lesson, in its language
+    label: Labels  # around the lesson, in its language
     numbers: Mapping[str, Number]
     source: Callable[[Picture], str]  # address of a picture
     address: Address
 
-    def line(self, words: str) -> Markup:
-        """Return words within a line, with the numbers in them."""
-        return line(self._filled(words), self.address)
+    def line(self, markdown: str) -> Markup:
+        """Return a text within a line, with the numbers in it."""
+        return line(self._filled(markdown), self.address)
 
-    def prose(self, words: str) -> Markup:
-        """Return words as paragraphs, with the numbers in them."""
-        return prose(self._filled(words), self.address)
-
-    def word(self, key: str, **values: object) -> str:
-        """Return a word of the interface."""
-        return self.words[key].format(**values)
+    def prose(self, markdown: str) -> Markup:
+        """Return a text as paragraphs, with the numbers in it."""
+        return prose(self._filled(markdown), self.address)
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
-        """Return a picture as an element with its size, so that nothing jumps when it comes."""
+        """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
         width, height = picture.scene.pixels
         return tag(
             "img",
@@ -69,37 +66,24 @@ class Setting:
             decoding="async",
         )
 
-    def _filled(self, words: str) -> str:
-        return filled(words, dict(self.numbers), comma=self.lesson.language == "fr")
+    def folded(self, key: str, *inside: Markup | None) -> Markup:
+        """Return what is unfolded by its label."""
+        return tag("details", tag("summary", self.label(key)), tag("div", *inside))
+
+    def titled(self, block: Named, title: str, *inside: Markup | None) -> Markup:
+        """Return the section of a block, under a heading."""
+        heading = tag("h3", title, id=f"{block.name}-title")
+        return tag("section", heading, *inside, id=block.name, class_=type(block).__name__.lower())
+
+    def _filled(self, markdown: str) -> str:
+        return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
 
 
 def block_html(block: Block, setting: Setting, *, first: bool = False) -> Markup:
     """Return a block as HTML; the first picture of a page is loaded at once."""
-    if isinstance(block, Prose):
-        return _prose(block, setting)
     if isinstance(block, Figure):
         return _figure(block, setting, first)
     return _WRITERS[type(block)](block, setting)
-
-
-def _prose(block: Prose, setting: Setting) -> Markup:
-    return setting.prose(block.text if block.kind in ("heading", "code") else block.words)
-
-
-def _figure(block: Figure, setting: Setting, first: bool) -> Markup:
-    (picture,) = pictures_in(block)
-    return tag(
-        "figure",
-        setting.image(picture, lazy=not first),
-        tag("figcaption", setting.line(block.caption), _in_window(setting) if block.sliders else None),
-        id=block.name,
-    )
-
-
-def _in_window(setting: Setting) -> Markup:
-    """Return where a figure can be dragged whose sliders a page cannot have."""
-    command = tag("code", open_command(setting.lesson))
-    return tag("small", setting.word("in_window"), setting.word("colon"), command, class_="in-window")
 
 
 def open_command(lesson: Lesson) -> str:
@@ -108,27 +92,31 @@ def open_command(lesson: Lesson) -> str:
     return f"playground lesson open {lesson.name}{language}"
 
 
+def _prose(block: Prose, setting: Setting) -> Markup:
+    return setting.prose(block.text if block.kind in ("heading", "code") else block.markdown)
+
+
+def _figure(block: Figure, setting: Setting, first: bool) -> Markup:
+    (picture,) = pictures_in(block)
+    dragged = None
+    if block.sliders:  # a page cannot have them
+        label, command = setting.label, tag("code", open_command(setting.lesson))
+        dragged = tag("small", label("in_window"), label("colon"), command, class_="in-window")
+    caption = tag("figcaption", setting.line(block.caption), dragged)
+    return tag("figure", setting.image(picture, lazy=not first), caption, id=block.name)
+
+
 def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: str) -> Markup:
     frames = []
-    pictures = list(pictures_in(block))
-    for index, (picture, label) in enumerate(zip(pictures, labels, strict=True)):
-        caption = block.captions[index] if isinstance(block, Steps) and block.captions else ""
-        # The pictures of a series are told apart by their labels; what they show is said once, above.
-        frames.append(
-            tag(
-                "li",
-                setting.image(picture, alt=f"{name}: {label}"),
-                tag(
-                    "p",
-                    tag("b", label),
-                    Markup(" "),
-                    tag("span", setting.line(caption)) if caption else None,
-                ),
-            )
-        )
+    captions = block.captions if isinstance(block, Steps) and block.captions else [""] * len(labels)
+    for picture, label, caption in zip(pictures_in(block), labels, captions, strict=True):
+        # The pictures of a series differ by their labels; what they show is written once, above.
+        written = tag("span", setting.line(caption)) if caption else None
+        below = tag("p", tag("b", label), Markup(" "), written)
+        frames.append(tag("li", setting.image(picture, alt=f"{name}: {label}"), below))
     return tag(
         "figure",
-        tag("p", plain(block.alt), class_="said"),
+        tag("p", plain(block.alt), class_="visually-hidden"),
         tag("ol", *frames, class_="frames", data_name=name, tabindex=0, aria_label=plain(block.caption)),
         tag("figcaption", setting.line(block.caption)),
         id=block.name,
@@ -138,9 +126,9 @@ def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: st
 
 
 def _steps(block: Steps, setting: Setting) -> Markup:
-    count = len(block.turns)
-    labels = [setting.word("step_of", n=index + 1, m=count) for index in range(count)]
-    return _series(block, setting, labels, setting.word("step"))
+    count = len(block.iterations)
+    labels = [setting.label("step_of", n=index + 1, m=count) for index in range(count)]
+    return _series(block, setting, labels, setting.label("step"))
 
 
 def _slider(block: Slider, setting: Setting) -> Markup:
@@ -152,13 +140,12 @@ def _slider(block: Slider, setting: Setting) -> Markup:
 def _compare(block: Compare, setting: Setting) -> Markup:
     shown = []
     for picture, label in zip(pictures_in(block), block.labels, strict=True):
-        shown.append(
-            tag("li", setting.image(picture, alt=f"{plain(label)}"), tag("p", tag("b", setting.line(label))))
-        )
+        below = tag("p", tag("b", setting.line(label)))
+        shown.append(tag("li", setting.image(picture, alt=plain(label)), below))
     return tag(
         "figure",
-        tag("p", plain(block.alt), class_="said"),
-        tag("ul", *shown, class_="variants", data_swipe=setting.word("swipe")),
+        tag("p", plain(block.alt), class_="visually-hidden"),
+        tag("ul", *shown, class_="variants", data_swipe=setting.label("swipe")),
         tag("figcaption", setting.line(block.caption)),
         id=block.name,
         class_="compare",
@@ -166,130 +153,91 @@ def _compare(block: Compare, setting: Setting) -> Markup:
 
 
 def _code(block: Code, setting: Setting) -> Markup:
-    found = excerpt(block.file, block.anchor)
-    title = setting.word("code_of", file=f"glsl/{block.file}")
+    title = setting.label("code_of", file=f"glsl/{block.file}")
+    caption = setting.line(block.caption) if block.caption else None
     return tag(
         "figure",
-        code_block(found.text, title),
-        tag(
-            "figcaption",
-            setting.line(block.caption) if block.caption else None,
-            Markup(" "),
-            tag("small", title),
-        ),
+        code_block(excerpt(block.file, block.anchor).text, title),
+        tag("figcaption", caption, Markup(" "), tag("small", title)),
         id=block.name,
         class_="listing",
     )
 
 
 def _break(block: Break, setting: Setting) -> Markup:
-    whole, broken = pictures_in(block)
-    before, after = around(block)
-    faulty, mended = setting.word("faulty_code"), setting.word("mended_code")
-    return tag(
-        "section",
-        tag("h3", setting.word("fault"), id=f"{block.name}-title"),
+    label, lines = setting.label, bug_region(block)
+    correct, broken = pictures_in(block)
+    caption = setting.line(block.caption) if block.caption else None
+    file = tag("small", label("code_of", file=f"glsl/{block.file}"))
+    fixed = tag(
+        "figure",
+        setting.image(correct, alt=label("correct")),
+        tag("figcaption", tag("b", label("correct"))),
+    )
+    return setting.titled(
+        block,
+        label("bug"),
         setting.prose(block.ask),
         tag(
             "figure",
             setting.image(broken),
-            tag(
-                "figcaption",
-                tag("b", setting.word("broken")),
-                Markup(" "),
-                setting.line(block.caption) if block.caption else None,
-            ),
+            tag("figcaption", tag("b", label("broken")), Markup(" "), caption),
         ),
-        tag("p", faulty, Markup(" "), tag("small", setting.word("code_of", file=f"glsl/{block.file}"))),
-        code_block(after, faulty),
-        _folded(setting.word("hint"), setting.prose(block.hint)),
-        _folded(
-            setting.word("mend"),
-            setting.prose(block.mend),
-            tag("p", mended),
-            code_block(before, mended),
-            tag(
-                "figure",
-                setting.image(whole, alt=setting.word("whole")),
-                tag("figcaption", tag("b", setting.word("whole"))),
-            ),
+        tag("p", label("broken_code"), Markup(" "), file),
+        code_block(lines.broken, label("broken_code")),
+        setting.folded("hint", setting.prose(block.hint)),
+        setting.folded(
+            "fix",
+            setting.prose(block.fix),
+            tag("p", label("fixed_code")),
+            code_block(lines.correct, label("fixed_code")),
+            fixed,
         ),
-        id=block.name,
-        class_="break",
     )
+
+
+def _choice(block: Question, index: int, setting: Setting) -> Markup:
+    right = "yes" if index == block.right else "no"
+    button = tag("input", type="radio", name=block.name, value=index, data_right=right)
+    return tag("label", button, Markup(" "), tag("span", setting.line(block.choices[index])))
 
 
 def _question(block: Question, setting: Setting) -> Markup:
-    choices = None
+    label, choices = setting.label, None
     if block.choices:
-        rows = [
-            tag(
-                "label",
-                tag(
-                    "input",
-                    type="radio",
-                    name=block.name,
-                    value=index,
-                    data_right="yes" if index == block.right else "no",
-                ),
-                Markup(" "),
-                tag("span", setting.line(choice)),
-            )
-            for index, choice in enumerate(block.choices)
-        ]
         choices = tag(
             "fieldset",
-            tag("legend", setting.word("question"), class_="said"),
-            *rows,
+            tag("legend", label("question"), class_="visually-hidden"),
+            *(_choice(block, index, setting) for index in range(len(block.choices))),
             tag("p", class_="verdict", role="status"),
-            data_right=setting.word("right"),
-            data_wrong=setting.word("wrong"),
+            data_right=label("right"),
+            data_wrong=label("wrong"),
         )
-    return tag(
-        "section",
-        tag("h3", setting.word("question"), id=f"{block.name}-title"),
-        setting.prose(block.ask),
-        choices,
-        _folded(setting.word("answer"), setting.prose(block.answer)),
-        id=block.name,
-        class_="question",
-    )
+    answer = setting.folded("answer", setting.prose(block.answer))
+    return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
 
 
 def _exercise(block: Exercise, setting: Setting) -> Markup:
-    numbers = [each.name for each in setting.lesson.blocks if isinstance(each, Exercise)]
-    picture = None
-    for found in pictures_in(block):
-        picture = tag("figure", setting.image(found))
-    return tag(
-        "section",
-        tag("h3", f"{setting.word('exercise')} {numbers.index(block.name) + 1}", id=f"{block.name}-title"),
+    names = [each.name for each in setting.lesson.blocks if isinstance(each, Exercise)]
+    pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
+    return setting.titled(
+        block,
+        f"{setting.label('exercise')} {names.index(block.name) + 1}",
         setting.prose(block.ask),
-        _folded(setting.word("hint"), setting.prose(block.hint)) if block.hint else None,
-        _folded(setting.word("solution"), setting.prose(block.solution), picture),
-        id=block.name,
-        class_="exercise",
+        setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
+        setting.folded("solution", setting.prose(block.solution), *pictures),
     )
 
 
 def _measure(block: Measure, setting: Setting) -> Markup:
-    if not block.words:
+    if not block.sentence:
         return joined()
-    return tag(
-        "p",
-        tag("b", setting.word("measured"), class_="chip"),
-        Markup(" "),
-        setting.line(block.words),
-        id=block.name,
-        class_="measure",
-    )
-
-
-def _folded(title: str, *inside: Markup | None) -> Markup:
-    return tag("details", tag("summary", title), tag("div", *inside))
+    chip = tag("b", setting.label("measured"), class_="chip")
+    return tag("p", chip, Markup(" "), setting.line(block.sentence), id=block.name, class_="measure")
 
 
 _WRITERS: dict[type[Block], Callable[[Any, Setting], Markup]] = {
+    Prose: _prose,
     Steps: _steps,
     Slider: _slider,
     Compare: _compare,

@@ -31,8 +31,8 @@ from playground.lessons.book.page import (
     lesson_page,
 )
 from playground.lessons.figure_renders import pictures_of
-from playground.lessons.figures import Drawn, ThesisFigure, thesis_figures
-from playground.lessons.library import interface_words
+from playground.lessons.figures import FigurePicture, ThesisFigure, thesis_figures
+from playground.lessons.library import interface_labels
 from playground.lessons.measuring import Number, numbers_of
 from playground.lessons.model import Lesson
 
@@ -88,12 +88,18 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     info = context_info(engine.ctx)
     written = [f"{PICTURES}/{name}" for name in build.names]
     for language, lessons in build.lessons.items():
-        words = interface_words(language)
-        book = Book(language, words, lessons, tuple(build.lessons), info.renderer, bool(build.figures))
+        book = Book(
+            language=language,
+            label=interface_labels(language),
+            lessons=lessons,
+            languages=tuple(build.lessons),
+            renderer=info.renderer,
+            gallery=bool(build.figures),
+        )
         for name, text in _pages(build, book, numbers):
             _write(build.folder / language / name, text)
             written.append(f"{language}/{name}")
-    titles = {language: interface_words(language)["book"] for language in build.lessons}
+    titles = {language: interface_labels(language)["book"] for language in build.lessons}
     _write(build.folder / "index.html", door_page(list(build.lessons), titles))
     for name in ("book.css", "book.js"):
         _write(build.folder / name, (_HERE / name).read_text(encoding="utf-8"))
@@ -106,14 +112,14 @@ def _pages(build: Build, book: Book, numbers: dict[str, dict[str, Number]]) -> I
     covers = {}
     for lesson in book.lessons:
         source = of_picture(build.files[lesson.name], f"../{PICTURES}")
-        setting = Setting(lesson, book.words, numbers[lesson.name], source, book.address)
+        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.address)
         cover = pictures_of(lesson)[0]
         covers[lesson.name] = setting.image(cover, alt="")
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting)
     yield "index.html", contents_page(book, covers)
     if build.figures:
 
-        def address(drawn: Drawn) -> str:
+        def address(drawn: FigurePicture) -> str:
             return f"../{PICTURES}/{build.gallery[drawn.sketch, drawn.shot]}"
 
         yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
@@ -132,15 +138,15 @@ def _begin(folder: Path) -> None:
 
 
 def _forget(folder: Path, written: list[str]) -> None:
-    """Remove what an earlier build wrote and this one did not, and note what this one wrote."""
+    """Remove what an earlier build wrote and this one did not, and list what this one wrote."""
     manifest = folder / MANIFEST
     try:
         before = [str(name) for name in read_json(manifest.read_text(encoding="utf-8"))["files"]]
     except (ValueError, KeyError, TypeError):  # somebody has written into it
         before = []
-    kept = set(written)
+    current = set(written)
     for name in before:
         path = folder / name
-        if name not in kept and ".." not in Path(name).parts and not Path(name).is_absolute():
+        if name not in current and ".." not in Path(name).parts and not Path(name).is_absolute():
             path.unlink(missing_ok=True)
-    _write(manifest, json.dumps({"files": sorted(kept)}, indent=1) + "\n")
+    _write(manifest, json.dumps({"files": sorted(current)}, indent=1) + "\n")

@@ -6,73 +6,58 @@ from collections.abc import Callable, Sequence
 
 from playground.lessons.book.html import line
 from playground.lessons.book.page import Book, command_line
-from playground.lessons.figures import Drawn, ThesisFigure
+from playground.lessons.figures import FigurePicture, ThesisFigure
 from playground.markup import Markup, joined, tag
 
+Source = Callable[[FigurePicture], str]
+"""Gives the address of a picture."""
 
-def gallery_html(book: Book, figures: Sequence[ThesisFigure], source: Callable[[Drawn], str]) -> Markup:
-    """Return all figures that show a result, chapter by chapter; ``source`` gives a picture's address."""
+
+def gallery_html(book: Book, figures: Sequence[ThesisFigure], source: Source) -> Markup:
+    """Return all figures that show a result, chapter by chapter."""
     parts = []
     for chapter in dict.fromkeys(figure.chapter for figure in figures):
         title = f"chapter-{chapter}"
-        items = [
-            _figure(book, figure, source)
-            for figure in figures
-            if figure.chapter == chapter and figure.pictures
-        ]
-        parts.append(
-            tag(
-                "section",
-                tag("h2", f"{book.word('chapter')} {chapter}", id=title),
-                tag("ul", *items, class_="gallery"),
-                aria_labelledby=title,
-            )
-        )
+        shown = [figure for figure in figures if figure.chapter == chapter and figure.pictures]
+        heading = tag("h2", f"{book.label('chapter')} {chapter}", id=title)
+        items = tag("ul", *(_figure(book, figure, source) for figure in shown), class_="gallery")
+        parts.append(tag("section", heading, items, aria_labelledby=title))
     left_out = [
-        tag(
-            "li",
-            f"{book.word('figure', n=figure.number)}{book.word('colon')}",
-            line(figure.captions[book.language], book.address),
-        )
+        tag("li", f"{book.label('figure', n=figure.number)}{book.label('colon')}", _caption(book, figure))
         for figure in figures
         if not figure.pictures
     ]
     if left_out:
-        parts.append(tag("section", tag("h2", book.word("diagrams")), tag("ul", *left_out)))
+        parts.append(tag("section", tag("h2", book.label("diagrams")), tag("ul", *left_out)))
     return joined(*parts)
 
 
-def _figure(book: Book, figure: ThesisFigure, source: Callable[[Drawn], str]) -> Markup:
-    number = book.word("figure", n=figure.number)
-    caption = line(figure.captions[book.language], book.address)
-    images = [
-        tag(
-            "figure",
-            tag(
-                "img",
-                src=source(drawn),
-                # The caption, beside it, says what the thesis shows; this says which picture it is.
-                alt=f"{number}, {drawn.sketch}: {drawn.scene.sketch.title}",
-                width=drawn.scene.pixels[0],
-                height=drawn.scene.pixels[1],
-                loading="lazy",
-                decoding="async",
-            ),
-            tag(
-                "details",
-                tag("summary", book.word("parameters")),
-                tag(
-                    "dl",
-                    *(each for row in drawn.parameters for each in (tag("dt", row[0]), tag("dd", row[1]))),
-                ),
-            ),
-            command_line(drawn.command),
-        )
-        for drawn in figure.pictures
-    ]
+def _figure(book: Book, figure: ThesisFigure, source: Source) -> Markup:
+    number = book.label("figure", n=figure.number)
     return tag(
         "li",
-        tag("h3", f"{number}. ", caption),
-        *images,
+        tag("h3", f"{number}. ", _caption(book, figure)),
+        *(_picture(book, number, picture, source) for picture in figure.pictures),
         id=f"figure-{figure.number.replace('.', '-')}",
     )
+
+
+def _caption(book: Book, figure: ThesisFigure) -> Markup:
+    return line(figure.captions[book.language], book.address)
+
+
+def _picture(book: Book, number: str, picture: FigurePicture, source: Source) -> Markup:
+    width, height = picture.scene.pixels
+    image = tag(
+        "img",
+        src=source(picture),
+        # The caption describes what the thesis shows; this identifies the picture.
+        alt=f"{number}, {picture.sketch}: {picture.scene.sketch.title}",
+        width=width,
+        height=height,
+        loading="lazy",
+        decoding="async",
+    )
+    rows = (each for row in picture.parameters for each in (tag("dt", row[0]), tag("dd", row[1])))
+    parameters = tag("details", tag("summary", book.label("parameters")), tag("dl", *rows))
+    return tag("figure", image, parameters, command_line(picture.command))

@@ -15,24 +15,24 @@ from playground.lessons.markdown import parser
 from playground.markup import Markup, tag
 
 Address = Callable[[str], str]
-"""What gives a link its address in the book: "lesson:fourier" → "fourier.html"."""
+"""Maps a link to its address in the book: "lesson:fourier" → "fourier.html"."""
 
 
-def prose(words: str, address: Address) -> Markup:
+def prose(markdown: str, address: Address) -> Markup:
     """Return blocks of Markdown as HTML."""
-    return Markup(_renderer(words, address, inline=False))
+    return Markup(_rendered(markdown, address, inline=False))
 
 
-def line(words: str, address: Address) -> Markup:
+def line(markdown: str, address: Address) -> Markup:
     """Return Markdown within a line as HTML; of several paragraphs, one after the other."""
-    if "\n\n" in words:
-        return prose(words, address)
-    return Markup(_renderer(words, address, inline=True))
+    if "\n\n" in markdown:
+        return prose(markdown, address)
+    return Markup(_rendered(markdown, address, inline=True))
 
 
-def plain(words: str) -> str:
+def plain(markdown: str) -> str:
     """Return Markdown within a line as plain text, formulas as they are written."""
-    tokens = parser().parseInline(words)[0].children or []
+    tokens = parser().parseInline(markdown)[0].children or []
     return "".join(
         token.content for token in tokens if token.type in ("text", "code_inline", "math_inline", "softbreak")
     )
@@ -45,7 +45,7 @@ def formula(latex: str, *, alone: bool = False) -> Markup:
 
 @lru_cache(maxsize=512)
 def code(text: str) -> Markup:
-    """Return GLSL as HTML, its words marked with classes."""
+    """Return GLSL as HTML, its tokens marked with classes."""
     from pygments import highlight
     from pygments.formatters import HtmlFormatter
     from pygments.lexers.graphics import GLShaderLexer
@@ -55,7 +55,7 @@ def code(text: str) -> Markup:
 
 
 def code_block(text: str, label: str) -> Markup:
-    """Return GLSL as a block that can be scrolled by keys where it is too wide."""
+    """Return GLSL as a block that the keyboard can scroll where it is too wide."""
     return tag("pre", tag("code", code(text)), class_="code", tabindex=0, role="group", aria_label=label)
 
 
@@ -91,8 +91,8 @@ class _Renderer(RendererHTML):
         return code_block(text, token.info or "code") if token.info == "glsl" else str(_plain_block(text))
 
 
-def _renderer(words: str, address: Address, *, inline: bool) -> str:
+def _rendered(markdown: str, address: Address, *, inline: bool) -> str:
     found = parser()
     found.renderer = _Renderer(found)
     env: dict[str, Any] = {"address": address}
-    return str(found.renderInline(words, env) if inline else found.render(words, env))
+    return str(found.renderInline(markdown, env) if inline else found.render(markdown, env))

@@ -17,22 +17,22 @@ from playground.lessons.figure_renders import Picture, draw, pictures_of
 from playground.lessons.model import Lesson, Scene
 
 QUALITY = 84
-"""Of WebP: noise in a texture costs most, and shows least when it is a little wrong."""
+"""Of WebP: noise in a texture costs most, and errors in it are least visible."""
 
 EFFORT = 50
-"""Of WebP without loss, whose quality is but the time it takes: more made nothing smaller."""
+"""Of lossless WebP, where quality only means time: more made nothing smaller."""
 
 SHARPER = 1.5
 """Pixels drawn for each of a page's, each way: screens have more than one."""
 
 
 FEW_COLOURS = 2048
-"""Colours that a diagram has at most; a land has tens of thousands."""
+"""Colours that a diagram has at most; terrain has tens of thousands."""
 
 
 @dataclass
 class Album:
-    """The pictures of a book: where they are to be, and how each is drawn; one that is drawn twice is one."""
+    """The pictures of a book: their files, and what each shows; equal pictures share a file."""
 
     folder: Path
     wanted: dict[str, Scene] = field(default_factory=dict)  # file name → what it shows
@@ -70,7 +70,7 @@ class Album:
 
 
 def store(path: Path, picture: NDArray[np.uint8]) -> None:
-    """Write a picture as WebP: a diagram as it is, a land nearly so."""
+    """Write a picture as WebP: a diagram without loss, terrain nearly so."""
     exact = is_diagram(picture)
     with replacing(path) as handle:
         image = Image.fromarray(picture).convert("RGB")
@@ -81,7 +81,7 @@ def store(path: Path, picture: NDArray[np.uint8]) -> None:
 
 
 def is_diagram(picture: NDArray[np.uint8]) -> bool:
-    """Say whether a picture has few colours: its thin lines suffer from what lands do not mind."""
+    """Whether a picture has few colours: compression damages its thin lines, which terrain tolerates."""
     colours = picture[..., :3].astype(np.uint32) @ np.array([1, 256, 65536], np.uint32)
     return np.unique(colours).size <= FEW_COLOURS
 

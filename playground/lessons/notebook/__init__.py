@@ -1,10 +1,10 @@
-"""Lessons as Jupyter notebooks: figures with sliders, code to mend in a cell.
+"""Lessons as Jupyter notebooks: figures with sliders, code to fix in a cell.
 
     from playground.lessons.notebook import open_lesson
 
     lesson = open_lesson("diamond_square", language="en")
     lesson.show("land")                    # a block by its name: its picture, with sliders
-    lesson.mend("fault", '''…''')          # the picture that other lines of a shader make
+    lesson.fix("fault", '''…''')          # the picture that other lines of a shader make
 
 Pictures are drawn by the notebook's own Python, without a window. Sliders need the extra
 ``notebook`` (anywidget); without it each block is a picture, as it stands in the lesson.

@@ -1,4 +1,4 @@
-"""Write a lesson as a Jupyter notebook: its words as Markdown, a cell of code for each picture."""
+"""Write a lesson as a Jupyter notebook: its texts as Markdown, a cell of code for each picture."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from playground.errors import DataError
-from playground.lessons.bugs import around
+from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
-from playground.lessons.library import SOURCE, THESIS, interface_words
+from playground.lessons.library import SOURCE, THESIS, interface_labels
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import (
     Block,
@@ -57,74 +57,74 @@ class _Writer:
 
     def __init__(self, lesson: Lesson, numbers: Mapping[str, Number]) -> None:
         self.lesson = lesson
-        self.numbers = dict(numbers)
-        self.words = interface_words(lesson.language)
+        self.numbers = numbers
+        self.label = interface_labels(lesson.language)
 
     def cells(self) -> Iterator[tuple[str, str]]:
         """Yield all cells."""
-        lesson, words = self.lesson, self.words
-        minutes = words["minutes"].format(n=lesson.minutes)
-        head = f"{words['lesson']} {lesson.number} · {minutes}\n\n# {lesson.title}"
-        goal = f"**{words['goal']}**{words['colon']}{lesson.goal}"
-        yield "markdown", f"{head}\n\n{goal}\n\n{words['run_first']}"
+        lesson, label = self.lesson, self.label
+        minutes = label("minutes", n=lesson.minutes)
+        head = f"{label('lesson')} {lesson.number} · {minutes}\n\n# {lesson.title}"
+        goal = f"**{label('goal')}**{label('colon')}{lesson.goal}"
+        yield "markdown", f"{head}\n\n{goal}\n\n{label('run_first')}"
         language = "" if lesson.language == SOURCE else f', language="{lesson.language}"'
         opening = f'lesson = open_lesson("{lesson.name}"{language})'
         yield "code", f"from playground.lessons.notebook import open_lesson\n\n{opening}"
         for block in lesson.blocks:
             yield from self.block(block)
-        sections = ", ".join(words["section"].format(n=number) for number in lesson.thesis)
+        sections = ", ".join(label("section", n=number) for number in lesson.thesis)
         papers = "\n".join(f"- {paper}" for paper in lesson.papers)
-        thesis = f"## {words['thesis']}\n\n{THESIS}{words['colon']}{sections}."
-        yield "markdown", f"{thesis}\n\n## {words['papers']}\n\n{papers}"
+        thesis = f"## {label('thesis')}\n\n{THESIS}{label('colon')}{sections}."
+        yield "markdown", f"{thesis}\n\n## {label('papers')}\n\n{papers}"
 
     def block(self, block: Block) -> Iterator[tuple[str, str]]:
-        """Yield the cells of a block; what it says stands before the code that draws it."""
-        words, said = self.words, self.said
+        """Yield the cells of a block: its text, then the code that draws it."""
+        label, text = self.label, self.text
         if isinstance(block, Prose):
             mark = f"{'#' * block.level} " if block.kind == "heading" else ""
-            yield "markdown", said(f"{mark}{block.words}")
+            yield "markdown", text(f"{mark}{block.markdown}")
         elif isinstance(block, Figure | Steps | Slider | Compare):
-            yield "markdown", f"*{said(block.caption)}*"
+            yield "markdown", f"*{text(block.caption)}*"
             yield "code", f'lesson.show("{block.name}")'
         elif isinstance(block, Code):
-            title = words["code_of"].format(file=f"glsl/{block.file}")
-            caption = f"{said(block.caption)} " if block.caption else ""
+            title = label("code_of", file=f"glsl/{block.file}")
+            caption = f"{text(block.caption)} " if block.caption else ""
             yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
         elif isinstance(block, Break):
-            yield "markdown", f"### {words['fault']}\n\n{said(block.ask)}"
+            yield "markdown", f"### {label('bug')}\n\n{text(block.ask)}"
             yield "code", f'lesson.show("{block.name}")'
-            yield "markdown", words["your_turn"]
-            yield "code", f'lesson.mend("{block.name}", r"""\n{around(block)[1]}\n""")'
-            folded = (self.folded("hint", block.hint), self.folded("mend", block.mend))
+            yield "markdown", label("your_task")
+            yield "code", f'lesson.fix("{block.name}", r"""\n{bug_region(block).broken}\n""")'
+            folded = (self.folded("hint", block.hint), self.folded("fix", block.fix))
             yield "markdown", "\n\n".join(folded)
         elif isinstance(block, Question):
-            choices = "".join(f"\n- {said(choice)}" for choice in block.choices)
-            asked = f"### {words['question']}\n\n{said(block.ask)}\n{choices}".rstrip()
+            choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
+            asked = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
             yield "markdown", f"{asked}\n\n{self.folded('answer', block.answer)}"
         elif isinstance(block, Exercise):
             yield "markdown", self.exercise(block)
-        elif isinstance(block, Measure) and block.words:
-            yield "markdown", said(block.words)
+        elif isinstance(block, Measure) and block.sentence:
+            yield "markdown", text(block.sentence)
             yield "code", f'lesson.measure("{block.name}")'
 
     def exercise(self, block: Exercise) -> str:
         """Return an exercise, its solution folded away."""
         others = [one.name for one in self.lesson.blocks if isinstance(one, Exercise)]
-        parts = [f"### {self.words['exercise']} {others.index(block.name) + 1}", self.said(block.ask)]
+        parts = [f"### {self.label('exercise')} {others.index(block.name) + 1}", self.text(block.ask)]
         if block.hint:
             parts.append(self.folded("hint", block.hint))
         parts.append(self.folded("solution", block.solution))
         return "\n\n".join(parts)
 
-    def folded(self, key: str, words: str) -> str:
-        """Return words that are shown when they are asked for."""
-        return f"<details><summary>{self.words[key]}</summary>\n\n{self.said(words)}\n\n</details>"
+    def folded(self, key: str, markdown: str) -> str:
+        """Return a text that is unfolded by its label."""
+        return f"<details><summary>{self.label(key)}</summary>\n\n{self.text(markdown)}\n\n</details>"
 
-    def said(self, words: str) -> str:
-        """Return words with their numbers, and with links that a notebook can follow."""
-        return _LINK.sub(_linked, filled(words, self.numbers, comma=self.lesson.language == "fr"))
+    def text(self, markdown: str) -> str:
+        """Return a text with its numbers, and with links that a notebook can follow."""
+        return _LINK.sub(_linked, filled(markdown, self.numbers, comma=self.lesson.language == "fr"))
 
 
 def _linked(match: re.Match[str]) -> str:
-    words, kind, what = match.groups()
-    return f"[{words}]({what}.ipynb)" if kind == "lesson" else words
+    text, kind, what = match.groups()
+    return f"[{text}]({what}.ipynb)" if kind == "lesson" else text

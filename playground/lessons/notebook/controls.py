@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from playground.lessons.library import Labels
 from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
 from playground.lessons.scenes import with_value
 from playground.lessons.values import spelled_value
@@ -35,23 +36,21 @@ class Control:
         return asdict(self)
 
 
-def controls_of(
-    block: Figure | Steps | Slider | Compare, language: str, words: Mapping[str, str]
-) -> list[Control]:
+def controls_of(block: Figure | Steps | Slider | Compare, language: str, label: Labels) -> list[Control]:
     """Return what can be dragged of a block."""
     if isinstance(block, Figure):
         assert block.scene is not None
-        return [found for path in block.sliders for found in _parameter(block.scene, path, words)]
+        return [found for path in block.sliders for found in _parameter(block.scene, path, label)]
     if isinstance(block, Steps):
-        label = words["step"]
-        names = tuple(words["turn"].format(n=turn) for turn in block.turns)
+        name = label("step")
+        names = tuple(label("iteration", n=number) for number in block.iterations)
     elif isinstance(block, Slider):
-        label = block.label or block.parameter
+        name = block.label or block.parameter
         names = tuple(spelled_value(block, value, language) for value in block.values)
     else:
-        return [Control("frame", words["show"], "choice", 0.0, choices=block.labels)]
+        return [Control("frame", label("show"), "choice", 0.0, choices=block.labels)]
     start = 0 if isinstance(block, Steps) else len(names) // 2
-    return [Control("frame", label, "range", float(start), 0.0, len(names) - 1.0, 1.0, names)]
+    return [Control("frame", name, "range", float(start), 0.0, len(names) - 1.0, 1.0, names)]
 
 
 def scene_at(block: Figure | Steps | Slider | Compare, values: Mapping[str, float]) -> Scene:
@@ -77,7 +76,7 @@ def _parts(path: str) -> tuple[str, str]:
     return f"{path}:0", f"{path}:1"
 
 
-def _parameter(scene: Scene, path: str, words: Mapping[str, str]) -> list[Control]:
+def _parameter(scene: Scene, path: str, label: Labels) -> list[Control]:
     parameter = resolve(scene.sketch.graph, path)[0].parameter
     value = value_of(scene.sketch, path, values_of(scene.sketch))
     widget = parameter.widget
@@ -88,8 +87,8 @@ def _parameter(scene: Scene, path: str, words: Mapping[str, str]) -> list[Contro
     if widget.kind == "direction" and isinstance(value, tuple):
         azimuth, elevation = _parts(path)
         return [
-            Control(azimuth, words["azimuth"], "range", value[0] % 360.0, 0.0, 360.0, 0.5, unit="°"),
-            Control(elevation, words["elevation"], "range", float(value[1]), -90.0, 90.0, 0.5, unit="°"),
+            Control(azimuth, label("azimuth"), "range", value[0] % 360.0, 0.0, 360.0, 0.5, unit="°"),
+            Control(elevation, label("elevation"), "range", float(value[1]), -90.0, 90.0, 0.5, unit="°"),
         ]
     if isinstance(value, tuple | str) or widget.low is None or widget.high is None:
         return []  # other vectors and files are set in code: with_values

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -12,10 +13,10 @@ from typing import Any, TypeVar
 from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.errors import SketchError, nearest
-from playground.lessons.bugs import region
+from playground.errors import PlaygroundWarning, SketchError, nearest
+from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import broken, draw
-from playground.lessons.library import SOURCE, interface_words
+from playground.lessons.library import SOURCE, interface_labels
 from playground.lessons.measuring import measured
 from playground.lessons.model import (
     Break,
@@ -47,10 +48,10 @@ def _engine() -> Engine:
 
 
 def on_engine(work: Callable[[Engine], T]) -> T:
-    """Return what some work gives with the engine that all lessons of this process draw with.
+    """Run some work on the engine that all lessons of this process share, and return its result.
 
     The engine has a thread of its own: a context draws in one thread only, and a notebook
-    answers what is dragged in another than its cells run in.
+    answers its sliders in another than its cells run in.
     """
     return _THREAD.submit(lambda: work(_engine())).result()
 
@@ -61,14 +62,14 @@ def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:
 
 
 @dataclass(frozen=True, eq=False)
-class Mended(Frame):
-    """The picture that mended lines make, with a word on whether it is the whole one."""
+class Fixed(Frame):
+    """The picture that edited lines make, with a verdict: whether the bug is fixed."""
 
-    word: str = ""
+    verdict: str = ""
 
     def _repr_html_(self) -> str:
         source = f"data:image/png;base64,{b64encode(self._repr_png_()).decode()}"
-        return tag("p", self.word) + tag("img", src=source, alt=self.word)
+        return tag("p", self.verdict) + tag("img", src=source, alt=self.verdict)
 
 
 class NotebookLesson:
@@ -76,7 +77,7 @@ class NotebookLesson:
 
     def __init__(self, lesson: Lesson) -> None:
         self.lesson = lesson
-        self.words: Mapping[str, str] = interface_words(lesson.language)
+        self.label = interface_labels(lesson.language)
 
     def show(self, name: str) -> Any:
         """Return what a notebook shows of a block: a picture, with sliders where it has some.
@@ -99,21 +100,26 @@ class NotebookLesson:
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' measures nothing")
         return on_engine(lambda engine: measured(engine, block)).value
 
-    def mend(self, name: str, lines: str) -> Mended:
-        """Return the picture that a fault's shader makes with other lines in place of the faulty ones.
+    def fix(self, name: str, lines: str) -> Fixed:
+        """Return the picture that a shader makes with other lines in place of those with the bug.
 
         Raises ``ShaderError`` naming what is wrong with the lines.
         """
         block = self._block(name)
         if not isinstance(block, Break) or block.scene is None:
-            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no fault to mend")
-        text = region(block).with_lines(lines)
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no bug to fix")
+        text = bug_region(block).with_lines(lines)
         path = str((GLSL / block.file).resolve())
         sketch = block.scene.sketch.plainly()  # what is compared is the text, not a fast variant
         tried = replace(block.scene, sketch=with_texts(sketch, {path: text}), plain=False)
-        frame, whole = self._frame(tried), self._frame(replace(block.scene, sketch=sketch))
-        same = bool((frame.array == whole.array).all())
-        return Mended(frame.array, frame.sketch, frame.time, self.words["mended" if same else "not_yet"])
+        frame, correct = self._frame(tried), self._frame(replace(block.scene, sketch=sketch))
+        fixed = bool((frame.array == correct.array).all())
+        return Fixed(frame.array, frame.sketch, frame.time, self.label("fixed" if fixed else "not_yet"))
+
+    def mend(self, name: str, lines: str) -> Fixed:
+        """Fix a bug, as notebooks of earlier versions call it."""
+        warnings.warn("lesson.mend is called lesson.fix now", PlaygroundWarning, stacklevel=2)
+        return self.fix(name, lines)
 
     def _block(self, name: str) -> Named:
         named = self.lesson.named
@@ -125,7 +131,7 @@ class NotebookLesson:
         return on_engine(lambda engine: draw(engine, scene))
 
     def _dragged(self, block: Figure | Steps | Slider | Compare) -> Any:
-        controls = controls_of(block, self.lesson.language, self.words)
+        controls = controls_of(block, self.lesson.language, self.label)
 
         def png(values: Mapping[str, float]) -> bytes:
             return self._frame(scene_at(block, values))._repr_png_()

@@ -55,7 +55,7 @@ def draw_break(block: Break, page: Page) -> None:
             with page.look.font(page.look.bold):
                 imgui.text_wrapped(page.say("mended"))
         if state in (MENDED, TOLD):
-            page.text(block.mend)
+            page.text(block.fix)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 

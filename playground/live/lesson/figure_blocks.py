@@ -38,7 +38,7 @@ def draw_steps(block: Steps, page: Page) -> None:
         _player(block, page, at, last)
         imgui.set_next_item_width(-1)
         chosen = slide_whole(
-            "##turns", at, (0, last), lambda n: page.say("turn", block.turns[n], block.turns[-1])
+            "##turns", at, (0, last), lambda n: page.say("turn", block.iterations[n], block.iterations[-1])
         )
         if chosen is not None:
             reading.playing = ""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.model import Lesson, Words
+from playground.lessons.model import Lesson, Markdown
 from playground.live import theme
 from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.prose import Prose
@@ -41,7 +41,7 @@ class Page:
         """Return words of the interface."""
         return words_in(self.reading.language)[key].format(*given)
 
-    def text(self, words: Words, *, size: float = TEXT, dim: bool = False) -> None:
+    def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
         if words:
             ink = theme.packed(theme.DIM if dim else theme.INK)

@@ -13,7 +13,7 @@ from playground.live.lesson.page import Page
 
 def draw_prose(block: Prose, page: Page) -> None:
     """Draw a paragraph, a list, a table, a formula."""
-    words = f"{'#' * block.level} {block.words}" if block.kind == "heading" else block.words
+    words = f"{'#' * block.level} {block.markdown}" if block.kind == "heading" else block.markdown
     page.text(words)
 
 
@@ -54,14 +54,14 @@ def draw_measure(block: Measure, page: Page) -> None:
     """Draw a number that is computed here and now, in its sentence where it has one."""
     reading = page.reading
     failed = reading.numbers.failed.get((page.lesson.name, block.name))
-    if not block.words and failed is None:
+    if not block.sentence and failed is None:
         return  # it stands in the prose
     with page.frame(block.name, theme.LINE):
-        waits = any(reading.numbers.waits(page.lesson, name) for name in named_in(block.words))
+        waits = any(reading.numbers.waits(page.lesson, name) for name in named_in(block.sentence))
         page.label(page.say("measuring") if waits else page.say("measured"))
         if failed is not None:
             page.text(page.say("unmeasured", failed), size=theme.SMALL, dim=True)
-        page.text(block.words)
+        page.text(block.sentence)
 
 
 def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -> None:

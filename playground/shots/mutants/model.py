@@ -25,7 +25,7 @@ class Edit:
     put: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Rendering:
     """A mutant that the engine draws: something is broken in the sketch."""
 

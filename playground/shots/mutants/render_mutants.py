@@ -34,17 +34,17 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
     if unknown := entry.keys() - _KEYS:
         raise DataError(f"mutant '{name}': no key '{min(unknown)}'; there are {sorted(_KEYS)}", file=table)
     mutant = Rendering(
-        name,
-        entry["broke"],
-        tuple(Edit(edit["file"], edit["find"], edit["put"]) for edit in entry.get("edit", ())),
-        tuple(entry.get("set", {}).items()),
-        tuple(entry.get("plus", {}).items()),
-        tuple(entry.get("times", {}).items()),
-        tuple(entry.get("wire", {}).items()),
-        entry.get("samples"),
-        entry.get("later", 0.0),
-        entry.get("turns", 0),
-        entry.get("shot", ""),
+        name=name,
+        broke=entry["broke"],
+        edits=tuple(Edit(edit["file"], edit["find"], edit["put"]) for edit in entry.get("edit", ())),
+        values=tuple(entry.get("set", {}).items()),
+        plus=tuple(entry.get("plus", {}).items()),
+        times=tuple(entry.get("times", {}).items()),
+        wires=tuple(entry.get("wire", {}).items()),
+        samples=entry.get("samples"),
+        later=entry.get("later", 0.0),
+        turns=entry.get("turns", 0),
+        shot=entry.get("shot", ""),
     )
     broken = (
         mutant.edits,

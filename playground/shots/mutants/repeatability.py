@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import os
-import pickle
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import copyfile
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from playground.errors import PlaygroundError
 from playground.gpu.context import ContextInfo
 from playground.paths import GLSL, SKETCHES
+from playground.process.messages import UnexpectedError
+from playground.process.worker import Launch, Worker, WorkerDied, WorkerTimeout
 from playground.shots.mutants.harmless import Drawing, Process, processes
-from playground.shots.mutants.redraw import Task
+from playground.shots.mutants.redraw_handler import Subject
 from playground.shots.mutants.tiers import judged
 from playground.shots.suite import Taken
 from playground.sketch.allowed_files import is_absolute, is_file
@@ -26,7 +25,7 @@ from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.variants import any_variants
 
 LIMIT = 600.0
-"""[s] A process of a few drawings may take that long, on a slow machine with a cold shader cache."""
+"""[s] A drawing may take that long, on a slow machine with a cold shader cache."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ def again(
 ) -> Iterator[Redrawn]:
     """Yield what came of each of ``count`` drawings of a shot, that should be the expected picture.
 
-    A process that dies or takes longer than ``limit`` seconds counts as refused drawings.
+    A process that dies, or takes longer than ``limit`` seconds over a drawing, counts as refused drawings.
     """
     for process in processes(count, _drivers(sketch, renderer)):
         pictures = _drawn_by(process, sketch, shot, software, device, limit)
@@ -93,33 +92,34 @@ def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
 def _drawn_by(
     process: Process, sketch: Sketch, shot: Shot, software: bool, device: int | None, limit: float
 ) -> list[Taken | str]:
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
+    """Return the image of each drawing, the last an error's text where one fails."""
+    found: list[Taken | str] = []
+    with TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         file = _moved(sketch, folder / "moved") if process.moved else sketch.file
-        environment = {**os.environ, **dict(process.environment)}
-        # The child finds the same playground as this process, however that was found.
-        environment["PYTHONPATH"] = os.pathsep.join(p or str(Path.cwd()) for p in sys.path)
+        environment = dict(process.environment)
         if process.cold:
             environment["MESA_SHADER_CACHE_DIR"] = str(folder / "cache")
-        task = Task(file, shot, process.drawings, software, device)
+        launch = Launch(
+            handler="playground.shots.mutants.redraw_handler",
+            options=Subject(file, shot, software, device),
+            limit_seconds=limit,
+            environment=environment,
+            folder=folder if process.elsewhere else None,
+        )
         try:
-            done = subprocess.run(
-                [sys.executable, "-P", "-m", "playground.shots.mutants.redraw"],
-                input=pickle.dumps(task),
-                capture_output=True,
-                env=environment,
-                cwd=folder if process.elsewhere else None,
-                timeout=limit,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return [f"the process took more than {limit:g} s and was stopped"]
-        try:
-            found: list[Taken | str] = pickle.loads(done.stdout)
-        except (EOFError, pickle.UnpicklingError):
-            said = done.stderr.decode(errors="replace").strip()
-            return [f"the process died, with status {done.returncode}{': ' if said else ''}{said[-500:]}"]
-        return found
+            with Worker(launch) as worker:
+                for drawing in process.drawings:
+                    taken = worker.ask(drawing, limit)
+                    assert isinstance(taken, Taken)
+                    found.append(taken)
+        except WorkerTimeout:
+            found.append(f"the process took more than {limit:g} s and was stopped")
+        except WorkerDied as died:
+            found.append(f"the process {died.report.ending}{died.report.last_lines}")
+        except (PlaygroundError, UnexpectedError, MemoryError) as error:
+            found.append(str(error) or type(error).__name__)
+    return found
 
 
 def _moved(sketch: Sketch, folder: Path) -> str:

@@ -27,7 +27,7 @@ ROUNDING = 1
 """[levels of 255] What a sum that is rounded the other way changes; no defect can be told from it."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Result:
     """What came of one mutant."""
 
@@ -161,13 +161,13 @@ class Bench:
             try:
                 sketch = broken(mutant, self.sketch.for_shot(shot))
             except DoesNotApply as reason:
-                return Result(mutant, shot.name, why_not=str(reason))
+                return Result(mutant=mutant, shot=shot.name, why_not=str(reason))
             taken = self._take(sketch, shot, shot.time + mutant.later)
         else:
             taken = replace(expected, array=mutant.change(expected.array))
         tiers = judged(taken, expected, self.engine.info)
         comparison = compare(taken.array, expected.array)
-        return Result(mutant, shot.name, comparison, tiers, picture=taken.array)
+        return Result(mutant=mutant, shot=shot.name, comparison=comparison, tiers=tiers, picture=taken.array)
 
 
 def survivors(results: Sequence[Result], tier: int) -> list[str]:

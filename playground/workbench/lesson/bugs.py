@@ -15,7 +15,7 @@ import numpy as np
 
 from playground.errors import PlaygroundError
 from playground.lessons.excerpt import Excerpt, excerpt
-from playground.lessons.figure_renders import Picture, draw, faulty
+from playground.lessons.figure_renders import Picture, draw, with_bug
 from playground.lessons.model import Break, Code, Scene
 from playground.paths import GLSL, shown
 from playground.sketch.model import kernels_of
@@ -69,7 +69,7 @@ class Faults:
         self.leave()
         path = file_of(block)
         try:
-            text = self.typed.get(block.name) or faulty(block)
+            text = self.typed.get(block.name) or with_bug(block)
         except PlaygroundError as error:
             self.actions.say(str(error))
             return
@@ -78,7 +78,7 @@ class Faults:
         self._open(block, path, text, line)
         self._on, self.state[block.name] = block, BROKEN
         self.stage.show(block.scene, (block.name, 1), self.texts)
-        self._to_check = text != faulty(block)
+        self._to_check = text != with_bug(block)
 
     def focus(self, block: Break) -> None:
         """Bring the copy of a fault to the front, also where its window was closed."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from playground.errors import PlaygroundError
 from playground.lessons.measuring import Number, filled, measured, named_in
-from playground.lessons.model import Block, Lesson, Measure, Words, words_of
+from playground.lessons.model import Block, Lesson, Markdown, Measure, texts_of
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.session import Session
 
@@ -24,7 +24,7 @@ class Numbers:
 
     def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
         """Ask for all numbers that blocks of a lesson show."""
-        names = {name for block in blocks for words in words_of(block) for name in named_in(words)}
+        names = {name for block in blocks for text in texts_of(block) for name in named_in(text)}
         names |= {block.name for block in blocks if isinstance(block, Measure)}
         found = self.known.setdefault(lesson.name, {})
         self.wanted = [
@@ -57,6 +57,6 @@ class Numbers:
             self.failed[lesson, measure.name] = error.diagnostics[0].message
         return True
 
-    def fill(self, words: Words, lesson: Lesson) -> Words:
-        """Return words with the numbers of now; "…" stands for one that is not there yet."""
-        return filled(words, self.known.get(lesson.name, {}), comma=lesson.language == "fr")
+    def fill(self, text: Markdown, lesson: Lesson) -> Markdown:
+        """Return a text with today's numbers; "…" for one that is not computed yet."""
+        return filled(text, self.known.get(lesson.name, {}), comma=lesson.language == "fr")

@@ -1,37 +1,36 @@
 // generation/delaunay/picture/circles.glsl -- the circles through the corners of triangles.
 //
 //   gives    frame, colours times their cover, over an earlier frame
-//   needs    generation/delaunay/picture/drawn.glsl
+//   needs    generation/delaunay/picture/{drawn,parameters/points,parameters/triangles}.glsl
 //   units    pixels; colours linear
 //   source   Belaiche 2010, section 1.3.8, figures 1.26 to 1.28
 //   tested   tests/glsl/test_delaunay.py, by the picture's own pixels
 #include "generation/delaunay/picture/drawn.glsl"
-#pragma draw(mesh = "triangles", count = "2 * points + 2", output = "frame:rgba16f", depth = "none", blend = "alpha", samples = 1)
+#pragma draw(mesh = "triangles", count = "2 * points + 2", output = "frame:rgba16f", \
+             depth = "none", blend = "alpha", samples = 1)
 
-uniform sampler2D places;      //! input
-uniform sampler2D triangles;   //! input
-uniform sampler2D neighbours;  //! input
-uniform sampler2D last;        //! input
-uniform int points = 1000;     //! slider(0, 10000) No more points than this are drawn
+#include "generation/delaunay/picture/parameters/points.glsl"
+#include "generation/delaunay/picture/parameters/triangles.glsl"
 uniform int circles = 1;       //! menu("none", "all", "marked") Which triangles show their circle
-uniform int marked = 0;        //! menu("nothing", "an edge", "a flip", "the last insertion") What is marked
-uniform int number = 0;        //! slider(0, 60000) Which edge, three to each triangle, or which flip of the last insertion
-uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") parts("left", "lower", "right", "upper") The part of the picture that it takes: its lower left, its upper right
-uniform float margin = 0.1;    //! slider(0, 0.45) step(0.01) group("Picture") Room around the land, over the window
-uniform float line = 1.5;      //! slider(0, 8) step(0.1) group("Picture") Width of edges and circles; 0: none
+uniform float line = 1.5;      //! slider(0, 8) step(0.1) group("Picture") Width of edges and
+                               //! circles; 0: none
 uniform vec4 circle = vec4(0.08, 0.28, 0.62, 0.7);  //! colour group("Colours") Circles
 
 // Middle and radius in pixels; a radius below 0 where there is no such circle.
 vec3 circle_of(int element) {
     ivec3 triangle = ivec3(-1);
-    if (circles == 1 && element < triangles_of(last)) triangle = ivec3(entry(triangles, element).xyz);
-    if (circles == 2) triangle = marked_triangle(triangles, neighbours, last, marked, number, element);
+    if (circles == 1 && element < triangles_of(last)) {
+        triangle = ivec3(entry(triangles, element).xyz);
+    } else if (circles == 2) {
+        triangle = marked_triangle(triangles, neighbours, last, marked, number, element);
+    }
     if (triangle.x < 0) return vec3(-1.0);
     // anchor: middle
     vec2 a = entry(places, triangle.x).xy;
     vec2 b = entry(places, triangle.y).xy - a;
     vec2 c = entry(places, triangle.z).xy - a;
-    vec2 middle = (dot(b, b) * vec2(c.y, -c.x) - dot(c, c) * vec2(b.y, -b.x)) / (2.0 * exact_cross(ivec2(b), ivec2(c)));
+    vec2 middle = dot(b, b) * vec2(c.y, -c.x) - dot(c, c) * vec2(b.y, -b.x);
+    middle /= 2.0 * exact_cross(ivec2(b), ivec2(c));
     // end: middle
     ivec2 sides = lattice_sides(places);
     vec2 pixel = pixel_of_place(a + middle, sides, size, window, margin);

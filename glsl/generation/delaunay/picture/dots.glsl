@@ -1,22 +1,20 @@
 // generation/delaunay/picture/dots.glsl -- the points of a triangulation.
 //
 //   gives    frame, colours times their cover, over an earlier frame
-//   needs    generation/delaunay/picture/drawn.glsl
+//   needs    generation/delaunay/picture/{drawn,parameters/points}.glsl
 //   units    pixels; colours linear
 //   source   Belaiche 2010, section 1.3.8, figures 1.26 to 1.28
 //   tested   tests/glsl/test_delaunay.py, by the picture's own pixels
 #include "generation/delaunay/picture/drawn.glsl"
-#pragma draw(mesh = "triangles", count = "points + 4", output = "frame:rgba16f", depth = "none", blend = "alpha", samples = 1)
+#pragma draw(mesh = "triangles", count = "points + 4", output = "frame:rgba16f", \
+             depth = "none", blend = "alpha", samples = 1)
 
-uniform sampler2D places;      //! input
-uniform sampler2D last;        //! input
-uniform int points = 1000;     //! slider(0, 10000) No more points than this are drawn
-uniform int marked = 0;        //! menu("nothing", "an edge", "a flip", "the last insertion") What is marked
-uniform vec4 window = vec4(0.0, 0.0, 1.0, 1.0);  //! slider(0, 1) step(0.01) group("Picture") parts("left", "lower", "right", "upper") The part of the picture that it takes: its lower left, its upper right
-uniform float margin = 0.1;    //! slider(0, 0.45) step(0.01) group("Picture") Room around the land, over the window
-uniform float dot_radius = 3.0; //! slider(0, 20) step(0.1) group("Picture") label("Points") Radius of the points
+#include "generation/delaunay/picture/parameters/points.glsl"
+uniform float dot_radius = 3.0; //! slider(0, 20) step(0.1) group("Picture") label("Points")
+                                //! Radius of the points
 uniform vec4 ink = vec4(0.05, 0.05, 0.06, 1.0);    //! colour group("Colours") Edges and points
-uniform vec4 legal = vec4(0.02, 0.33, 0.10, 1.0);  //! colour group("Colours") A marked edge that is legal, and edges of the newest point
+uniform vec4 legal = vec4(0.02, 0.33, 0.10, 1.0);  //! colour group("Colours")
+    //! A marked edge that is legal, and edges of the newest point
 
 vec2 pixel_of(int point) {
     return pixel_of_place(entry(places, point).xy, lattice_sides(places), size, window, margin);

@@ -9,7 +9,8 @@
 
 uniform sampler2D drawn;  //! input
 uniform sampler2D under;  //! input("linear", "white")
-uniform vec3 paper = vec3(0.93, 0.91, 0.87);  //! colour group("Colours") The paper; it colours a picture that lies under the lines
+uniform vec3 paper = vec3(0.93, 0.91, 0.87);  //! colour group("Colours") The paper; it colours a
+    //! picture that lies under the lines
 
 vec4 kernel(ivec2 texel) {
     vec4 over = texelFetch(drawn, texel, 0);

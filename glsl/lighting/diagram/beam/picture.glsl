@@ -1,11 +1,14 @@
-// lighting/diagram/beam/picture.glsl -- a section of the land with a ray, a cylinder or a cone towards the sun, and its tests, drawn.
+// lighting/diagram/beam/picture.glsl -- a section of the terrain with a beam to the sun.
 //
 //   gives    diagram: a colour
 //   needs    lighting/diagram/ink.glsl, lighting/diagram/label.glsl, lighting/diagram/paints.glsl,
-//            lighting/diagram/section.glsl, maths/angle.glsl, maths/land.glsl; the tests of lighting/diagram/beam/tests.glsl
+//            lighting/diagram/section.glsl, maths/angle.glsl, maths/land.glsl; the tests of
+//            lighting/diagram/beam/tests.glsl
 //   units    colours linear
 //   source   Belaiche 2010, figures 3.10, 4.3, 4.5 and 4.6
 //   tested   tests/glsl/test_diagrams.py, by the colours where tests say that they must be
+//
+// The beam is a ray, a cylinder or a cone; its tests are drawn with it.
 //
 // A test is an upright line as long as the beam is wide, and a dot at its middle: blue where all
 // is free, amber where part is hidden, red where all is. Of the upright line the red part is in
@@ -20,15 +23,12 @@
 
 uniform sampler2D height;       //! input
 uniform sampler2D tests;        //! input
-uniform int beam = 0;           //! menu("ray", "cylinder", "cone") What goes from the point to the sun
-uniform int row = 32;           //! slider(0, 4096) group("Section") Row of the land that is drawn, from the south
-uniform int second = -1;        //! slider(-1, 4096) group("Section") Column of a second point; -1: none
-uniform int first = 0;          //! slider(0, 4096) group("Section") First column shown
-uniform int last = 0;           //! slider(0, 4096) group("Section") Last column shown; 0: the land's
-uniform float foot = 0.25;      //! slider(0, 0.9) step(0.01) group("Section") Where the lowest height stands, of the picture's height
-uniform float elevation = 25.0; //! angle(0, 89) group("Sun") Of the sun above the horizon; it stands in the east
-uniform float radius = 0.5;     //! slider(0, 64) step(0.1) group("Beam") unit("grey levels") The cylinder's; 255 grey levels are the height from 0 to 1
-uniform float delta_r = 0.01;   //! slider(0, 2) step(0.001) group("Beam") label("Δr") What the cone's radius grows over one unit of path
+#include "lighting/diagram/parameters/beam.glsl"
+#include "lighting/diagram/parameters/section.glsl"
+uniform int second = -1;        //! slider(-1, 4096) group("Section")
+                                //! Column of a second point; -1: none
+uniform float foot = 0.25;      //! slider(0, 0.9) step(0.01) group("Section")
+                                //! Where the lowest height stands, of the picture's height
 uniform bool text = true;       //! Write the numbers
 
 const int RAY = 0;
@@ -43,14 +43,24 @@ const uvec4 WORDS[2 * TEXTS] = uvec4[2 * TEXTS](
     uvec4(0x203D2056u, 0xB3B2B1B0u, 0u, 0u), uvec4(0u, 0u, 0u, 0u),  // V = ####
     uvec4(0x203D2056u, 0xC3C2C1C0u, 0u, 0u), uvec4(0u, 0u, 0u, 0u),  // V = ####
     uvec4(0x20796172u, 0x80207461u, 0x60838281u, 0u), uvec4(0u, 0u, 0u, 0u),  // ray at ####`
-    uvec4(0x696C7963u, 0x7265646Eu, 0x20746120u, 0x83828180u), uvec4(0x72202C60u, 0x91903D20u, 0x20949392u, 0x0000006Du),  // cylinder at ####`, r =##### m
-    uvec4(0x656E6F63u, 0x20746120u, 0x83828180u, 0x72202C60u), uvec4(0xA0203D20u, 0xA4A3A2A1u, 0x6D206120u, 0x65727465u),  // cone at ####`, r = ##### a metre
+    // cylinder at ####`, r =##### m
+    uvec4(0x696C7963u, 0x7265646Eu, 0x20746120u, 0x83828180u),
+    uvec4(0x72202C60u, 0x91903D20u, 0x20949392u, 0x0000006Du),
+    // cone at ####`, r = ##### a metre
+    uvec4(0x656E6F63u, 0x20746120u, 0x83828180u, 0x72202C60u),
+    uvec4(0xA0203D20u, 0xA4A3A2A1u, 0x6D206120u, 0x65727465u),
     uvec4(0x74736574u, 0xD1D03A73u, 0x000000D2u, 0u), uvec4(0u, 0u, 0u, 0u),  // tests:###
-    uvec4(0x74736574u, 0xD1D03A73u, 0x6E6120D2u, 0xE2E1E064u), uvec4(0u, 0u, 0u, 0u),  // tests:### and###
+    // tests:### and###
+    uvec4(0x74736574u, 0xD1D03A73u, 0x6E6120D2u, 0xE2E1E064u),
+    uvec4(0u, 0u, 0u, 0u),
     uvec4(0x65657266u, 0u, 0u, 0u), uvec4(0u, 0u, 0u, 0u),  // free
-    uvec4(0x74726170u, 0x6820796Cu, 0x65646469u, 0x0000006Eu), uvec4(0u, 0u, 0u, 0u),  // partly hidden
+    // partly hidden
+    uvec4(0x74726170u, 0x6820796Cu, 0x65646469u, 0x0000006Eu),
+    uvec4(0u, 0u, 0u, 0u),
     uvec4(0x64646968u, 0x00006E65u, 0u, 0u), uvec4(0u, 0u, 0u, 0u),  // hidden
-    uvec4(0x68676968u, 0x20747365u, 0x67696568u, 0x00007468u), uvec4(0u, 0u, 0u, 0u)  // highest height
+    // highest height
+    uvec4(0x68676968u, 0x20747365u, 0x67696568u, 0x00007468u),
+    uvec4(0u, 0u, 0u, 0u)
 );
 // Of the values: characters, and decimals.
 const int WIDE[7] = int[7](4, 5, 5, 4, 4, 3, 3);
@@ -68,7 +78,8 @@ vec4 kernel(ivec2 texel) {
     vec2 bounds = texelFetch(tests, ivec2(0, 2), 0).xy;
     ivec2 shown = columns_shown(first, last, grid.x);
     float spacing = spacing_of(grid, extent).x;
-    Section section = section_of(clamp(row, 0, grid.y - 1), grid.x, shown, spacing, relief, bounds.x, foot, paper);
+    Section section = section_of(clamp(row, 0, grid.y - 1), grid.x, shown, spacing, relief,
+                                 bounds.x, foot, paper);
     float farthest = paper.x + paper.y;
     vec2 to_sun = cos_sin_degrees(elevation);
     float climb = to_sun.y / max(to_sun.x, 1e-6);
@@ -76,7 +87,8 @@ vec4 kernel(ivec2 texel) {
     float wide = beam == CYLINDER ? radius / 255.0 * relief * section.scale : 0.0;
     int viewpoints = second >= 0 ? 2 : 1;
 
-    // The sun stands at the end of the first beam, whole in the picture; parallel rays end in arrows.
+    // The sun stands at the end of the first beam, whole in the picture; parallel rays end in
+    // arrows.
     vec4 facts = texelFetch(tests, ivec2(0, 0), 0);
     vec2 room = (paper - 12.0 * u - on_paper(section, facts.zw)) / (to_sun + 1e-4);
     float far = max(min(room.x, room.y), 20.0 * u);
@@ -113,11 +125,13 @@ vec4 kernel(ivec2 texel) {
     }
     colour = mix(colour, GROUND * (0.75 + 0.25 * place.y / paper.y), in_ground);
     colour = mix(colour, HIDDEN, 0.25 * inside * in_ground);
-    vec2 surface = surface_cover(height, section, place, 1.8 * u, min(2.2 * u, 0.3 * section.scale * section.spacing));
+    vec2 surface = surface_cover(height, section, place, 1.8 * u,
+                                 min(2.2 * u, 0.3 * section.scale * section.spacing));
     colour = mix(colour, EDGE, max(surface.x, surface.y));
 
     vec2 highest = on_paper(section, vec2(0.0, bounds.y));
-    colour = mix(colour, INK, 0.5 * dash_cover(place, vec2(0.0, highest.y), vec2(paper.x, highest.y), 1.0 * u, 5.0 * u));
+    colour = mix(colour, INK, 0.5 * dash_cover(place, vec2(0.0, highest.y),
+                                               vec2(paper.x, highest.y), 1.0 * u, 5.0 * u));
 
     float pitch = spacing * section.scale;
     for (int v = 0; v < viewpoints; v++) {
@@ -129,9 +143,13 @@ vec4 kernel(ivec2 texel) {
         vec2 border = (paper - 8.0 * u - from) / max(to_sun, 1e-4);
         vec2 goal = from + (with_sun && v == 0 ? far : min(border.x, border.y)) * to_sun;
         if (about.x > 0.0) {
-            float axis = beam == RAY ? line_cover(place, from, goal, 1.6 * u) : dash_cover(place, from, goal, 1.0 * u, 5.0 * u);
+            float axis = beam == RAY ? line_cover(place, from, goal, 1.6 * u)
+                    : dash_cover(place, from, goal, 1.0 * u, 5.0 * u);
             colour = mix(colour, PARTLY * 0.8, axis);
-            if (beam == RAY && second >= 0) colour = mix(colour, PARTLY * 0.8, arrow_cover(place, from, goal, 1.6 * u, 11.0 * u));
+            if (beam == RAY && second >= 0) {
+                colour = mix(colour, PARTLY * 0.8,
+                             arrow_cover(place, from, goal, 1.6 * u, 11.0 * u));
+            }
         } else {
             colour = mix(colour, HIDDEN, line_cover(place, from, end, 1.6 * u));
             colour = mix(colour, HIDDEN, 0.6 * dash_cover(place, end, goal, 1.0 * u, 5.0 * u));
@@ -139,8 +157,11 @@ vec4 kernel(ivec2 texel) {
         int near = int(floor((place.x - from.x) / pitch + 0.5));
         int least = int(texelFetch(tests, ivec2(1, v), 0).x);
         for (int k = near - 1; k <= near + 1; k++) {
-            // No test is drawn beyond the sun, which is much farther away than the picture is wide.
-            if (k < 0 || k >= made || (with_sun && v == 0 && float(k) * pitch > far * to_sun.x)) continue;
+            // No test is drawn beyond the sun, which is much farther away than the picture is
+            // wide.
+            if (k < 0 || k >= made || (with_sun && v == 0 && float(k) * pitch > far * to_sun.x)) {
+                continue;
+            }
             vec4 one = texelFetch(tests, ivec2(2 + k, v), 0);
             float column = from.x + float(k) * pitch;
             float middle = on_paper(section, vec2(0.0, one.x)).y;
@@ -151,8 +172,12 @@ vec4 kernel(ivec2 texel) {
             bool marked = k == least;
             float pen = marked ? 3.2 * u : 1.6 * u;
             if (reach > 0.0) {
-                colour = mix(colour, HIDDEN, line_cover(place, vec2(column, bottom), vec2(column, land), pen) * step(one.z, 0.999));
-                colour = mix(colour, paint_of(one.z), line_cover(place, vec2(column, land), vec2(column, top), pen) * step(0.001, one.z));
+                colour = mix(colour, HIDDEN,
+                             line_cover(place, vec2(column, bottom), vec2(column, land), pen)
+                             * step(one.z, 0.999));
+                colour = mix(colour, paint_of(one.z),
+                             line_cover(place, vec2(column, land), vec2(column, top), pen)
+                             * step(0.001, one.z));
             }
             float round = min(marked ? 4.2 * u : 3.0 * u, 0.45 * pitch);
             colour = mix(colour, paint_of(one.z), dot_cover(place, vec2(column, middle), round));
@@ -163,7 +188,8 @@ vec4 kernel(ivec2 texel) {
     if (!text) return vec4(colour, 1.0);
 
     vec4 other = texelFetch(tests, ivec2(0, 1), 0);
-    float values[7] = float[7](elevation, radius / 255.0 * relief, delta_r, facts.x, other.x, facts.y, other.y);
+    float values[7] = float[7](elevation, radius / 255.0 * relief, delta_r, facts.x, other.x,
+                               facts.y, other.y);
     int board = -1;
     vec3 cell = vec3(-1.0);
     float behind = 0.0;
@@ -174,8 +200,12 @@ vec4 kernel(ivec2 texel) {
         int length = LENGTHS[which];
         if (k == 1 && second < 0) length = 0;
         if (k == 7 && (highest.y < 0.0 || highest.y > paper.y - 60.0 * u)) length = 0;
-        Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k - 2)) * u), length, u);
-        if (k < 2) label = label_around(on_paper(section, k == 0 ? facts.zw : other.zw) - vec2(0.0, 27.0 * u), length, u);
+        Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k - 2)) * u),
+                                    length, u);
+        if (k < 2) {
+            label = label_around(on_paper(section, k == 0 ? facts.zw : other.zw)
+                                 - vec2(0.0, 27.0 * u), length, u);
+        }
         if (k == 7) label = label_on_left(vec2(12.0 * u, highest.y + 4.0 * u), length, u);
         if (k >= 4 && k < 7) {
             // A legend along the lower edge, each entry after its dot.
@@ -200,7 +230,8 @@ vec4 kernel(ivec2 texel) {
         int character = character_of(WORDS[2 * board + (at >> 4)], at & 15);
         if (character >= 128) {
             int number = (character >> 4) & 7;
-            character = number_character(values[number], DECIMALS[number], character & 15, WIDE[number]);
+            character = number_character(values[number], DECIMALS[number], character & 15,
+                                         WIDE[number]);
         }
         colour = mix(colour, INK, covered((0.75 - letter_away(character, cell.yz)) * u));
     }

@@ -1,16 +1,20 @@
-// lighting/diagram/beam/tests.glsl -- every test that a ray, a cylinder or a cone towards the sun makes in a section of the land.
+// lighting/diagram/beam/tests.glsl -- every test that a beam makes in a section.
 //
-//   gives    tests. Rows 0 and 1, the two viewpoints: texel 0 the sun's visible part, how many tests,
-//            place and height; texel 1 the test of the least part (-1: none); texel 2 + k the beam's height
-//            over it, its radius, the part left free, 1 if test k is made. Row 2, texel 0:
-//            the lowest height shown, and the land's highest
-//   needs    lighting/diagram/section.glsl, maths/angle.glsl, maths/land.glsl; the range of the heights as an input
+//   gives    tests. Rows 0 and 1, the two viewpoints: texel 0 the sun's visible part, how many
+//            tests, place and height; texel 1 the test of the least part (-1: none); texel 2 + k
+//            the beam's height over it, its radius, the part left free, 1 if test k is made. Row
+//            2, texel 0: the lowest height shown, and the terrain's highest
+//   needs    lighting/diagram/section.glsl, maths/angle.glsl, maths/land.glsl; the range of the
+//            heights as an input
 //   units    metres
 //   source   Belaiche 2010, sections 3.5.4, 4.4.1 and 4.4.2, eq. 4.3
-//   tested   tests/glsl/test_diagrams.py, against a loop in float64 and against the methods themselves
+//   tested   tests/glsl/test_diagrams.py, against a loop in float64 and against the methods
+//            themselves
+//
+// The beam is a ray, a cylinder or a cone towards the sun.
 //
 // Test k is over the k-th texel towards the east. Tests end where the beam's lower side is above
-// the highest height, off the land, or after land over its upper side.
+// the highest height, off the terrain, or after terrain over its upper side.
 #include "lighting/diagram/section.glsl"
 #include "maths/angle.glsl"
 #include "maths/land.glsl"
@@ -18,15 +22,12 @@
 
 uniform sampler2D height;       //! input
 uniform sampler2D range;        //! input
-uniform int beam = 0;           //! menu("ray", "cylinder", "cone") What goes from the point to the sun
-uniform int row = 32;           //! slider(0, 4096) group("Section") Row of the land that is drawn, from the south
-uniform int viewpoint = 16;     //! slider(0, 4096) group("Section") Column of the point that is lit
-uniform int second = -1;        //! slider(-1, 4096) group("Section") Column of a second one; -1: none
-uniform int first = 0;          //! slider(0, 4096) group("Section") First column shown
-uniform int last = 0;           //! slider(0, 4096) group("Section") Last column shown; 0: the land's
-uniform float elevation = 25.0; //! angle(0, 89) group("Sun") Of the sun above the horizon; it stands in the east
-uniform float radius = 0.5;     //! slider(0, 64) step(0.1) group("Beam") unit("grey levels") The cylinder's; 255 grey levels are the height from 0 to 1
-uniform float delta_r = 0.01;   //! slider(0, 2) step(0.001) group("Beam") label("Δr") What the cone's radius grows over one unit of path
+#include "lighting/diagram/parameters/beam.glsl"
+#include "lighting/diagram/parameters/section.glsl"
+uniform int viewpoint = 16;     //! slider(0, 4096) group("Section")
+                                //! Column of the point that is lit
+uniform int second = -1;        //! slider(-1, 4096) group("Section")
+                                //! Column of a second one; -1: none
 
 const int RAY = 0;
 const int CYLINDER = 1;
@@ -38,7 +39,7 @@ struct Beam {
     float growth;  // metres a texel
 };
 
-// The part that land of some height leaves free of the beam at a step.
+// The part that terrain of some height leaves free of the beam at a step.
 float part_free(Beam way, int k, float land) {
     float wide = way.radius + float(k) * way.growth;
     float above = way.foot + float(k) * way.climb - land;
@@ -53,7 +54,9 @@ vec4 kernel(ivec2 texel) {
     if (texel.y >= 2) {
         ivec2 shown = columns_shown(first, last, grid.x);
         float lowest = 1e30;
-        for (int k = shown.x; k <= min(shown.y, grid.x - 1); k++) lowest = min(lowest, texelFetch(height, ivec2(k, line), 0).r * relief);
+        for (int k = shown.x; k <= min(shown.y, grid.x - 1); k++) {
+            lowest = min(lowest, texelFetch(height, ivec2(k, line), 0).r * relief);
+        }
         return vec4(lowest, highest, 0.0, 0.0);
     }
     if (texel.y == 1 && second < 0) return vec4(1.0, -1.0, 0.0, 0.0);

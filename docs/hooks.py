@@ -1,0 +1,28 @@
+"""MkDocs hooks: put the generated pages and the pages that live elsewhere into the site.
+
+MkDocs has this folder in its search path while it loads the file, so ``site_pages`` is found.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mkdocs.structure.files import File
+from site_pages import pages
+
+if TYPE_CHECKING:
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Replace each entry of the navigation that names a generated folder with the folder's pages."""
+    config.nav = [pages.expanded(entry) for entry in config.nav or []]
+    return config
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add what is generated from the code, and the texts at the top of the checkout."""
+    for path, content in pages.generated().items():
+        files.append(File.generated(config, path, content=content))
+    return files

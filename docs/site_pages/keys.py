@@ -1,0 +1,31 @@
+"""Generate the table of keys from the window's own."""
+
+from __future__ import annotations
+
+from playground.live.keymap import GESTURES
+from playground.live.keys import KEYS
+
+from .markdown import code, escaped, table
+
+_HEAD = """# Keys and mouse
+
+This page is generated from the window's own table; `?` shows it in the window.
+The keys of `playground fly` are [on its page](../how-to/fly.md#controls).
+
+"""
+
+
+def page() -> str:
+    """Return the page of keys and gestures."""
+    keys: dict[str, list[str]] = {}
+    for key in KEYS:
+        keys.setdefault(key.meaning, []).append(key.name)
+    rows = [(", ".join(code(name) for name in names), escaped(meaning)) for meaning, names in keys.items()]
+    gestures = [(escaped(gesture), escaped(meaning)) for gesture, meaning in GESTURES]
+    return (
+        _HEAD
+        + "## Keys\n\n"
+        + table(("Key", "What it does"), rows)
+        + "## Mouse\n\n"
+        + table(("Gesture", "What it does"), gestures)
+    )

@@ -1,0 +1,93 @@
+"""Say which pages are generated, and where they lie in the site."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from . import commands, gallery, glossary, keys, python, shots, techniques
+
+ROOT = Path(__file__).resolve().parents[2]
+
+ELSEWHERE = {
+    "reference/shaders.md": "glsl/README.md",
+    "changelog.md": "CHANGELOG.md",
+    "contributing.md": "CONTRIBUTING.md",
+}
+"""Pages whose one home is another place of the checkout."""
+
+PICTURES = {
+    "assets/first.webp": "screenshots/jacksboro/llvmpipe/morning.png",
+    "assets/flight.webp": "tests/flight/pictures/llvmpipe/tour-450.png",
+}
+"""Pictures that written pages show, and where they come from."""
+
+TECHNIQUES = "reference/techniques/"
+"""The folder of the catalogue; in the navigation it stands for all of its pages."""
+
+_PAGES: dict[str, Callable[[], str]] = {
+    "reference/commands.md": commands.page,
+    "reference/keys.md": keys.page,
+    "reference/python.md": python.page,
+    "reference/gallery.md": gallery.page,
+    "reference/glossary.md": partial(glossary.page, "en"),
+    "reference/glossaire.md": partial(glossary.page, "fr"),
+}
+_LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
+
+
+def generated_paths() -> list[str]:
+    """List the pages that ``generated`` returns, without making them."""
+    techniques_of = [techniques.path_of(e) for names in techniques.entries().values() for e in names]
+    return [*_PAGES, f"{TECHNIQUES}index.md", *techniques_of, *ELSEWHERE]
+
+
+def generated() -> dict[str, str | bytes]:
+    """Return every page and picture that no file of this folder holds, by its path in the site."""
+    found: dict[str, str | bytes] = {path: write() for path, write in _PAGES.items()}
+    found[f"{TECHNIQUES}index.md"] = techniques.index()
+    for names in techniques.entries().values():
+        found |= {techniques.path_of(entry): techniques.page(entry) for entry in names}
+    for page, source in ELSEWHERE.items():
+        found[page] = moved((ROOT / source).read_text("utf-8"), source, page)
+    for sketch in shots.sketches():
+        for picture in shots.pictures(sketch):
+            found[picture.thumbnail] = shots.thumbnail(picture.file)
+    for path, source in PICTURES.items():
+        found[path] = shots.thumbnail(ROOT / source, 1280)
+    return found
+
+
+def moved(text: str, source: str, page: str) -> str:
+    """Return a Markdown text whose links still lead there from its place in the site.
+
+    What is no page of the site is named in place of a link.
+    """
+    homes = {home: place for place, home in ELSEWHERE.items()}
+    homes[glossary.FILE.relative_to(ROOT).as_posix()] = "reference/glossary.md"
+    up = "../" * page.count("/")
+
+    def lead(match: re.Match[str]) -> str:
+        target = (ROOT / source).parent.joinpath(match[3]).resolve().relative_to(ROOT).as_posix()
+        place = homes.get(target, target.removeprefix("docs/") if target.startswith("docs/") else "")
+        return f"{match[1]}[{match[2]}]({up}{place}{match[4] or ''})" if place else match[2]
+
+    return _LINK.sub(lead, text)
+
+
+def expanded(entry: Any) -> Any:
+    """Return an entry of the navigation, the folder of the catalogue as a list of its pages."""
+    if isinstance(entry, dict):
+        return {title: expanded(below) for title, below in entry.items()}
+    if isinstance(entry, list):
+        return [expanded(below) for below in entry]
+    if entry != TECHNIQUES:
+        return entry
+    found: list[Any] = [f"{TECHNIQUES}index.md"]
+    for folder, names in techniques.entries().items():
+        title = techniques.FOLDERS.get(folder, folder).partition(":")[0]
+        found.append({title: [{e.name.partition("/")[2]: techniques.path_of(e)} for e in names]})
+    return found

@@ -1,0 +1,109 @@
+"""Try sketches in the sandbox's worker process: open a context, draw what is requested by each driver."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.engine.all_errors import all_mistakes
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.engine.plan import Step
+from playground.engine.planner import smallest_land
+from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
+from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
+from playground.gpu.context import open_context
+from playground.gpu.program import compile_library
+from playground.gpu.textures import drain, is_lost
+from playground.gpu.wrap import COMPUTE
+from playground.process.child import Parent, Service
+from playground.sketch.source import read_source
+
+if TYPE_CHECKING:
+    import moderngl
+
+
+_FINEST = 33  # vertices a side of the sandbox's meshes
+
+
+def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
+    """Open a context: on a software renderer, on which device."""
+    software, device = options
+    return Service(_Handler(open_context(software=software, device=device), parent).answer)
+
+
+class _Handler:
+    """Draws with one engine a driver."""
+
+    def __init__(self, ctx: moderngl.Context, parent: Parent) -> None:
+        self._ctx = ctx
+        self._parent = parent
+        self._engines: dict[str, Engine] = {}
+        self._subject = "this"
+
+    def answer(self, request: Request) -> SandboxReport:
+        """Try something; a mistake is an answer too."""
+        skipped: list[str] = []
+        self._subject = "this"
+        try:
+            if isinstance(request, TryLibrary):
+                self._report(Activity("", request.path))
+                compile_library(self._ctx, read_source(Path(request.path), (Path(request.folder),)))
+                return SandboxReport(True)
+            for driver in request.drivers:
+                if driver == COMPUTE and self._ctx.version_code < 430:
+                    skipped.append(COMPUTE)
+                else:
+                    self._draw(request, driver)
+        except PlaygroundError as error:
+            if is_lost(self._ctx):
+                message = f"{self._subject} made the driver reset itself in the sandbox"
+                return SandboxReport(False, SandboxCrash(message))
+            return SandboxReport(False, error, tuple(skipped))
+        return SandboxReport(True, None, tuple(skipped))
+
+    def _draw(self, request: TrySketch, driver: str) -> None:
+        engine = self._engine(driver)
+        engine.runner.tell = partial(self._before_step, driver if len(request.drivers) > 1 else "")
+        small = replace(request.sketch, size=smallest_land(request.sketch), samples=1)
+        drain(engine.ctx)  # what an earlier, failed request left behind
+        try:
+            engine.draw(small, size=request.size, time=request.time)
+            engine.ctx.finish()
+            if (error := engine.ctx.error) != "GL_NO_ERROR":
+                raise ContextError(f"OpenGL reports {error} after the frame")
+            if request.refuses:
+                _refuse(engine, request.refuses)
+        except ShaderError as wrong:
+            raise all_mistakes(wrong, engine, request.sketch, size=request.size, time=request.time) from None
+
+    def _engine(self, driver: str) -> Engine:
+        if driver not in self._engines:
+            engine = Engine(self._ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
+            # A mesh's fineness proves nothing more, and takes longer than all the rest.
+            engine.runner.draws.finest = _FINEST
+            self._engines[driver] = engine
+        return self._engines[driver]
+
+    def _before_step(self, driver: str, step: Step) -> None:
+        """Report a step; the one before ends first, so that its time is its own."""
+        self._ctx.finish()
+        self._report(Activity(step.path, step.kernel.path, driver=driver))
+
+    def _report(self, activity: Activity) -> None:
+        self._subject = activity.subject
+        self._parent.report(activity)
+
+
+def _refuse(engine: Engine, what: str) -> None:
+    """Raise ``ShaderError`` at the first pass that gives a number that is not finite, or nothing else."""
+    for found in engine.not_finite_by_pass():
+        if found is None or engine.plan is None:
+            continue
+        width, height = found.size
+        throughout = found.count == width * height
+        step = engine.plan.step(found.path)
+        if step is not None and (throughout or what == "any"):
+            raise step.kernel.error(found.everywhere() if throughout else str(found))

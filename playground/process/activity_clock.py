@@ -1,0 +1,69 @@
+"""Measure how long each activity of a worker has taken, in all its steps: a limit is meant for one of them.
+
+A process reports what it is about to do; what it did before has ended then. What it waited for a
+processor does not count, but for a share (see ``cpu_wait``).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+from playground.process.cpu_wait import Waits, worked
+
+_SHORT = 0.05  # [s] an activity so short has its waits counted in: to read them takes a millisecond
+_FRESH = 0.25  # [s] for which waits that were read may stand for those at an activity's beginning
+
+
+@dataclass(frozen=True, slots=True)
+class _Current:
+    """What is being done."""
+
+    what: Hashable
+    began: float  # as time.monotonic
+    waits: Waits  # when it began, or shortly before
+    earlier: float  # [s] that it took in its steps before
+
+
+class ActivityClock:
+    """Measures what a process does; one thread sets it, others may read it."""
+
+    def __init__(self, waits: Callable[[], Waits]) -> None:
+        self._waits_now = waits
+        self._waits: Waits = {}
+        self._read_at = -_FRESH
+        self._spent: dict[Hashable, float] = {}
+        self._ended = 0.0  # [s] of all that has ended
+        self._current: _Current | None = None
+
+    def clear(self) -> None:
+        """Forget all: nothing is being done."""
+        self._spent, self._ended, self._current = {}, 0.0, None
+
+    def begin(self, what: Hashable) -> None:
+        """Begin an activity, or continue it; the one before has ended."""
+        if self._current is not None:
+            self._ended += self.seconds - self._current.earlier
+            self._spent[self._current.what] = self.seconds
+        now = time.monotonic()
+        if now - self._read_at > _FRESH:
+            self._waits, self._read_at = self._waits_now(), now
+        self._current = _Current(what, now, self._waits, self._spent.get(what, 0.0))
+
+    @property
+    def seconds(self) -> float:
+        """How long the current activity has taken so far, in all its steps; 0 while there is none."""
+        current = self._current
+        if current is None:
+            return 0.0
+        passed = time.monotonic() - current.began
+        if passed >= _SHORT:
+            passed = worked(passed, current.waits, self._waits_now())
+        return current.earlier + passed
+
+    @property
+    def total(self) -> float:
+        """How long all activities together have taken [s]."""
+        current = self._current
+        return 0.0 if current is None else self._ended + self.seconds - current.earlier

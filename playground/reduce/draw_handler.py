@@ -1,0 +1,98 @@
+"""Draw candidates in a worker process, which may crash or hang, and tell what came of each."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.errors import Diagnostic, PlaygroundError, ShaderError
+from playground.gpu.context import context_info, open_context
+from playground.gpu.textures import drain, read_picture
+from playground.process.child import Parent, Service
+from playground.sketch.load import load_with
+from playground.sketch.model import Sketch
+from playground.sketch.techniques import Techniques, WithLibrary
+
+if TYPE_CHECKING:
+    import moderngl
+
+_CACHE_BYTES = 256 * 2**20
+_FILES = re.compile(r"\S+\.(?:glsl|frag|comp|toml)\b(?::\d+)*:?")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrawTask:
+    """Draw one texture of a sketch."""
+
+    sketch: Sketch | str  # loaded, or the path of its file
+    ref: str = ""  # pass[:output]; "": the picture, as bytes
+    driver: str = "auto"
+    frame: tuple[int, int] = (64, 36)  # pixels
+    time: float = 0.0  # [s]
+    steps: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class DrawResult:
+    """What came of drawing it."""
+
+    kind: str  # drawn | shader | refused | gl-error | crash | hang
+    messages: tuple[str, ...] = ()  # of each mistake, without its place
+    values: NDArray[Any] | None = None  # float32, or uint8 of a picture
+    details: str = ""  # the mistakes with their places
+
+
+def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
+    """Open a context: on a software renderer, on which device."""
+    software, device = options
+    ctx = open_context(software=software, device=device)
+    return Service(partial(_draw, ctx, {}, Techniques()), context_info(ctx))
+
+
+def _draw(
+    ctx: moderngl.Context, engines: dict[str, Engine], library: Techniques, task: DrawTask
+) -> DrawResult:
+    try:
+        sketch = load_with(WithLibrary(library), task.sketch) if isinstance(task.sketch, str) else task.sketch
+    except PlaygroundError as error:
+        return _refused(error, "refused")
+    drain(ctx)
+    try:
+        engine = engines.get(task.driver)
+        if engine is None:
+            engine = engines[task.driver] = Engine(
+                ctx, driver=task.driver, cache_bytes=_CACHE_BYTES, notice=silent
+            )
+        steps = dict(task.steps)
+        if task.ref:
+            values: NDArray[Any] = engine.read(sketch, task.ref, size=task.frame, time=task.time, steps=steps)
+        else:
+            values = read_picture(engine.draw(sketch, size=task.frame, time=task.time, steps=steps))
+    except ShaderError as error:
+        return _refused(error, "shader")
+    except PlaygroundError as error:
+        return _refused(error, "refused")
+    except MemoryError:
+        return DrawResult("refused", ("memory ran out",), details="memory ran out")
+    except Exception as error:  # a bug of ours, or moderngl's own
+        message = f"{type(error).__name__}: {error}"
+        return DrawResult("refused", (message,), details=message)
+    if (gl_error := ctx.error) != "GL_NO_ERROR":
+        return DrawResult("gl-error", (gl_error,), values, f"OpenGL reports {gl_error}")
+    return DrawResult("drawn", values=values)
+
+
+def _refused(error: PlaygroundError, kind: str) -> DrawResult:
+    wrong = [d for d in error.diagnostics if d.severity == "error"]
+    return DrawResult(kind, tuple(map(_message, wrong)), details=str(error))
+
+
+def _message(diagnostic: Diagnostic) -> str:
+    """Return a mistake without places in it."""
+    return " ".join(_FILES.sub("", diagnostic.message).split())

@@ -1,0 +1,368 @@
+"""Every command that the documentation and the lessons quote runs.
+
+What is quoted is found in the texts: the lines of shell blocks, and what stands between backticks
+and begins with a program's name. Each is run in a folder of its own that holds the files it speaks
+of, at a small size. A command that opens a window is run twice: without a display, where its
+arguments are read and the missing display is told, and, in the slow tests, in a window under Xvfb.
+What is not run is in NOT_RUN, with its reason; a whole block says it in a comment (see pages.py).
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground import cli
+
+from ..live.screen import ON_LINUX, Program, Screen
+from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
+
+TEXTS = ROOT / "playground" / "lessons" / "texts"
+LESSONS = tuple(sorted(TEXTS.rglob("*.md")))
+INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`\n]*)?)`")
+FORM = re.compile(  # how a command is used, not a command
+    r"[…\[\]]|\b(?:FILE|NAME|PATH|FOLDER|DIR|COMMAND)\b"
+)
+
+NOT_RUN = {
+    r"export \w+=.*": "sets a variable; test_editors.py and test_cache.py read it",
+    r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
+    r"sudo apt-get .*": "needs a network and an administrator",
+    r"\./play test( -m slow)?": "is these tests",
+    r"pytest -n 2 --dist loadfile": "is these tests, in two processes",
+    r"\.venv/bin/.*": "is a step of .ci/run",
+    r"mkdocs .*": "serves until it is stopped, or is built by test_site.py",
+    r"playground shots review.*": "serves until it is stopped: tests/report/test_review.py",
+    r"playground shots accept .*": "needs a shot that failed: tests/report/test_accept.py",
+    r"playground reduce my-land --shot morning": "needs a reference that fails: tests/reduce/test_reduce.py",
+    r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",
+    r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
+    r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
+    r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
+    r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
+    r"playground variants renew": "writes this checkout's record; that of a folder is written",
+    r"pytest|pip": "names the program",
+}
+
+SLOPE = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.25 * float(texel.x); }
+"""
+SLOPE_FAST = """#pragma compute(groups = "size.x // 8 + 1, size.y // 8 + 1", local = "8, 8", agrees = "exact")
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(texel, size))) imageStore(out_height, texel, vec4(0.25 * float(texel.x)));
+}
+"""
+FLIGHT = {
+    "format": "playground flight",
+    "version": 1,
+    "sketch": "flight",
+    "size": [64, 36],
+    "step": 1 / 60,
+    "radius": 1.5,
+    "values": {},
+    "start": None,
+}
+
+
+def quoted() -> list[str]:
+    """Return the commands of all texts, each once, in the order of the texts."""
+    found: dict[str, None] = {}
+    for path in (*PAGES, *LESSONS):
+        for block in blocks_of(path):
+            if not block.reason:
+                found |= dict.fromkeys(lines_of(block.language, block.text))
+            if path in LESSONS:  # exercises lie in TOML blocks
+                found |= dict.fromkeys(INLINE.findall(block.text))
+        found |= dict.fromkeys(INLINE.findall(outside_of_blocks(path)))
+    once = {re.sub(r"^\./play (?!test)", "playground ", command): command for command in reversed(found)}
+    return [command for command in reversed(once.values()) if not FORM.search(command)]
+
+
+def lines_of(kind: str, block: str) -> Iterator[str]:
+    """Yield the commands of a shell block, and of a workflow's steps."""
+    if kind == "sh":
+        for line in block.replace("\\\n", " ").splitlines():
+            command = re.sub(r"\s+# .*", "", line).strip()
+            if command and not command.startswith("#"):
+                yield re.sub(r"\s+", " ", command)
+    if kind == "yaml":
+        for command in re.findall(r"- run: (.*)", block):
+            yield from re.sub(r"\s+#.*", "", command).split(" && ")
+
+
+def arguments(command: str) -> list[str]:
+    """Return what a command gives to the playground; ``./play`` is ``playground``."""
+    words = shlex.split(command)[1:]
+    return [str(ROOT / word) if word.startswith("glsl/") else word for word in words]
+
+
+def runs_by_playground(command: str) -> bool:
+    return command.split()[0] in ("playground", "./play") and not command.startswith("./play test")
+
+
+def opens_a_window(command: str) -> bool:
+    words = arguments(command)
+    if command in ("./play", "playground") or words[:1] == ["live"] or words[:2] == ["lesson", "open"]:
+        return True
+    return words[:1] == ["fly"] and "--frames" not in words
+
+
+def is_run(command: str) -> bool:
+    return not any(re.fullmatch(pattern, command) for pattern in NOT_RUN)
+
+
+ALL = quoted()
+OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
+WINDOWS = [c for c in OURS if opens_a_window(c)]
+OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
+SLOW = re.compile(
+    r"(playground|\./play) (check|list)$|check (hills|dunes|ridges|--json)|lesson (build|check)|reduce|fly"
+    r"|variants verify|mutants"
+    r"|--video|--frames|\.glb|--sweep|20000|--texture"
+)
+
+
+def test_there_are_commands_and_each_reason_is_still_needed():
+    assert len(ALL) > 50
+    unused = [pattern for pattern in NOT_RUN if not any(re.fullmatch(pattern, c) for c in ALL)]
+    assert not unused
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Give a folder that is the present one, with caches and memories of its own."""
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
+    return here
+
+
+FAST = 'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./twin"\n'
+
+
+def furnish(folder: Path, command: str) -> None:
+    """Put there what a command speaks of and does not make itself."""
+    from playground.sketch.techniques import read_kernel
+    from playground.templates import make_sketch
+
+    words = arguments(command)
+    for title in files():
+        made = title.partition("/")[0]
+        if made in words and words[:1] != ["new"]:
+            write_files(folder, made)
+    for name in ("hills", "my-land"):
+        if words[:1] != ["new"] and (name in words or (name == "my-land" and words == ["check"])):
+            shutil.rmtree(folder / name, ignore_errors=True)
+            made = make_sketch(folder / name)
+            if words[0] == "variants":
+                (made / "slope.glsl").write_text(SLOPE, "utf-8")
+                (made / "slope.comp").write_text(SLOPE_FAST, "utf-8")
+                sketch = made / "sketch.toml"
+                more = '[[pass]]\nname = "slope"\nuse = "./slope"\n'
+                sketch.write_text(f"{sketch.read_text('utf-8')}\n{more}", "utf-8")
+            if words[0] == "reduce":
+                kernel = made / "my_land.glsl"
+                text = kernel.read_text("utf-8")
+                at = text.index("return")
+                kernel.write_text(text[:at] + "float wrong = fract(1.0, 2.0);\n    " + text[at:], "utf-8")
+            if words[0] == "variants":
+                (made / "twin.glsl").write_text((made / "my_land.glsl").read_text("utf-8"), "utf-8")
+                plain = read_kernel(made / "my_land.glsl", made)
+                assert plain is not None
+                exports = "".join(f'{p.name} = "height.{p.name}"\n' for p in plain.parameters)
+                (made / "my_land.fast.toml").write_text(f"{FAST}[parameters]\n{exports}", "utf-8")
+    if "lesson.zip" in words and words[0] != "pack":
+        make_sketch(folder / "my-land")
+        assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
+    for land in ("land.png", "land.r16"):
+        if f"height.elevation={land}" in words:
+            assert cli.main(["export", "jacksboro", "--to", land]) == 0
+    if "--replay" in words:
+        (folder / "evening.jsonl").write_text(
+            "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"
+        )
+
+
+def smaller(words: list[str]) -> list[str]:
+    """Return a command's arguments with small pictures, short films, few values and one lesson."""
+    found = list(words)
+    for at, word in enumerate(words):
+        if word == "--size":
+            width, height = (int(n) for n in words[at + 1].split("x"))
+            found[at + 1] = f"{max(width // 100, 32)}x{max(height // 100, 32)}"
+        if word == "--frames" and ".." in words[at + 1]:
+            found[at + 1] = "0..1"
+        if word == "-n":
+            found[at + 1] = "2"
+    if "--video" in found:
+        found += ["--seconds", "0.1"]
+    if found[0] == "render" and "--size" not in found:
+        found += ["--size", "64x36"]
+    if found[:2] == ["shots", "mutants"]:
+        found += ["--size", "64x36", "--mutant", "no-shadow"]
+    if "--again" in found:
+        found[found.index("--again") + 1] = "1"
+    if found[:2] in (["variants", "verify"], ["variants", "renew"]) and "my-land" not in found:
+        found = ["variants", "verify", "generation/smooth"]  # and nothing is written into the library
+    if found == ["check"]:
+        found += ["my-land"]
+    if found[:2] in (["lesson", "build"], ["lesson", "check"]):
+        found += ["heightfield"]
+    return found
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(c, marks=pytest.mark.slow if SLOW.search(c) else ())
+        for c in OURS
+        if not opens_a_window(c)
+    ],
+)
+def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str]):
+    furnish(folder, command)
+    status = cli.main(smaller(arguments(command)))
+    assert status == 0, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", WINDOWS)
+def test_without_a_display_only_the_display_is_missing(
+    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    """Its arguments are read before the display is asked for."""
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_SESSION_TYPE"):
+        monkeypatch.delenv(variable, raising=False)
+    furnish(folder, command)
+    status = cli.main(arguments(command))
+    said = capsys.readouterr().err
+    assert "screen to open a window" in said or "no display" in said
+    assert status == (0 if command in ("./play", "playground") else 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [pytest.param(c, marks=ON_LINUX) for c in WINDOWS])
+def test_it_opens_its_window(command: str, folder: Path, tmp_path: Path):
+    furnish(folder, command)
+    screen = Screen(tmp_path, 800, 600)
+    program = Program(screen, tmp_path, [sys.executable, "-m", "playground", *arguments(command)], folder)
+    try:
+        if arguments(command)[:1] == ["fly"]:
+            wait_for_a_picture(program)
+        else:
+            program.wait(lambda now: now["draws"] > 0 and not now["error"])
+    finally:
+        program.close()
+        screen.close()
+
+
+def wait_for_a_picture(program: Program) -> None:
+    """Wait until something is on the screen: ``fly`` does not tell what it shows."""
+    import time
+
+    end = time.monotonic() + 90
+    while time.monotonic() < end:
+        assert program.process.poll() is None, program.complaint()
+        if program.screen.pixels().std() > 5:
+            return
+        time.sleep(0.2)
+    pytest.fail("no picture")
+
+
+# What is named in a text
+
+
+def test_every_option_that_is_named_exists():
+    from typer.main import get_command
+
+    def options(command: object) -> set[str]:
+        own = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}  # type: ignore[attr-defined]
+        return own.union(*map(options, getattr(command, "commands", {}).values()))
+
+    plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
+    known = options(get_command(cli.app)) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    known |= {"--help", "--reuse-window", "--at", "--strict", "--dist", "--check"}  # of other programs
+    named = {o for page in PAGES for o in re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text("utf-8"))}
+    assert named and not named - known - {"--no-install-recommends"}
+
+
+# Programs beside the playground
+
+
+def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.CompletedProcess[str]:
+    """Run a program of this Python's; return what it said."""
+    words = [sys.executable if word == "python" else word for word in words]
+    if words[0] == "pytest":
+        words[:1] = [sys.executable, "-m", "pytest"]
+    return subprocess.run(
+        words, cwd=folder, capture_output=True, text=True, encoding="utf-8", timeout=timeout
+    )
+
+
+SMALL = {
+    "python tests/truth": ["--size", "25"],
+    "python tests/benchmarks/generation.py": ["--size", "65", "--rounds", "1"],
+    "python tests/benchmarks/lighting.py": ["--size", "65", "--rounds", "1"],
+}
+IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
+OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
+UPDATE = "pytest hills --shots-update"
+
+
+def test_every_other_program_is_known():
+    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY}
+    assert {"pytest hills", UPDATE} <= set(IN_HILLS)
+
+
+def test_the_truth_is_printed():
+    done = run(ROOT, ["python", "tests/truth", "--size", "25", "L·N"])
+    assert done.returncode == 0, done.stderr
+    assert "L·N" in done.stdout and "cone" in done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", SMALL)
+def test_a_program_of_the_checkout_runs(command: str):
+    done = run(ROOT, [*command.split(), *SMALL[command]])
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.slow
+def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
+    """As the tutorial has it: no reference fails, an update writes it, then it passes; a turned sun fails."""
+    assert cli.main(["new", "hills"]) == 0
+    for command, wanted in (("pytest hills", 1), (UPDATE, None), ("pytest hills", 0)):
+        done = run(folder, shlex.split(command))
+        assert wanted is None or done.returncode == wanted, done.stdout
+    assert list((folder / "hills" / "screenshots").rglob("*.png"))
+    for command in IN_HILLS:
+        if command not in ("pytest hills", UPDATE):
+            done = run(folder, [*shlex.split(command), "--collect-only"])
+            assert done.returncode == 0, done.stdout
+    sketch = folder / "hills" / "sketch.toml"
+    text = sketch.read_text("utf-8")
+    tutorial = (ROOT / "docs" / "tutorials" / "first-screenshot-test.md").read_text("utf-8")
+    before, after = re.findall(r"`(azimuth = [\d.]+)`", tutorial)
+    assert before in text
+    sketch.write_text(text.replace(before, after), encoding="utf-8")
+    assert run(folder, ["pytest", "hills"]).returncode == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", OF_PLAY)
+def test_play_test_finds_what_is_named(command: str):
+    """The tests themselves are run elsewhere; an update would write this checkout's references."""
+    done = run(ROOT, ["pytest", "--collect-only", "-q", "-m", "", *shlex.split(command)[2:]])
+    assert done.returncode == 0 and "::" in done.stdout, done.stdout

@@ -1,0 +1,131 @@
+"""Every command, technique, public name, key and term has its place in the generated pages."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from site_pages import commands, gallery, glossary, keys, pages, python, shots, techniques
+from typer.main import get_command
+
+import playground
+from playground.cli import app
+from playground.live.keys import KEYS
+from playground.paths import GLSL
+from playground.sketch.catalogue import techniques as listed
+
+from .pages import ROOT
+
+
+def test_every_command_and_each_of_its_options_is_there():
+    text = commands.page()
+
+    def walk(name: str, command: object) -> None:
+        assert re.search(rf"^##+ {name}$", text, re.MULTILINE), name
+        part = text.partition(f" {name}\n\n")[2].partition("\n##")[0]
+        for parameter in command.params:  # type: ignore[attr-defined]
+            for option in parameter.opts if parameter.param_type_name == "option" else ():
+                assert f"<code>{option}</code>" in part, (name, option)
+        for child, found in getattr(command, "commands", {}).items():
+            walk(f"{name} {child}", found)
+
+    walk("playground", get_command(app))
+
+
+def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itself():
+    named = {entry.name for entries in techniques.entries().values() for entry in entries}
+    assert named == {entry.name for entry in listed()} and len(named) > 60
+    index = techniques.index()
+    for entries in techniques.entries().values():
+        for entry in entries:
+            text = techniques.page(entry)
+            assert techniques.path_of(entry).rpartition("/")[2] in index
+            for choice in entry.parameters:
+                assert choice.path.replace("_", "&#95;") in text, (entry.name, choice.path)
+
+
+def test_methods_name_their_source_and_their_checks():
+    told = [techniques.page(e) for names in techniques.entries().values() for e in names]
+    assert sum("| Source of the method |" in text for text in told) > 0.9 * len(told)
+    plain = " ".join(told).replace("\\_", "_").replace("&#95;", "_")
+    checks = set(re.findall(r"\btests/\w+/\w+\.py", plain))
+    missing = [path for path in checks if not (ROOT / path).exists()]
+    assert checks and not missing
+
+
+def test_every_fast_variant_is_on_a_page():
+    told = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
+    files = [path for ending in ("comp", "fast.toml") for path in GLSL.rglob(f"*.{ending}")]
+    names = {path.relative_to(GLSL).as_posix().replace("_", "&#95;") for path in files}
+    assert names and not {name for name in names if name not in told}
+
+
+def test_a_technique_that_says_nothing_of_itself_is_refused(tmp_path: Path):
+    silent = tmp_path / "silent.glsl"
+    silent.write_text('#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 t) { return 0.0; }\n')
+    entry = replace(next(iter(techniques.entries()["generation"])), file=str(silent))
+    with pytest.raises(ValueError, match="begins with no comment"):
+        techniques.description(entry)
+
+
+def test_most_techniques_have_a_picture():
+    every = [e.name for names in techniques.entries().values() for e in names]
+    without = [name for name in every if shots.picture_of(name) is None]
+    assert len(without) <= len(every) // 10, without
+
+
+def test_every_shot_with_a_reference_is_in_the_gallery():
+    text = gallery.page()
+    stems = re.compile(r"[^.]+")  # not morning.2, a further reference of morning
+    files = [p for p in shots.SCREENSHOTS.glob(f"*/{shots.RENDERER}/*.png") if stems.fullmatch(p.stem)]
+    assert len(files) > 200
+    assert not [p for p in files if f"{p.parts[-3]}-{p.stem}.webp" not in text]
+
+
+def test_every_public_name_is_in_the_reference_and_says_what_it_is():
+    text = python.page()
+    for name in playground.__all__:
+        assert re.search(rf"\bplayground\.{name}\b", text), name
+        assert name == "__version__" or inspect.getdoc(getattr(playground, name)), name
+
+
+def test_every_key_is_in_the_table():
+    text = keys.page()
+    for key in KEYS:
+        assert key.meaning.split(";")[0] in text, key.name
+
+
+def test_the_glossary_has_each_term_in_both_languages():
+    terms = glossary.terms()
+    assert len(terms) > 70
+    for language in glossary.LANGUAGES:
+        names = [term.names[language][0] for term in terms]
+        assert len(set(names)) == len(names)
+        text = glossary.page(language)
+        for term in terms:
+            assert f"{{ #{term.key} }}" in text
+            assert re.fullmatch(r"[^.].*\.", term.meaning[language]) and len(term.meaning[language]) < 200
+    avoided = {word for term in terms for word in term.avoid}
+    assert not avoided & {term.names["en"][0] for term in terms}
+
+
+def test_sections_of_the_thesis_have_a_page():
+    form = re.compile(r"(?:(?:\d(?:\.\d)+|introduction), p\. \d+)?")
+    assert not [term.key for term in glossary.terms() if not form.fullmatch(term.thesis)]
+
+
+def test_a_term_without_its_french_is_refused(tmp_path: Path):
+    file = tmp_path / "glossary.toml"
+    file.write_text('[texel]\nen = ["texel"]\nmeans = "One element."\n')
+    with pytest.raises(ValueError, match=r"texel.*missing.*fr"):
+        glossary.terms(file)
+
+
+def test_links_of_a_text_from_elsewhere_lead_into_the_site():
+    text = "[a](docs/how-to/fly.md#controls) [b](glsl/README.md) [c](LICENSE) [d](https://example.org)"
+    assert pages.moved(text, "CONTRIBUTING.md", "contributing.md") == (
+        "[a](how-to/fly.md#controls) [b](reference/shaders.md) c [d](https://example.org)"
+    )

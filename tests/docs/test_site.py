@@ -1,0 +1,65 @@
+"""The site builds without a warning, loads nothing from the network, and is searched in two languages."""
+
+from __future__ import annotations
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import playground
+from playground.sketch.catalogue import techniques as listed
+
+pytestmark = pytest.mark.slow
+
+
+class Loads(HTMLParser):
+    """What a page loads by itself: all but the links that a reader follows."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {name: value or "" for name, value in attrs}
+        self.found += [given[name] for name in ("src", "srcset", "data", "poster") if name in given]
+        if tag == "link" and given.get("rel") not in ("canonical", "next", "prev"):
+            self.found.append(given.get("href", ""))
+
+
+def test_nothing_is_loaded_from_the_network(site: Path):
+    for page in site.rglob("*.html"):
+        loads = Loads()
+        loads.feed(page.read_text("utf-8"))
+        assert not [url for url in loads.found if re.match(r"(?:\w+:)?//", url)], page
+    for style in site.rglob("*.css"):
+        assert not re.search(r"(?:@import|url\()\s*['\"]?(?:https?:)?//", style.read_text("utf-8")), style
+
+
+def test_every_image_is_there_and_pages_stay_small(site: Path):
+    for page in site.rglob("*.html"):
+        for image in re.findall(r'<img [^>]*src="([^"]+)"', page.read_text("utf-8")):
+            assert (page.parent / image).is_file(), (page, image)
+    assert sum(path.stat().st_size for path in site.rglob("*") if path.is_file()) < 40e6
+
+
+def test_the_search_knows_english_and_french(site: Path):
+    index = json.loads((site / "search" / "search_index.json").read_text("utf-8"))
+    assert index["config"]["lang"] == ["en", "fr"]
+    assert list(site.rglob("lunr.fr.min.js"))
+    texts = " ".join(entry["title"] + entry["text"] for entry in index["docs"])
+    assert "penumbra" in texts and "pénombre" in texts and "playground render" in texts
+
+
+def test_every_technique_and_public_name_has_its_place(site: Path):
+    for entry in listed():
+        assert (site / "reference" / "techniques" / f"{entry.name.replace('/', '-')}.html").is_file()
+    text = (site / "reference" / "python.html").read_text("utf-8")
+    for name in playground.__all__:
+        assert f'id="playground.{name}"' in text or name == "__version__", name
+
+
+def test_no_source_of_the_site_is_published(site: Path):
+    assert not [path for path in site.rglob("*.py") if path.name in ("hooks.py", "pages.py")]

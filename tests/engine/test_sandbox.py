@@ -1,0 +1,394 @@
+"""What would kill the driver kills the sandbox's worker, and the next request works."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from playground.engine.planner import smallest_land
+from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
+from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy
+GOOD = """#pragma kernel(output = "a:r32f")
+float kernel(ivec2 texel) { return float(texel.x); }
+"""
+# Each macro doubles the one before: 2**18 additions from a few hundred bytes.
+DOUBLING = "\n".join(["#define M0 x"] + [f"#define M{i} M{i - 1} + M{i - 1}" for i in range(1, 19)])
+CRASH = f"""#pragma kernel(output = "a:r32f")
+{DOUBLING}
+float kernel(ivec2 texel) {{ float x = float(texel.x); return M18; }}
+"""
+# llvmpipe stops every loop after 65,535 turns, nested ones together: slowness takes many in a row,
+# and to be slower than any limit here, the whole again and again.
+LOOP = "for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"
+SLOW = f"""#pragma kernel(output = "a:r32f", repeat = "1000")
+float kernel(ivec2 texel) {{
+    float x = float(texel.x);
+    {LOOP * 60}
+    return x;
+}}
+"""
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def is_gone(pid: int) -> bool:
+    """Wait until a process is gone; say whether it is."""
+    end = time.monotonic() + PATIENCE
+    while is_alive(pid) and time.monotonic() < end:
+        time.sleep(0.02)
+    return not is_alive(pid)
+
+
+def wait(sandbox: Sandbox) -> SandboxReport:
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        if (report := sandbox.poll()) is not None:
+            return report
+        time.sleep(0.005)
+    raise AssertionError("no answer")
+
+
+@pytest.fixture(scope="module")
+def sandbox():
+    with Sandbox(limit_seconds=PATIENCE) as made:
+        yield made
+
+
+def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(GOOD), drivers=("fragment", "compute")))
+    assert report.ok, report.error
+    assert report.error is None
+
+
+def test_the_child_is_warm(sandbox, folder):
+    """The same process answers, mistakes between or not: only its first answer waits for a context."""
+    sandbox.run(TrySketch(folder.one(GOOD)))
+    pid = sandbox._workers.worker.pid
+    assert not sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
+    assert sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
+    assert sandbox._workers.worker.pid == pid
+
+
+def test_a_mistake_comes_back_with_its_place(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong"))))
+    assert not report.ok
+    assert isinstance(report.error, ShaderError)
+    assert report.error.diagnostics[0].line == 2
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_it_tries_the_smallest_land_that_is_accepted(sandbox, folder):
+    """A kernel that takes powers of two only is tried small: whole, its two textures take 8 GiB."""
+    kernel = GOOD.replace('r32f"', 'rgba32f", accepts = "2**n", repeat = "log2(size.x)"')
+    kernel = kernel.replace("float kernel", "vec4 kernel").replace("float(texel.x)", "vec4(1)")
+    sketch = folder.one(kernel, size="size = 16384")
+    assert smallest_land(sketch) == (64, 64)
+    report = sandbox.run(TrySketch(sketch))
+    assert report.ok, report.error
+
+
+def test_a_library_file_is_compiled_alone(sandbox, folder):
+    good = folder.write("lib.glsl", "float twice(float x) { return 2.0 * x; }\n")
+    bad = folder.write("bad.glsl", "float twice(float x) {\n return 2.0 * y; }\n")
+    assert sandbox.run(TryLibrary(str(good), str(folder.path))).ok
+    report = sandbox.run(TryLibrary(str(bad), str(folder.path)))
+    assert report.error is not None
+    assert report.error.diagnostics[0].line == 2
+
+
+def test_what_crashes_the_compiler_kills_the_child_only(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(CRASH)))
+    assert not report.ok
+    assert isinstance(report.error, SandboxCrash)
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def at_work(sandbox: Sandbox) -> int:
+    """Wait until the child is in the middle of a pass; return its process."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        assert sandbox.poll() is None
+        if sandbox._workers.worker.busy and sandbox._workers.worker.progress is not None:
+            return sandbox._workers.worker.pid
+        time.sleep(0.005)
+    raise AssertionError("it did not begin")
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the sandbox (SIGSEGV)"),
+        ("SIGKILL", "pass 'a' was killed by the system in the sandbox (SIGKILL); did memory run out?"),
+    ],
+)
+def test_a_crash_says_how_and_where(sandbox, folder, number, said):
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    sandbox.submit(TrySketch(folder.one(SLOW)))
+    os.kill(at_work(sandbox), signal.Signals[number])
+    report = wait(sandbox)
+    assert isinstance(report.error, SandboxCrash)
+    assert report.error.diagnostics[0].message == said
+    assert report.error.diagnostics[0].file == str(folder.path / "one.glsl")
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_a_child_that_died_is_replaced_before_it_is_needed(sandbox, folder):
+    report = sandbox.run(TrySketch(folder.one(CRASH)))
+    assert isinstance(report.error, SandboxCrash)
+    assert sandbox._workers.worker.runs and not sandbox._workers.worker.busy
+    pid = sandbox._workers.worker.pid
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    assert sandbox._workers.worker.pid == pid
+
+
+def test_a_child_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
+    """It is dead when it is handed something, or dies just then: another is asked."""
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+    os.kill(sandbox._workers.worker.pid, signal.SIGKILL)
+    report = sandbox.run(TrySketch(folder.one(GOOD)))
+    assert report.ok, report.error
+
+
+MONSTERS = {
+    "thirty macros, each twice the one before": "\n".join(
+        ["#define M0 x"] + [f"#define M{i} M{i - 1} + M{i - 1}" for i in range(1, 31)]
+    )
+    + "\nfloat run(float x) { return M30; }",
+    "twenty thousand lines, one after the other": "float run(float x) {\n"
+    + "\n".join(f"x = fract(x * 1.{i} + {i}.5);" for i in range(20000))
+    + "\nreturn x; }",
+    "an array of a gigabyte": "float big[250000000];\n"
+    "float run(float x) { big[int(x) * 1000] = 1.0; return big[int(x) * 77]; }",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MONSTERS)
+def test_a_monstrous_text_is_stopped_or_crashes_and_the_next_is_tried(folder, name):
+    kernel = GOOD.replace("float kernel", f"{MONSTERS[name]}\nfloat kernel").replace(
+        "float(texel.x)", "run(float(texel.x))"
+    )
+    with Sandbox(limit_seconds=PATIENCE, memory_bytes=2**30) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = 1.5
+        report = sandbox.run(TrySketch(folder.one(kernel)))
+        assert isinstance(report.error, SandboxTimeout | SandboxCrash), report
+        assert report.error.diagnostics[0].message.startswith("pass 'a' ")
+        sandbox.limit_seconds = PATIENCE
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_a_long_text_is_no_mistake(sandbox, folder):
+    lines = "\n".join(f"float f{i}(float x) {{ return fract(x * 1.{i}); }}" for i in range(2000))
+    report = sandbox.run(TrySketch(folder.one(GOOD.replace("float kernel", f"{lines}\nfloat kernel"))))
+    assert report.ok, report.error
+
+
+def test_what_takes_too_long_is_stopped(folder):
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        pid = sandbox._workers.worker.pid
+        sandbox.limit_seconds = 0.7
+        report = sandbox.run(TrySketch(folder.one(SLOW)))
+        assert isinstance(report.error, SandboxTimeout)
+        assert "pass 'a' took longer than 0.7 s" in str(report.error)
+        assert report.error.diagnostics[0].file.endswith("one.glsl")
+        assert is_gone(pid)
+        sandbox.limit_seconds = PATIENCE
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
+    """A driver draws later than it is told to: the quick passes after a slow one are not to blame."""
+    reads = "uniform sampler2D from; //! input\n"
+    after = GOOD.replace("float kernel", f"{reads}float kernel").replace(
+        "float(texel.x)", "texelFetch(from, texel, 0).r"
+    )
+    folder.write("slow.glsl", SLOW.replace("1000", "1"))  # one draw, which is only queued
+    folder.write("after.glsl", after)
+    sketch = folder.sketch(
+        '[[pass]]\nname = "slow"\nuse = "./slow"\nsize = 257\n'
+        '[[pass]]\nname = "after"\nuse = "./after"\ninputs = { from = "slow" }\n'
+    )
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.limit_seconds = 0.7
+        report = sandbox.run(TrySketch(sketch, drivers=("fragment", "auto")))
+    assert isinstance(report.error, SandboxTimeout)
+    assert "pass 'slow' took longer than 0.7 s by the fragment driver" in str(report.error)
+    assert report.error.diagnostics[0].file.endswith("slow.glsl")
+
+
+def test_submit_never_waits_and_the_newest_wins(folder):
+    # Large requests: a pipe that nobody reads would fill.
+    padding = "\n".join(f"// {i} {'x' * 100}" for i in range(3000))
+    wrong = [
+        TrySketch(folder.one(GOOD.replace("texel.x", f"wrong{number}") + padding)) for number in range(20)
+    ]
+    with Sandbox(limit_seconds=PATIENCE) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        pid = sandbox._workers.worker.pid
+        sandbox.submit(TrySketch(folder.one(SLOW)))
+        for request in wrong:
+            sandbox.submit(request)
+        assert sandbox.busy and sandbox._workers.worker.pid == pid and is_alive(pid), (
+            "nothing waited for the child"
+        )
+        report = wait(sandbox)
+        assert "wrong19" in str(report.error), "within the limit: the child that hung was killed for it"
+        assert sandbox._workers.worker.pid != pid and is_gone(pid)
+        assert not sandbox.busy
+        assert sandbox.poll() is None
+
+
+def test_a_child_that_takes_long_has_a_spare_that_takes_its_place(folder):
+    with Sandbox(limit_seconds=3600.0) as sandbox:
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+        sandbox.submit(TrySketch(folder.one(SLOW)))
+        first = at_work(sandbox)
+        end = time.monotonic() + PATIENCE
+        while (
+            sandbox._workers.spare is None or not sandbox._workers.spare.is_ready
+        ) and time.monotonic() < end:
+            assert sandbox.poll() is None
+            time.sleep(0.005)
+        spare = sandbox._workers.spare.pid
+        sandbox.submit(TrySketch(folder.one(GOOD)))
+        assert wait(sandbox).ok
+        assert sandbox._workers.worker.pid == spare and is_gone(first)
+    assert is_gone(spare)
+
+
+def test_an_older_answer_is_not_given(folder, sandbox):
+    sandbox.run(TrySketch(folder.one(GOOD)))
+    sandbox.submit(TrySketch(folder.one(GOOD.replace("texel.x", "older"))))
+    sandbox.submit(TrySketch(folder.one(GOOD)))
+    assert wait(sandbox).ok
+
+
+def test_memory_has_a_limit(folder):
+    hungry = (
+        GOOD.replace('r32f"', 'rgba32f"')
+        .replace("float kernel", "vec4 kernel")
+        .replace("float(texel.x)", "vec4(1)")
+    )
+    body = '[[pass]]\nname = "a"\nuse = "./one"\nsize = 8192\n'
+    with Sandbox(limit_seconds=PATIENCE, memory_bytes=600 * 2**20) as sandbox:
+        folder.write("one.glsl", hungry)
+        report = sandbox.run(TrySketch(folder.sketch(body)))
+        assert not report.ok, "a texture of 1 GiB"
+        assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_close_leaves_no_process(folder):
+    sandbox = Sandbox()
+    sandbox.start()
+    pid = sandbox._workers.worker.pid
+    sandbox.close()
+    assert is_gone(pid)
+    with Sandbox(limit_seconds=PATIENCE) as busy:
+        busy.run(TrySketch(folder.one(GOOD)))
+        pid = busy._workers.worker.pid
+        busy.submit(TrySketch(folder.one(SLOW)))
+    assert is_gone(pid), "what it was at would have taken it an hour"
+    assert not busy.busy
+
+
+def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(text)],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+        # A job that a shell began in the background is deaf to Ctrl-C, and so are its children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
+SCRIPT = """
+from dataclasses import replace
+from playground.engine.sandbox import Sandbox, TrySketch
+from playground.process import worker
+from playground.sketch.load import load
+with Sandbox(limit_seconds=90.0) as sandbox:
+    workers = sandbox._workers
+    worker._GRACE = 8.0  # [s] after its limit, when a process ends by itself
+    workers.launch = replace(workers.launch, limit_seconds=0.01, ends_with_parent=PIPE)
+    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox._workers.worker.pid, flush=True)
+    sandbox.run(TrySketch(load("slow_sketch.toml")))
+"""
+
+
+@pytest.fixture
+def two(folder):
+    folder.write("good.glsl", GOOD)
+    folder.write("slow.glsl", SLOW)
+    for name in ("good", "slow"):
+        folder.write(
+            f"{name}_sketch.toml", f'format = 1\nsize = 17\n[[pass]]\nname = "a"\nuse = "./{name}"\n'
+        )
+    return folder.path
+
+
+@pytest.mark.parametrize(
+    ("number", "pipe"),
+    [
+        (signal.SIGINT, False),
+        (signal.SIGKILL, True),
+        pytest.param(signal.SIGKILL, False, marks=pytest.mark.slow),
+    ],
+)
+def test_a_parent_that_is_stopped_leaves_no_worker(two, number, pipe):
+    """Ctrl-C ends it at once, and so does a killed parent's pipe; without one it ends by its own clock."""
+    with run_script(two, SCRIPT.replace("PIPE", str(pipe))) as parent:
+        assert parent.stdout is not None
+        ok, pid = parent.stdout.readline().split()
+        time.sleep(0.3)
+        os.kill(parent.pid, number)
+        parent.wait(PATIENCE)
+    try:
+        assert ok == "True"
+        assert is_gone(int(pid))
+    finally:
+        if is_alive(int(pid)):
+            os.kill(int(pid), signal.SIGKILL)
+
+
+def test_no_module_of_the_user_s_folder_is_run(two):
+    """A sketch is data: what lies beside it is never imported, whatever its name."""
+    for name in ("numpy", "struct", "playground"):
+        (two / f"{name}.py").write_text('open("was_run", "w").close()\nraise SystemExit(3)\n')
+    # As the command does: the folder where it is started is not where modules are looked for.
+    text = f"import sys\nsys.path[:] = [{str(ROOT)!r}, *(p for p in sys.path if p)]\n" + SCRIPT
+    text = text.replace("PIPE", "True").replace('    sandbox.run(TrySketch(load("slow_sketch.toml")))\n', "")
+    with run_script(two, text) as parent:
+        out, _ = parent.communicate(timeout=180)
+    assert out.startswith("True")
+    assert not (two / "was_run").exists()
+
+
+def test_the_errors_old_names_are_read_with_a_note():
+    import playground
+
+    for kind in ("Error", "Timeout", "Crash"):
+        with pytest.warns(DeprecationWarning, match=f"Trial{kind} is called Sandbox{kind} now"):
+            assert getattr(playground, f"Trial{kind}") is getattr(playground, f"Sandbox{kind}")

@@ -1,0 +1,90 @@
+"""A sketch is sent whole, and a kernel that the other end has already is not sent again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from playground.engine.sandbox import TryLibrary, TrySketch
+from playground.process.kernel_pickle import Decoder, Encoder
+from playground.sketch.load import load
+from playground.sketch.model import Kernel, Sketch, kernels_of
+
+LAND = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.5; }
+"""
+SKETCH = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "./land"
+[[pass]]
+name = "again"
+use = "./land"
+[[pass]]
+name = "light"
+use = "lighting/ray_cast"
+inputs = { height = "height" }
+[view]
+use = "view/terrain"
+"""
+
+
+@dataclass
+class Ends:
+    """Both ends, and the size of what was sent last."""
+
+    encoder: Encoder
+    decoder: Decoder
+    bytes: int = 0
+
+    def send(self, message: object) -> object:
+        data = self.encoder.encode(message)
+        self.bytes = len(data)
+        return self.decoder.decode(data)
+
+
+@pytest.fixture
+def ends() -> Ends:
+    return Ends(Encoder(), Decoder())
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "land.glsl").write_text(LAND)
+    (tmp_path / "sketch.toml").write_text(SKETCH)
+    return tmp_path
+
+
+def kernels(sketch: Sketch) -> dict[str, Kernel]:
+    return dict(kernels_of(sketch.graph))
+
+
+def test_what_is_received_is_what_was_sent(ends, folder):
+    for edit in ("0.5", "0.25", "0.5"):
+        (folder / "land.glsl").write_text(LAND.replace("0.5", edit))
+        request = TrySketch(load(folder), time=1.0, drivers=("fragment",))
+        assert ends.send(request) == request
+    library = TryLibrary("a", "b")
+    assert ends.send(library) == library
+    assert ends.send(request) == request, "neither end held any of it"
+
+
+def test_only_what_changed_is_sent(ends, folder):
+    before = kernels(ends.send(TrySketch(load(folder))).sketch)
+    whole = ends.bytes
+    (folder / "land.glsl").write_text(LAND.replace("0.5", "0.25"))
+    after = kernels(ends.send(TrySketch(load(folder))).sketch)
+    assert ends.bytes < whole / 4
+    assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
+    assert after["height"] is after["again"], "one object stays one"
+
+
+def test_neither_end_holds_what_is_no_longer_used(ends, folder):
+    for number in range(20):
+        (folder / "land.glsl").write_text(LAND.replace("0.5", f"0.{number + 1}"))
+        sketch = load(folder)
+        ends.send(TrySketch(sketch))
+        distinct = len({id(kernel) for kernel in kernels(sketch).values()})
+        assert len(ends.encoder._known) == len(ends.decoder._known) == distinct
