@@ -13,7 +13,7 @@ MOST = 512
 
 
 @dataclass(eq=False)
-class Kept:
+class Cached:
     """The results of one pass, or of all passes of a loop after some iteration."""
 
     results: dict[str, Result]  # by the pass's path
@@ -37,7 +37,7 @@ class Cache:
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
         self._pool = pool
-        self._kept: OrderedDict[str, Kept] = OrderedDict()
+        self._kept: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
         self._may_grow: set[str] = set()  # used since they were weighed
         self._sizes: dict[str, int] = {}  # [bytes] of what is kept, as it was when last looked at
@@ -71,7 +71,7 @@ class Cache:
         self._weigh_used()
         self.trim()
 
-    def get(self, key: str) -> Kept | None:
+    def get(self, key: str) -> Cached | None:
         """Return what is kept and mark it as used; None if there is nothing."""
         kept = self._kept.get(key)
         if kept is None:
@@ -80,11 +80,11 @@ class Cache:
         self._use(key)
         return kept
 
-    def peek(self, key: str) -> Kept | None:
+    def peek(self, key: str) -> Cached | None:
         """Return what is kept, as if nobody had looked."""
         return self._kept.get(key)
 
-    def put(self, key: str, kept: Kept) -> None:
+    def put(self, key: str, kept: Cached) -> None:
         """Keep something, used by the current frame; what is over the bound goes."""
         self.drop(key)
         self._kept[key] = kept

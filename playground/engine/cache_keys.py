@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from playground.engine.files import content_hash
-from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
@@ -41,7 +41,7 @@ class Keys:
 
     def changes(self, node: PlanNode) -> frozenset[str]:
         """Return the paths of the loops around a node whose turns change it."""
-        return self.loop_loops[node.path] if isinstance(node, Turns) else self.step_loops[node.path]
+        return self.loop_loops[node.path] if isinstance(node, LoopStep) else self.step_loops[node.path]
 
 
 class KeyMaker:
@@ -173,7 +173,7 @@ class _Made:
         self, node: PlanNode, loop: str, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
     ) -> None:
         """Add a node; ``loop`` is the innermost loop around it, ``fed`` names what loops feed back."""
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             self._loop(node, fed, varying)
             return
         kernel, path = node.kernel, node.path
@@ -215,7 +215,7 @@ class _Made:
             shown = _digest([raw, *step.between])
         return _Known(step, written, _digest([step.path, parts]), raw, shown)
 
-    def _loop(self, loop: Turns, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
+    def _loop(self, loop: LoopStep, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
         own = _loops_in(loop)
         outer: frozenset[str] = frozenset()
@@ -251,10 +251,10 @@ class _Made:
         return fed[source] if isinstance(source, Fed) else f"{self.keys.steps[source.path]}:{source.output}"
 
 
-def _loops_in(loop: Turns) -> set[str]:
+def _loops_in(loop: LoopStep) -> set[str]:
     found = {loop.path}
     for node in loop.body:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             found |= _loops_in(node)
     return found
 

@@ -22,7 +22,7 @@ from playground.engine.error_place import told_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
-from playground.engine.standalone import free_name, stage, with_pictures
+from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
@@ -224,7 +224,7 @@ class _Check:
 
     def on_stage(self, technique: Technique) -> None:
         """Try a technique: what it says by both drivers, then its fast variants, verified or not."""
-        self.notes = () if self.plain else left_out(self.stage(technique))
+        self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
         self.attempt(self.request(without_variants(technique), BOTH))
         if any_variants(technique) and not self.plain and not self.errors:
             self.attempt(self.request(trusted(technique), (COMPUTE,)))
@@ -250,12 +250,12 @@ class _Check:
         return read_technique(f"./{path.stem}", path.parent, self.root)
 
     def request(self, technique: Technique, drivers: tuple[str, ...]) -> TrySketch:
-        return TrySketch(self.stage(technique), _FRAME, drivers=drivers, refuses="all")
+        return TrySketch(self.standalone_sketch(technique), _FRAME, drivers=drivers, refuses="all")
 
-    def stage(self, technique: Technique) -> Sketch:
+    def standalone_sketch(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to placeholders."""
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
-        found = stage(technique, free_name(subject, technique), self.root, self.picture)
+        found = standalone_sketch(technique, free_name(subject, technique), self.root, self.picture)
         return replace(found, name=self.path.stem, file=str(self.path))
 
     @property

@@ -15,10 +15,9 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.cache import Cache
-from playground.engine.cache import Kept as InMemory
+from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
-from playground.engine.disk_cache import Kept, Store
+from playground.engine.disk_cache import CachedTextures, DiskCache
 from playground.engine.disk_cache_choice import choose, passing, worth_keeping
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
@@ -47,7 +46,7 @@ class DiskCaching:
 
     def __init__(
         self,
-        store: Store,
+        store: DiskCache,
         *,
         floor: float = FLOOR,
         rest: float = REST,
@@ -118,7 +117,7 @@ class DiskCaching:
         result = execution.runner.pool.take(step.size, outputs)
         for output, data in zip(outputs, kept.data, strict=True):
             result.textures[output.name].write(data, alignment=1)
-        execution.cache.put(key, InMemory({step.path: result}))
+        execution.cache.put(key, Cached({step.path: result}))
         self._note(key, kept.cost)
         self.reads += 1
         return True
@@ -194,7 +193,9 @@ class DiskCaching:
                 parts.append(memoryview(whole).toreadonly())
             outputs = tuple((o.name, o.format) for o in result.outputs)
             made_for = f"{plan.sketch.name}: {worth.path}"
-            self.store.keep(worth.key, Kept(result.size, outputs, worth.cost, made_for, tuple(parts)))
+            self.store.keep(
+                worth.key, CachedTextures(result.size, outputs, worth.cost, made_for, tuple(parts))
+            )
 
 
 def _read_rows(ctx: moderngl.Context, result: Result, output: str, south: int, north: int) -> bytes:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 
-from playground.engine.cache import Cache, Kept
+from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
-from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
@@ -53,7 +53,7 @@ class Execution:
         for node in nodes:
             if not self.keys.changes(node):
                 self._run(node, {}, None, {})
-            elif isinstance(node, Turns):
+            elif isinstance(node, LoopStep):
                 self.run(node.body)
 
     def _run(
@@ -65,9 +65,9 @@ class Execution:
             if id(node) in self._settled:
                 return
             self._settled.add(id(node))
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             if passing:
-                state = Kept({})
+                state = Cached({})
                 self._loop(node, state, fed, owned)
                 owned |= state.results
             else:
@@ -96,7 +96,7 @@ class Execution:
         kept = self.cache.get(key)
         if kept is None:
             raw = self._raw(step, self.keys.raw[step.path])
-            kept = Kept({step.path: self.runner.filled(raw, step.between)})
+            kept = Cached({step.path: self.runner.filled(raw, step.between)})
             self.cache.put(key, kept)
         return next(iter(kept.results.values()))
 
@@ -108,7 +108,7 @@ class Execution:
             goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)
             earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
             with self.timed(step.path, key):
-                kept = Kept({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
+                kept = Cached({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
             self.cache.put(key, kept)
             if goes_on:
                 self.cache.note_turn(step.path, unfinished, key, step.repeat)
@@ -127,19 +127,21 @@ class Execution:
 
     # ── loops ────────────────────────────────────────────────────────────────
 
-    def _kept_loop(self, loop: Turns) -> None:
+    def _kept_loop(self, loop: LoopStep) -> None:
         """Run a loop from the iteration that is kept, or from the start where that lies further on."""
         key = self.keys.loops[loop.path]
         state = self.cache.get(key)
         if state is None or state.turn > loop.repeat:
-            state = Kept({})
+            state = Cached({})
             self.cache.put(key, state)
         with self.timed(loop.path, key) if state.turn < loop.repeat else nullcontext():
             self._loop(loop, state, {}, {})
         self.cache.grew(key)
         self.cache.grew(key)
 
-    def _loop(self, loop: Turns, state: Kept, around: Mapping[Fed, Wired], owned: dict[str, Result]) -> None:
+    def _loop(
+        self, loop: LoopStep, state: Cached, around: Mapping[Fed, Wired], owned: dict[str, Result]
+    ) -> None:
         """Run a loop's iterations after ``state``, which each replaces; what stays over them is ``owned``."""
         self.run(loop.body)
         fed = dict(around)
@@ -163,13 +165,15 @@ class Execution:
                 for node in changing:
                     self._run(node, fed, (turn, loop.whole), made)
             except BaseException:
-                Kept(made).let_go(self.runner.pool)
+                Cached(made).let_go(self.runner.pool)
                 raise
-            Kept(state.results).let_go(self.runner.pool)
+            Cached(state.results).let_go(self.runner.pool)
             state.results, state.turn = made, turn + 1
             self.results |= made
 
-    def _unturned(self, loop: Turns, changing: list[PlanNode], fed: Mapping[Fed, Wired]) -> dict[str, Result]:
+    def _unturned(
+        self, loop: LoopStep, changing: list[PlanNode], fed: Mapping[Fed, Wired]
+    ) -> dict[str, Result]:
         """Return what a loop gives before its first iteration: what that would read, else zeros."""
         found = {step.path: self.runner.empty(step) for step in walk(tuple(changing))}
         for name, _, ref in loop.feedback:
@@ -185,7 +189,7 @@ def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -
     steps = {step.path: step for step in plan.walk()}
     found: list[str] = []
     for node in wanted:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             if not cache.holds(keys.loops[node.path], node.repeat):
                 found += [step.path for step in walk((node,))]
         elif keys.steps[node.path] not in cache and not _draws_nothing(node, steps):

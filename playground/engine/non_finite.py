@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.frame_record import FrameSource
-from playground.engine.plan import Plan, Step, Turns, every_node
+from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
 from playground.gpu.textures import read_raw, split_format
 from playground.gpu.wrap import FRAGMENT
@@ -186,7 +186,7 @@ def _steps(plan: Plan | None) -> Iterator[tuple[Step, bool]]:
         return
     inside: set[int] = set()
     for node in every_node(plan.nodes):
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             inside |= {id(step) for step in every_node(node.body)}
         else:
             yield node, id(node) in inside

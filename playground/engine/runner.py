@@ -70,9 +70,9 @@ class Runner:
         eye = plan.eye
         self._given = {
             "time": plan.time,
-            "extent": plan.land.extent,
-            "relief": plan.land.relief,
-            "base_elevation": plan.land.base_elevation,
+            "extent": plan.terrain.extent,
+            "relief": plan.terrain.relief,
+            "base_elevation": plan.terrain.base_elevation,
             "clip_from_world": tuple(eye.clip_from_world.T.ravel().tolist()),
             "world_from_clip": tuple(eye.world_from_clip.T.ravel().tolist()),
             "eye": eye.position,

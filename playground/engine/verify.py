@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.standalone import free_name, stage
+from playground.engine.standalone import free_name, standalone_sketch
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, shown
 from playground.sketch import expressions
@@ -169,7 +169,7 @@ def _subject(technique: Technique) -> str:
 
 def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
-    made = stage(technique, _subject(technique), folder, picture, seed=seed)
+    made = standalone_sketch(technique, _subject(technique), folder, picture, seed=seed)
     starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
     passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
     return replace(made, graph=replace(made.graph, passes=passes))

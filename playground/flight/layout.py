@@ -109,7 +109,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
             f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_REACH}={apron}",
         )
     plan = engine.plan_for(sketch, (1, 1))
-    extent, relief = plan.land.extent, plan.land.relief
+    extent, relief = plan.terrain.extent, plan.terrain.relief
     assert extent is not None and relief is not None
     sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
     side = sizes[_HEIGHT][0]
@@ -140,7 +140,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
         apron=apron,
         spacing=extent[0] / (side - 1),
         relief=relief,
-        base=plan.land.base_elevation or 0.0,
+        base=plan.terrain.base_elevation or 0.0,
         ground=intervals * finest + 1,
         shares=shares,
         view=_view(sketch, leaves),

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
-from playground.gpu.driver_advice import mend
+from playground.gpu.driver_advice import advice
 
 if TYPE_CHECKING:
     import moderngl
@@ -115,7 +115,7 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         rest = "the only one is 0" if count == 1 else f"there are {count}, from 0"
         raise ContextError(f"--device {device}: there is no such EGL device; {rest}")
     theirs = os.environ if environment is None else environment
-    raise ContextError(f"{mend(cause, sys.platform, theirs)} ({cause})")
+    raise ContextError(f"{advice(cause, sys.platform, theirs)} ({cause})")
 
 
 def _open_software(device: int | None) -> moderngl.Context:

@@ -369,7 +369,7 @@ def complaint(message: str) -> Complaint | None:
     return next((known for known in COMPLAINTS if known.matches(message)), None)
 
 
-def mend(message: str, platform: str, environ: Mapping[str, str]) -> str:
+def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
     """Return, in one line, what a failure means and what to do about it.
 
     ``message`` is what the exception says, with what the driver printed before

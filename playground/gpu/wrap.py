@@ -33,7 +33,7 @@ _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 
 
 @dataclass(frozen=True)
-class Stage:
+class ShaderStage:
     """The text of one shader stage."""
 
     text: str
@@ -53,7 +53,7 @@ class Wrapped:
 
     kernel: Kernel
     driver: str  # fragment | compute | draw
-    stages: dict[str, Stage]  # vertex and fragment, or compute
+    stages: dict[str, ShaderStage]  # vertex and fragment, or compute
 
 
 def wrap(kernel: Kernel, driver: str) -> Wrapped:
@@ -120,7 +120,7 @@ def previous_name(kernel: Kernel, output: Output) -> str:
     return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
 
 
-def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
+def _quad(kernel: Kernel, version: str = "#version 330") -> ShaderStage:
     """Return the vertex shader that covers the picture, in the version of the fragment shader.
 
     Versions differ in their words, and those of OpenGL ES link with their own kind only.
@@ -128,15 +128,15 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
     number = _NUMBER.match(version)
     is_old = number is not None and int(number.group(1)) < 130
     text = own_part("triangle_from_buffer.vert", corner=CORNER) if is_old else TRIANGLE
-    return Stage(text.replace("#version 330", version), 0, kernel.source, "")
+    return ShaderStage(text.replace("#version 330", version), 0, kernel.source, "")
 
 
-def _whole(kernel: Kernel) -> Stage:
+def _whole(kernel: Kernel) -> ShaderStage:
     """Return a plain shader as it is, but // for blank lines above #version: Mesa does not count those."""
     lines = [line.code for line in kernel.source.lines]
     above = next((i for i, code in enumerate(lines) if code.strip()), 0)
     text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"
-    return Stage(text, 1, kernel.source, "void main()")
+    return ShaderStage(text, 1, kernel.source, "void main()")
 
 
 def version_line(source: SourceText) -> Line | None:
@@ -155,13 +155,13 @@ def reads_unwired(kernel: Kernel) -> bool:
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
-def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
+def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> ShaderStage:
     if reads_unwired(kernel):
         fetch, offset = FETCHES.values()
         before = [*before, own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)]
         code = _FETCH.sub(lambda match: FETCHES[match.group()], code)
     head = "\n".join(before) + "\n"
-    return Stage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
+    return ShaderStage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
 
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:

@@ -25,7 +25,7 @@ from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import standing
@@ -61,7 +61,7 @@ def flatten(
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
     inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
     asked = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
-    shape = _shape(Same(graph), kinds, *asked)
+    shape = _shape(Identity(graph), kinds, *asked)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -91,7 +91,7 @@ def flatten(
 
 @lru_cache(maxsize=32)
 def _shape(
-    key: Same[Graph],
+    key: Identity[Graph],
     kinds: frozenset[str],
     opened: tuple[str, ...],
     stopped: tuple[str, ...],
@@ -143,7 +143,14 @@ class _Filler:
             return replace(node, body=tuple([self.node(inside) for inside in node.body]))
         values = self.values
         own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
-        return Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec)
+        return Leaf(
+            path=node.path,
+            kernel=node.kernel,
+            values=own,
+            inputs=node.inputs,
+            folder=self.folder,
+            spec=node.spec,
+        )
 
     def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
         """Return nodes that had values, with those of now in the ``stale`` leaves."""
@@ -320,7 +327,8 @@ class _Flattener:
         else:
             return self.expand(technique, path, wires)
         wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
-        return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
+        inputs = tuple((name, wires.get(name)) for name in wanted)
+        return [Leaf(path=path, kernel=kernel, values=(), inputs=inputs, folder="", spec=spec)]
 
     def _passes(
         self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
-from playground.sketch.assign import LAND, check_value
+from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.technique import (
@@ -145,7 +145,7 @@ class Sketch:
         overrides, terrain = dict(self.overrides), dict[str, Any]()
         for path, given in values.items():
             found = check_value(self, path, given)
-            if path in LAND:
+            if path in TERRAIN_KEYS:
                 terrain[path] = found
             else:
                 overrides.pop(path, None)  # what is set last comes last, and wins

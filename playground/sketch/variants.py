@@ -17,7 +17,7 @@ from shlex import quote
 
 from playground.paths import shown
 from playground.sketch.canonical import content_of
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
 
 
@@ -36,11 +36,11 @@ def left_out(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[str, ..
     """Return a sentence for each fast variant of some ``kinds`` that its sketch cannot have run, and why."""
     if sketch.plain:
         return ()
-    return _left_out(Same(sketch.graph), frozenset(kinds))
+    return _left_out(Identity(sketch.graph), frozenset(kinds))
 
 
 @lru_cache(maxsize=64)
-def _left_out(key: Same[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
+def _left_out(key: Identity[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_sentences(key.object, kinds)))
 
 

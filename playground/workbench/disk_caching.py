@@ -6,7 +6,7 @@ time, and nobody would be told which of them made it.
 
 from __future__ import annotations
 
-from playground.engine.disk_cache import store_for
+from playground.engine.disk_cache import disk_cache_for
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.workbench.actions import Actions
@@ -28,7 +28,7 @@ class Storing:
     def attach(self, engine: Engine) -> None:
         """Have an engine keep its land, from its next frame on."""
         if self._limit:
-            engine.disk_caching = DiskCaching(store_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(disk_cache_for(engine.info, self._limit))
 
     def turn(self, actions: Actions, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""

@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import fields, replace
 
 from playground.errors import ParameterError, PlaygroundError
-from playground.sketch.assign import LAND, resolve, value_of, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, value_of, values_of
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.sketch.save import ReadOnlySketch
@@ -34,7 +34,7 @@ def keyframes_of(actions: Actions) -> tuple[Keyframe, ...]:
 def changed_paths(actions: Actions) -> list[str]:
     """Return the parameters that are set by hand and that a keyframe can set."""
     draft = actions.session.shown
-    return [path for path in draft.applied if path not in LAND] if draft is not None else []
+    return [path for path in draft.applied if path not in TERRAIN_KEYS] if draft is not None else []
 
 
 def add_here(actions: Actions, paths: Collection[str], *, camera: bool = True) -> bool:
@@ -170,7 +170,7 @@ def _camera_of(actions: Actions, file: Sketch, now: Sketch) -> dict[str, float |
 
 def _name_for(file: Sketch, known: Sequence[Keyframe], path: str) -> str:
     """Return the name that keyframes have for a parameter already, else its own."""
-    if path in LAND:
+    if path in TERRAIN_KEYS:
         raise ParameterError(f"'{path}' is the land's; keyframes set parameters and the camera")
     mine = _leaves(file, path)
     if not mine:

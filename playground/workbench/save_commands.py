@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
 from playground.paths import shown
-from playground.sketch.assign import LAND, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
 from playground.workbench.actions import Actions
@@ -116,7 +116,11 @@ def _before(draft: Draft) -> dict[Key, object]:
     values = values_of(draft.base)
     found: dict[Key, object] = {}
     for path in draft.applied:
-        known = getattr(draft.base, path) if path in LAND else values[resolve(draft.base.graph, path)[0].path]
+        known = (
+            getattr(draft.base, path)
+            if path in TERRAIN_KEYS
+            else values[resolve(draft.base.graph, path)[0].path]
+        )
         found["value", path] = known
     for name, _ in draft.edits.techniques:
         spec = draft.file.graph.find(name)

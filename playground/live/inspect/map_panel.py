@@ -51,7 +51,7 @@ def metres_of(actions: Actions) -> float | None:
     session = actions.session
     if session.view.map is None or session.plan is None or session.view.map.ref.partition(":")[2] != "height":
         return None
-    return session.plan.land.relief
+    return session.plan.terrain.relief
 
 
 def _legend(shown: Map, actions: Actions, look: Theme) -> None:
