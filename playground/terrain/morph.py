@@ -17,7 +17,7 @@ from playground.terrain.tiles import CELLS, LEVELS, Chosen, Piece, rims_of
 from playground.terrain.visibility import FAR, Boxes, Floats, View, boxes_of
 
 START = 0.8
-"""Where vertices begin to slide, over the distance that a level reaches: MORPH_START in view/vertices.glsl, as a test says."""
+"""Where vertices begin to slide, over a level's distance: MORPH_START in view/vertices.glsl (tested)."""
 NEARLY = 0.8
 """From where on a box counts, over the distance at which it needs a finer level."""
 
