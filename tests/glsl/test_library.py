@@ -85,7 +85,7 @@ def test_a_block_of_parameters_holds_nothing_else(name):
     assert all(line.comment.startswith("!") for line in source.lines if line.code.startswith("uniform "))
 
 
-@each("name", [n for n in NAMES if n.split("/")[0] not in ("generation", "noise")])
+@each("name", NAMES)
 def test_its_lines_can_be_quoted(name):
     lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
     assert [f"{n}: {line}" for n, line in enumerate(lines, 1) if len(line) >= 100] == []
