@@ -5,11 +5,11 @@
     sketch = playground.load("jacksboro")                    # a shipped sketch, or a path
     with playground.headless() as engine:                    # EGL: no display, no GPU needed
         frame = engine.render(sketch, size=(1280, 720))      # shows itself in a notebook
-        frame.save("land.png")
+        frame.save("terrain.png")
         height = engine.read(sketch, "height")               # float32, row 0 in the south
         evening = sketch.with_values({"light.sun": (250.0, 12.0)})
         square = playground.load("diamond_square")
-        for turn, values in engine.steps(square, "height"):  # a repeated kernel, turn by turn
+        for step, values in engine.steps(square, "height"):  # a repeated kernel, step by step
             ...
 
 A sketch is a frozen value; setting a parameter makes a new one. Importing this opens

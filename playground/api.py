@@ -23,13 +23,13 @@ def headless(
     cache_bytes: int = CACHE_BYTES,
     notice: Callable[[str], None] = warn,
 ) -> Engine:
-    """Open an engine on a context with no window; use it with ``with``, or call its ``release()``.
+    """Open an engine on a context without a window; use it with ``with``, or call its ``release()``.
 
-    ``software`` chooses the software renderer, ``device`` an EGL device by number, ``driver``
-    is "auto", "fragment" or "compute"; at most ``cache_bytes`` of textures are cached. What is
-    drawn although something is wrong with it gives a ``PlaygroundWarning``, once. ``notice``
-    receives why a fast variant does not run; by default it gives a ``PlainFormWarning``, and
-    another ``notice`` leaves out the other warnings as well. Raises ``ContextError`` in a sentence.
+    ``software`` asks for the software renderer, ``device`` for an EGL device by number,
+    ``driver`` is "auto", "fragment" or "compute". What can be drawn although something is wrong
+    raises Python's warning ``PlaygroundWarning``, once. ``notice`` receives the reason why a fast
+    variant does not run: by default as a ``PlainFormWarning``; with a function of your own, the
+    other warnings are left out as well. Raises ``ContextError``.
     """
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
@@ -50,10 +50,10 @@ def render(
     values: Mapping[str, object] | None = None,
     plain: bool = False,
 ) -> Frame:
-    """Render one picture with a context of its own.
+    """Render one frame with a context of its own.
 
     ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path; ``plain`` runs
-    every technique in its canonical form, no fast variant. For more than one picture, keep an
+    every technique in its canonical form, no fast variant. For more than one frame, keep an
     engine from ``headless()``.
     """
     found = opened(sketch)

@@ -50,6 +50,8 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     assert {"report.html", "report.css", "viewer.js"} <= {path.name for path in page}
     for path in page:
         assert f"playground/shots/page/{path.name}" in inside
+    shaders = list((ROOT / "playground/gpu/shaders").iterdir())
+    assert shaders and inside >= {f"playground/gpu/shaders/{path.name}" for path in shaders}
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 

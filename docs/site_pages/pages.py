@@ -19,6 +19,12 @@ ELSEWHERE = {
 }
 """Pages whose one home is another place of the checkout."""
 
+PICTURES = {
+    "assets/first.webp": "screenshots/jacksboro/llvmpipe/morning.png",
+    "assets/flight.webp": "tests/flight/pictures/llvmpipe/tour-450.png",
+}
+"""Pictures that written pages show, and where they come from."""
+
 TECHNIQUES = "reference/techniques/"
 """The folder of the catalogue; in the navigation it stands for all of its pages."""
 
@@ -49,8 +55,9 @@ def generated() -> dict[str, str | bytes]:
         found[page] = moved((ROOT / source).read_text("utf-8"), source, page)
     for sketch in shots.sketches():
         for picture in shots.pictures(sketch):
-            found[picture.thumbnail] = shots.thumbnail(picture)
-    found["assets/first.webp"] = shots.thumbnail(shots.Picture("jacksboro", "morning"), 1280)
+            found[picture.thumbnail] = shots.thumbnail(picture.file)
+    for path, source in PICTURES.items():
+        found[path] = shots.thumbnail(ROOT / source, 1280)
     return found
 
 

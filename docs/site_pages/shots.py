@@ -81,9 +81,9 @@ def _depth(technique: Technique, wanted: str, depth: int = 0) -> int:
     return min(filter(None, found), default=0)
 
 
-def thumbnail(picture: Picture, width: int = WIDTH) -> bytes:
-    """Return a picture as a small WebP, at most so many pixels wide."""
-    with Image.open(picture.file) as image:
+def thumbnail(file: Path, width: int = WIDTH) -> bytes:
+    """Return a picture as a WebP, at most so many pixels wide."""
+    with Image.open(file) as image:
         small = image.convert("RGB")
         small.thumbnail((width, width), Image.Resampling.BOX, reducing_gap=2.0)
         out = io.BytesIO()

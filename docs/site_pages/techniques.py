@@ -10,7 +10,7 @@ from pathlib import Path
 from playground.paths import GLSL
 from playground.sketch.catalogue import Choice, Entry
 from playground.sketch.catalogue import techniques as listed
-from playground.sketch.model import Kernel, Technique, kernels_of
+from playground.sketch.model import Kernel, Technique, Variant, kernels_of
 from playground.sketch.techniques import Techniques
 
 from .markdown import code, escaped, fenced, folded, table
@@ -221,8 +221,16 @@ def _origin(technique: Technique) -> str:
 
 def _variants(technique: Technique) -> str:
     rows = []
-    for variant in technique.variants:
+    for variant in _all_variants(technique):
         bounds = "; ".join(f"{b.output}: {b}" if b.output else str(b) for b in variant.technique.agrees)
         rows.append((code(Path(variant.path).relative_to(GLSL).as_posix()), escaped(bounds)))
-    text = "It runs while both are [known to agree](../../how-to/fast-variants.md).\n\n"
+    text = "Each runs while it is [known to agree](../../how-to/fast-variants.md) with its plain form.\n\n"
     return "## Fast variants\n\n" + table(("File", "Agrees to"), rows) + text if rows else ""
+
+
+def _all_variants(technique: Technique) -> list[Variant]:
+    """List the fast variants of a technique and of its own kernels."""
+    found = {variant.path: variant for variant in technique.variants}
+    for kernel in _own(technique):
+        found |= {variant.path: variant for variant in kernel.variants}
+    return list(found.values())

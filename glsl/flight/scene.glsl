@@ -7,10 +7,10 @@
 //   units    directions are unit vectors, x east, y north, z up; metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
 //            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
-//   tested   tests/glsl/test_flight_scene.py: the land's end is the air's colour, deep water hides
-//            the ground; and tests/flight/test_flight.py, in pictures
+//   tested   tests/glsl/test_flight_scene.py: the terrain's end is the air's colour, deep water
+//            hides the ground; and tests/flight/test_flight.py, in pictures
 //
-// Where the land ends, the air in front of it has taken all of it away, and what is left is the
+// Where the terrain ends, the air in front of it has taken all of it away, and what is left is the
 // backdrop's own colour on the horizon: so no end is seen.
 #ifndef FLIGHT_SCENE
 #define FLIGHT_SCENE
@@ -26,7 +26,7 @@ struct Backdrop {
     float height;   // of the eye over the sea  [km]
 };
 
-// Around the sun the sky is ten times as bright as elsewhere, and would wash out all land below
+// Around the sun the sky is ten times as bright as elsewhere, and would wash out all terrain below
 // it. An eye gets used to it, a picture does not: the brightest parts are brought down to 4.
 vec3 eased(vec3 light) {
     return light / (1.0 + dot(light, vec3(0.2126, 0.7152, 0.0722)) / 4.0);

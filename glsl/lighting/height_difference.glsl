@@ -8,12 +8,12 @@
 //   tested   tests/glsl/test_height_difference.py, against NumPy and planes
 //
 // share = 1 - (h(towards the sun) - h(here)) / softness, cut to 0..1, and 1 where the place
-// towards the sun lies off the land. The sun's elevation plays no part: that is the method's
-// fault, and why a land that falls away from the sun is as bright as a level one.
+// towards the sun lies off the terrain. The sun's elevation plays no part: that is the method's
+// defect, and why a terrain that falls away from the sun is as bright as a level one.
 //
 // The thesis names no number for its softness, and brings no light to 0..1; its place is a
 // whole number of pixels away, here it is interpolated along the sun's azimuth. Its gain of 2
-// (section 5.4) would make all level land twice white: here it is 1.
+// (section 5.4) would make all level terrain twice white: here it is 1.
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "light:rgba16f")

@@ -22,7 +22,7 @@
 // texel costs a few points of a hull, however wide the terrain.
 //
 // The order: first the heights are copied into an image of this pass's size, since a processor
-// reads images several times faster than textures (stage 0). Then sweeps (stage 1) take turns with
+// reads images several times faster than textures (stage 0). Then sweeps (stage 1) alternate with
 // sums (stage 2): a sweep leaves in lines which rows were found, a sum looks at these from each
 // texel. There are half as many pairs of directions as directions; no buffer may be larger than
 // 128 MiB on some drivers, so that `room` says for how many pairs one buffer has lines.
@@ -69,8 +69,8 @@ void copy_heights() {
 }
 
 void main() {
-    Turn turn = turn_at((iteration - 1) / 2);
+    Batch batch = batch_at((iteration - 1) / 2);
     if (stage == 0) copy_heights();
-    if (stage == 1 && turn.from < turn.end) sweep(turn);
-    if (stage == 2 && turn.from < turn.end) sum(turn);
+    if (stage == 1 && batch.from < batch.end) sweep(batch);
+    if (stage == 2 && batch.from < batch.end) sum(batch);
 }

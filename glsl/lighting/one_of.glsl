@@ -7,7 +7,7 @@
 //   tested   tests/glsl/test_one_of.py, against the lights themselves
 //
 // All that are wired are worked out; the choice between them costs nothing more. It is for
-// looking at several methods on one land, one after another, with each method's own parameters
+// looking at several methods on one terrain, one after another, with each method's own parameters
 // kept.
 #include "maths/land.glsl"
 #pragma kernel(output = "light:rgba16f")

@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_lighting.py, against compass points and rotations in float64
 //
 // The thesis turns its light vector round between methods, and its sign with it. Here there
-// is one vector, from the land towards the sun.
+// is one vector, from the terrain towards the sun.
 #ifndef LIGHTING_SUN
 #define LIGHTING_SUN
 #include "maths/angle.glsl"
@@ -27,7 +27,7 @@ vec3 normal_of_slope(vec2 slope) {
 
 // anchor: lambert
 // The sun's light on a surface, 1 where it falls straight on it. A sun below the horizon
-// lights nothing, not even slopes that face it: the land itself is in the way.
+// lights nothing, not even slopes that face it: the terrain itself is in the way.
 float sun_on(vec3 normal, vec3 sun) {
     return sun.z < 0.0 ? 0.0 : max(0.0, dot(normal, sun));
 }

@@ -80,9 +80,8 @@ float refraction(float elevation) {
     float seconds = 0.0;
     if (elevation < -0.575) seconds = -20.774 / tangent;
     else if (elevation < 5.0) {
-        seconds = 1735.0 + elevation * (-518.2
-                                        + elevation * (103.4 + elevation
-                                                       * (-12.79 + elevation * 0.711)));
+        float high = 103.4 + elevation * (-12.79 + elevation * 0.711);
+        seconds = 1735.0 + elevation * (-518.2 + elevation * high);
     } else if (elevation < 85.0) {
         float inverse = 1.0 / tangent;
         seconds = inverse * (58.1 + inverse * inverse * (-0.07 + inverse * inverse * 0.000086));

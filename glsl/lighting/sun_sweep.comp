@@ -1,13 +1,13 @@
-// lighting/sun_sweep.comp -- the horizon towards the sun, each band of the land walked once.
+// lighting/sun_sweep.comp -- the horizon towards the sun, each band of the terrain swept once.
 //
-//   gives    horizon: tangents of the horizon's elevation, one a texel of the land
+//   gives    horizon: tangents of the horizon's elevation, one a texel of the terrain
 //   needs    lighting/daylight_reading.glsl, lighting/sun_sweep/band.glsl, maths/land.glsl
-//   units    rise over run; -10000 where no land stands towards the sun
+//   units    rise over run; -10000 where no terrain stands towards the sun
 //   source   see lighting/sun_sweep/band.glsl
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
 //   agrees   exactly: it does what the kernel beside it does, less often
 //
-// A thread has a band. Bands that begin beside the land enter it later.
+// A thread has a band. Bands that begin beside the terrain enter it later.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/band.glsl"
 #include "maths/land.glsl"

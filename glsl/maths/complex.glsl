@@ -27,11 +27,10 @@ vec2 root_of_one(int k, int count) {
     float r = turns - 0.25 * quarters;
     float s = r * r;
     // (2 pi)^n / n!, the first as a float and what that float lacks.
-    float c = 1.0 + s * (-19.7392088 + s * (64.9393940
-                                            + s * (-85.4568172 + s * (60.2446414
-                                                                      - 26.4262568 * s))));
-    float rest = s * (-41.3417023 + s * (81.6052493
-                                         + s * (-76.7058598 + s * (42.0586939 - 15.0946426 * s))));
+    float high_c = -85.4568172 + s * (60.2446414 - 26.4262568 * s);
+    float high_n = -76.7058598 + s * (42.0586939 - 15.0946426 * s);
+    float c = 1.0 + s * (-19.7392088 + s * (64.9393940 + s * high_c));
+    float rest = s * (-41.3417023 + s * (81.6052493 + s * high_n));
     float n = r * 6.28318548 + r * (rest - 1.74845553e-7);
     int quarter = int(quarters) & 3;
     vec2 turned = (quarter & 1) == 0 ? vec2(c, n) : vec2(-n, c);

@@ -1,12 +1,12 @@
-// maths/land.glsl -- where a texel stands on the land, and on a grid of another size.
+// maths/land.glsl -- where a texel stands on the terrain, and on a grid of another size.
 //
 //   gives    share_of_texel, place_on, spacing_of, bilinear
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    texels; shares 0..1 of the land's side, east and north; metres a texel
+//   units    texels; shares 0..1 of the terrain's side, east and north; metres a texel
 //   source   derived here
 //   tested   tests/glsl/test_maths.py: corners on corners, there and back
 //
-// Texels are nodes: the first and the last of a row stand on the land's edges, so n texels
+// Texels are nodes: the first and the last of a row stand on the terrain's edges, so n texels
 // are n - 1 spacings long. That makes grids of different sizes share their corners.
 #ifndef MATHS_LAND
 #define MATHS_LAND

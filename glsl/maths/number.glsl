@@ -3,7 +3,7 @@
 //   gives    is_number, NOT_A_NUMBER
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    colours of light, or encoded: it is the same in both
-//   source   none: a colour that no ramp and no land has
+//   source   none: a colour that no ramp and no terrain has
 //   tested   tests/glsl/test_maths.py; in pictures by tests/glsl/test_view.py
 #ifndef MATHS_NUMBER
 #define MATHS_NUMBER

@@ -20,9 +20,8 @@ float power(float x, float y) {
     float t = (m - 1.0) / (m + 1.0);
     float s = t * t;
     // 2 / ln 2 / (1, 3, 5, ..)
-    float log_m = t * (2.88539008 + s * (0.961796694
-                                         + s * (0.577078016 + s * (0.412198583
-                                                                   + s * 0.320598898))));
+    float high = 0.577078016 + s * (0.412198583 + s * 0.320598898);
+    float log_m = t * (2.88539008 + s * (0.961796694 + s * high));
     float z = y * float(e);
     float whole = floor(z + 0.5);
     float rest = (z - whole) + y * log_m;

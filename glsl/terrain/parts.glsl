@@ -1,4 +1,4 @@
-// terrain/parts.glsl -- a land without end, cut into square parts: which node of it a texel is.
+// terrain/parts.glsl -- endless terrain, cut into square parts: which node of it a texel is.
 //
 //   gives    node_of, cell_of
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, section 5.6; whole nodes: made here
 //   tested   tests/glsl/test_endless.py, against Python's whole numbers
 //
-// Nodes are counted over the whole land, east and north, from any of its parts: a node has the
+// Nodes are counted over the whole terrain, east and north, from any of its parts: a node has the
 // same number whatever part it is reached from, and what is worked out from that number alone
 // is the same to the last bit. Neighbours share the nodes on the border between them.
 //

@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_texturing_detail.py, against the same sum in float64
 //
 // The thesis multiplies and has no transparency. A product with an image darker than white
-// would darken the land near the eye; with the image over its own mean it does not, whatever
+// would darken the terrain near the eye; with the image over its own mean it does not, whatever
 // the image.
 #ifndef TEXTURING_DETAIL_NEAR
 #define TEXTURING_DETAIL_NEAR

@@ -1,4 +1,4 @@
-// texturing/endless_ground.glsl -- meadow, wood, rock, sand and snow on a part of an endless land.
+// texturing/endless_ground.glsl -- meadow, wood, rock, sand and snow on endless terrain.
 //
 //   gives    colour, linear light
 //   needs    terrain/heightfield.glsl, terrain/parts.glsl, noise/hash.glsl; a height 0..1
@@ -15,7 +15,7 @@
 
 uniform sampler2D height;           //! input
 uniform ivec2 part = ivec2(0);      //! parts("east", "north")
-                                    //! Which part of the land, counted east and north
+                                    //! Which part of the terrain, counted east and north
 uniform int apron = 0;              //! slider(0, 1024) unit("texels")
                                     //! Of the neighbours, so much around the part, in texels of
                                     //! the height
@@ -89,9 +89,9 @@ vec4 kernel(ivec2 texel) {
     vec2 place = place_on(grid, texel, size);
     float metres = base_elevation + relief * height_at(height, place);
     if (isnan(metres)) metres = 0.0;
-    float slope = degrees(atan(length(relief
-                                      * slope_at(height, place, spacing_of(grid, extent),
-                                                 CENTRAL_DIFFERENCES))));
+    vec2 spacing_of_heights = spacing_of(grid, extent);
+    vec2 rise = relief * slope_at(height, place, spacing_of_heights, CENTRAL_DIFFERENCES);
+    float slope = degrees(atan(length(rise)));
     int finer = max((size.x - 1) / max(grid.x - 1, 1), 1);
     ivec2 node = node_of(texel, part, apron * finer, size);
     vec2 both = patches_at(node, max(patches * finer, 2), seed * 31u + SALT);

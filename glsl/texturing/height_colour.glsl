@@ -37,7 +37,7 @@ float risen(float level, float from, float to) {
 
 vec4 kernel(ivec2 texel) {
     float level = 255.0 * height_at(height, place_on(textureSize(height, 0), texel, size));
-    // Land that is not a number stays visible as such in view/land.
+    // Terrain that is not a number stays visible as such in view/land.
     if (isnan(level)) level = 0.0;
     vec3 colour = mix(low, middle, risen(level, levels.x, levels.y));
     colour = mix(colour, high, risen(level, levels.y, levels.z));

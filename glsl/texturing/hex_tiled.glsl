@@ -57,8 +57,9 @@ vec4 kernel(ivec2 texel) {
     vec3 mean = textureLod(colour, vec2(0.5), 99.0).rgb;
     vec3 shown = mixed_with_contrast(
         hex_sharpened(copies.weights, sharpness),
-        piece(copies.corner[0], tile, level), piece(copies.corner[1], tile,
-                                                    level), piece(copies.corner[2], tile, level),
+        piece(copies.corner[0], tile, level),
+        piece(copies.corner[1], tile, level),
+        piece(copies.corner[2], tile, level),
         mean
     );
     return vec4(mix(mean, shown, detail), 1.0);

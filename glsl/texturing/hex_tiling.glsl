@@ -8,7 +8,7 @@
 //            sharper weights after Mikkelsen 2022, "Practical Real-Time Hex-Tiling" (JCGT 11(3))
 //   tested   tests/glsl/test_texturing_hex.py, against the distances to a triangle's sides
 //
-// A grid of triangles lies over the land. Each of its corners shows the image from a place of
+// A grid of triangles lies over the terrain. Each of its corners shows the image from a place of
 // its own, chosen by chance, in a hexagon around it; at a place the three corners of its
 // triangle are mixed. So no two places a tile apart show the same, but by chance.
 #ifndef TEXTURING_HEX_TILING

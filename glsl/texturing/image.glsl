@@ -1,4 +1,4 @@
-// texturing/image.glsl -- an image file as a texture: a tile, or one picture over the whole land.
+// texturing/image.glsl -- an image file as a texture: a tile, or one picture of it all.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image file, PNG, JPEG or WebP, of any size
@@ -10,18 +10,18 @@
 // detail that suits this pass's size, a smaller one is interpolated. Its alpha is left out.
 //
 // As a tile, this pass's texels divide the image evenly, so that it meets its own copy: what
-// texturing/tiled and texturing/hex_tiled lay. Over the land, the outermost texels stand on
-// the land's edges, as in every texture of the whole land, and so do the image's edges; an
-// image of other proportions than the land's is stretched.
+// texturing/tiled and texturing/hex_tiled lay. Over the terrain, the outermost texels stand on
+// the terrain's edges, as in every texture of the whole terrain, and so do the image's edges; an
+// image of other proportions than the terrain's is stretched.
 #include "maths/land.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
-uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg",
-                          //! "linear", "repeat", "mipmap")
+uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg", "linear", "repeat",
+                          //! "mipmap")
                           //! PNG, JPEG or WebP, north on top
 uniform int fit = 0;      //! menu("tile", "land")
                           //! Whether its texels divide the image evenly, as a tile's, or the
-                          //! outermost stand on the land's edges
+                          //! outermost stand on the terrain's edges
 
 vec4 kernel(ivec2 texel) {
     vec2 texels = vec2(textureSize(image, 0));

@@ -1,4 +1,4 @@
-// texturing/tiled.glsl -- an image laid over the whole land in tiles, without its repeats showing.
+// texturing/tiled.glsl -- an image laid over the terrain in tiles, without visible repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
@@ -8,14 +8,14 @@
 //            too fine, and less contrast about the same mean where less detail is wanted
 //
 // The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
-// many times over the land, whatever the size of either, and is read at the level of
+// many times over the terrain, whatever the size of either, and is read at the level of
 // detail where its texels are as large as this texture's: read at level 0, a fine image
 // in a small texture is a few texels picked at random.
 //
-// Section 5.5 finds that details of a texture are taken for the land's, and takes a texture of
+// Section 5.5 finds that details of a texture are taken for the terrain's, and takes a texture of
 // less detail for figures 5.10 and 5.11. Here that is the same image with less contrast about
 // its mean, which the last level of detail holds: so it works for a user's image too, and the
-// land keeps its colours.
+// terrain keeps its colours.
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
 #include "maths/land.glsl"
@@ -37,7 +37,7 @@ const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
 const float LARGER = 0.29;
 
 vec4 kernel(ivec2 texel) {
-    // Tiles are square on the ground, so a long land has more of them along its length.
+    // Tiles are square on the ground, so a long terrain has more of them along its length.
     vec2 tile = share_of_texel(texel, size) * repeats * vec2(1.0, extent.y / extent.x);
     float texels = float(max(size.x - 1, 1)) / repeats;
     float level = log2(float(textureSize(colour, 0).x) / texels);

@@ -12,11 +12,11 @@
 // So it does not stretch on cliffs.
 //
 // From above, an image on a slope of angle a is stretched down the slope by 1 / cos a: twice
-// at 60 degrees, without limit on a wall. Where the land is steep the image is read in two
-// upright planes as well, facing east and facing north. Level land is read once, as
+// at 60 degrees, without limit on a wall. Where the terrain is steep the image is read in two
+// upright planes as well, facing east and facing north. Level terrain is read once, as
 // texturing/tiled reads it without variety.
 //
-// The texture is still one of the whole land: on a cliff its texels are far apart. What fits
+// The texture is still one of the whole terrain: on a cliff its texels are far apart. What fits
 // between them is read at the level of detail that does not flicker.
 #include "lighting/sun.glsl"
 #include "maths/land.glsl"
@@ -31,8 +31,8 @@ uniform float repeats = 24.0;    //! slider(1, 256) step(1)
                                  //! How often the image stands side by side from west to east
 uniform vec2 cliffs = vec2(30.0, 45.0);  //! slider(0, 90) step(1) unit("degrees")
                                          //! parts("seen from", "alone from")
-                                         //! How steep land must be for its sides to be seen, and
-                                         //! for them to be all that counts
+                                         //! How steep terrain must be for its sides to be seen,
+                                         //! and for them to be all that counts
 uniform float sharpness = 4.0;   //! slider(1, 16) step(0.1)
                                  //! How narrow the borders are between the planes
 uniform float detail = 1.0;      //! slider(0, 1) step(0.01)
@@ -55,7 +55,7 @@ vec4 kernel(ivec2 texel) {
     vec2 pitch = tiles * spacing;
     vec3 normal = normal_of_slope(slope);
 
-    // The three planes' shares; on land that is not steep, the level plane's alone.
+    // The three planes' shares; on terrain that is not steep, the level plane's alone.
     vec3 weights = pow(max(abs(normal), vec3(1e-4)), vec3(sharpness));
     weights /= weights.x + weights.y + weights.z;
     float angle = degrees(acos(clamp(normal.z, 0.0, 1.0)));

@@ -1,6 +1,6 @@
 // view/contours.glsl -- lines of equal elevation, as wide everywhere, over a colour.
 //
-//   gives    colour, linear light, for view/map or over the land
+//   gives    colour, linear light, for view/map or over the terrain
 //   needs    terrain/heightfield.glsl; a height, and a colour if there is one
 //   units    elevations in metres above sea level; widths in texels of this pass
 //   source   made here: the distance to a line is how far the elevation is from its own, over

@@ -1,4 +1,4 @@
-// view/map.glsl -- the land from above: any texture as a flat picture, north on top.
+// view/map.glsl -- the terrain from above: any texture as a flat picture, north on top.
 //
 //   gives    frame, display-encoded
 //   needs    colour/encode.glsl, colour/ramp.glsl, maths/number.glsl

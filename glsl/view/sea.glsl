@@ -1,4 +1,4 @@
-// view/sea.glsl -- a flat sea over the land that lies below its level.
+// view/sea.glsl -- a flat sea over the terrain that lies below its level.
 //
 //   gives    frame, linear light, over an earlier frame
 //   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, terrain/heightfield.glsl;
@@ -6,7 +6,7 @@
 //   units    metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
 //            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
-//   tested   tests/glsl/test_view.py: drowns the land below its level and no other
+//   tested   tests/glsl/test_view.py: drowns the terrain below its level and no other
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "terrain/heightfield.glsl"

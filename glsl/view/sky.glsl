@@ -15,13 +15,14 @@
 
 uniform sampler2D daylight;  //! input("black")
 uniform int sky = 0;         //! menu("colours", "daylight") group("Sky")
-                             //! What is behind the land: the colours below, or the sky of
+                             //! What is behind the terrain: the colours below, or the sky of
                              //! lighting/daylight if the sketch has it
 uniform vec3 zenith = vec3(0.105, 0.245, 0.56);  //! colour group("Sky") Straight overhead
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);   //! colour group("Sky") Level with the eye
 uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky")
-                                                  //! Straight underfoot, where there is no land;
-                                                  //! under daylight, what it is in white light
+                                                  //! Straight underfoot, where there is no
+                                                  //! terrain; under daylight, what it is in white
+                                                  //! light
 
 // The sun is 47,000 times as bright as white paper in its light, far past what half floats
 // hold and smooth edges bear.

@@ -1,8 +1,8 @@
-// view/surface.glsl -- what every draw of the land shares: where its vertices stand, and its cut.
+// view/surface.glsl -- what every draw of the terrain shares: its vertices, and its cut.
 //
 //   gives    place_of_vertex, cut_or, through_air, SHARPER, BROKEN
 //   needs    maths/drape.glsl, maths/number.glsl; the texture comes as an argument
-//   units    metres; shares 0..1 of the land's sides; colours linear
+//   units    metres; shares 0..1 of the terrain's sides; colours linear
 //   source   none: made here
 //   tested   tests/glsl/test_view.py and tests/glsl/test_splat_view.py, by the pictures
 #ifndef VIEW_SURFACE
@@ -10,23 +10,23 @@
 #include "maths/drape.glsl"
 #include "maths/number.glsl"
 
-// A level of detail suits the longer side of a pixel's shadow on the land, which a flat view
+// A level of detail suits the longer side of a pixel's shadow on the terrain, which a flat view
 // stretches; so much finer, the shorter side blurs less and nothing flickers yet.
 const float SHARPER = -0.7;
 
 // A mark below this is around a vertex whose height is not a number.
 const float BROKEN = -10.0;
 
-// The place in x to z of a vertex that stands at a share of the land, `down` from the land to the
-// skirt's foot: 0 or 1. In w a mark: that too, or far below BROKEN: far, because samples at a
-// triangle's rim are extrapolated.
+// The place in x to z of a vertex that stands at a share of the terrain, `down` from the terrain
+// to the skirt's foot: 0 or 1. In w a mark: that too, or far below BROKEN: far, because samples at
+// a triangle's rim are extrapolated.
 vec4 place_of_vertex(sampler2D field, vec2 share, float down, vec2 metres, float rise,
                      float skirt) {
     float found = textureLod(field, drape_uv(share, textureSize(field, 0)), 0.0).r;
     bool broken = !is_number(found);
     // A vertex at infinity would take its triangles with it.
     float up = broken ? 0.0 : found * rise;
-    // Land below height 0 may lie deeper than the foot.
+    // Terrain below height 0 may lie deeper than the foot.
     float foot = min(-skirt * max(metres.x, metres.y), up);
     return vec4(share * metres, mix(up, foot, down), broken ? -1000.0 : down);
 }

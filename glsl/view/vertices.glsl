@@ -3,7 +3,7 @@
 //   gives    vertex_of_mesh, share_of_vertex
 //   needs    view/geomipmap/tiles.glsl, view/surface.glsl; clip_from_world, eye, extent and
 //            relief; in a draw's vertex stage only
-//   units    shares 0..1 of the land's sides, east and north; nodes as in
+//   units    shares 0..1 of the terrain's sides, east and north; nodes as in
 //            view/geomipmap/tiles.glsl
 //   source   Strugar 2009, "Continuous Distance-Dependent Level of Detail for Rendering
 //            Heightmaps", Journal of Graphics, GPU, and Game Tools 14(4): one grid for every
@@ -18,15 +18,15 @@
 // slides to a neighbour that it has, so that there both levels are the same surface. It slides
 // towards the middle of the next level's fan, and so the triangles left are that fan. Neighbours
 // agree about every vertex they share, as each knows its own distance to the eye: no crack, no
-// stitching. Vertices stay on the land while they slide.
+// stitching. Vertices stay on the terrain while they slide.
 #ifndef VIEW_VERTICES
 #define VIEW_VERTICES
 #ifdef VERTEX_STAGE
 #include "view/geomipmap/tiles.glsl"
 #include "view/surface.glsl"
 
-// As START in playground/terrain/morph.py, which sees to it that no level begins to slide where
-// the one before ends. What rounds off must not keep a vertex from the end of its way.
+// START in playground/terrain/morph.py (a test compares the two), which sees to it that no level
+// begins to slide where the one before ends. What rounds off must not keep a vertex from the end of its way.
 const float MORPH_START = 0.8;
 const float MORPH_END = 0.99;
 

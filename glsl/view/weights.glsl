@@ -1,6 +1,6 @@
 // view/weights.glsl -- the weights of four layers as colours: one a layer, mixed where layers are.
 //
-//   gives    colour, linear light, for view/map or over the land
+//   gives    colour, linear light, for view/map or over the terrain
 //   needs    maths/land.glsl; weights as of texturing/alpha_map
 //   units    weights 0..1, colours linear
 //   source   none: a picture of numbers. The colours are four of Okabe and Ito 2008, "Color
@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_view_weights.py, against the mixture in float64
 //
 // Where the weights of a texel do not sum to 1, that texel is black or too bright: it is
-// neither hidden nor mended.
+// neither hidden nor repaired.
 #include "maths/land.glsl"
 #pragma kernel(output = "colour:rgba16f")
 

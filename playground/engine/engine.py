@@ -1,7 +1,7 @@
 """Run a sketch on a context, and only what is stale.
 
-A pass runs again when its key changes (see ``keys``): so moving the sun lights the land
-anew and leaves the land alone. ``execution`` runs the passes in order, ``runner`` each of
+A pass runs again when its key changes (see ``keys``): so moving the sun lights the terrain
+anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
 them; here is what a program calls.
 """
 
@@ -23,7 +23,7 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.execution import Execution, would_run
 from playground.engine.eye_height import EyeHeight
 from playground.engine.frame import Frame
-from playground.engine.frame_record import FrameRecord
+from playground.engine.frame_record import FrameRecord, Recorded
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import Drawn
@@ -40,7 +40,7 @@ from playground.gpu.textures import read_picture, read_texture
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import shown
-from playground.sketch.flatten import Ref
+from playground.sketch.flat import Ref
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Sketch
 
@@ -51,7 +51,7 @@ CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
 
-class Engine:
+class Engine(Recorded):
     """Runs sketches on one context; keeps textures between frames.
 
     The context is the caller's, unless ``owns_context``. ``driver`` is "fragment",
@@ -77,7 +77,7 @@ class Engine:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
         self.driver = driver
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
-        self.record = FrameRecord()  # of the last frame; its textures are valid until the next
+        super().__init__()
         self.profiling = False
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
@@ -100,36 +100,6 @@ class Engine:
     def clock(self) -> str:
         """Which clock the times come from."""
         return self._timer_of().clock
-
-    @property
-    def plan(self) -> Plan | None:
-        """The plan of the last frame."""
-        return self.record.plan
-
-    @property
-    def results(self) -> Mapping[str, Result]:
-        """The textures of the last frame, by path; valid until the next."""
-        return self.record.results
-
-    @property
-    def ran(self) -> list[str]:
-        """The paths of the passes that ran for the last frame, in order."""
-        return self.record.ran
-
-    @property
-    def texels(self) -> int:
-        """How many texels were computed for the last frame."""
-        return self.record.texels
-
-    @property
-    def times(self) -> dict[str, float]:
-        """How long each pass of the last frame ran [ms], while profiling."""
-        return self.record.times
-
-    @property
-    def triangles(self) -> int:
-        """How many triangles were drawn for the last frame; of what is cached, none."""
-        return self.record.triangles
 
     def __enter__(self) -> Engine:
         self._refuse_released()
@@ -190,7 +160,7 @@ class Engine:
         """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
-        many turns, by path. What a stopped pass has not reached yet is interpolated where its
+        many iterations, by path. What a stopped pass has not reached yet is interpolated where its
         header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
@@ -308,7 +278,7 @@ class Engine:
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
     ) -> Iterator[tuple[int, NDArray[np.float32]]]:
-        """Yield (turns done, values) of a repeated pass, from before its first turn to after its last.
+        """Yield (iterations done, values) of a repeated pass, from before its first to after its last.
 
         ``path`` may be a technique's in which one pass repeats: it is that one.
         """

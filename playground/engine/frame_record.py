@@ -40,6 +40,43 @@ class FrameRecord:
         return replace(self, ran=other.ran, texels=other.texels, times=other.times, triangles=other.triangles)
 
 
+class Recorded:
+    """Whatever draws frames, as far as the last one is concerned."""
+
+    def __init__(self) -> None:
+        self.record = FrameRecord()  # of the last frame
+
+    @property
+    def plan(self) -> Plan | None:
+        """The plan of the last frame."""
+        return self.record.plan
+
+    @property
+    def results(self) -> Mapping[str, Result]:
+        """The textures of the last frame, by path; valid until the next."""
+        return self.record.results
+
+    @property
+    def ran(self) -> list[str]:
+        """The paths of the passes that ran for the last frame, in order."""
+        return self.record.ran
+
+    @property
+    def texels(self) -> int:
+        """How many texels were computed for the last frame."""
+        return self.record.texels
+
+    @property
+    def times(self) -> dict[str, float]:
+        """How long each pass of the last frame ran [ms], while profiling."""
+        return self.record.times
+
+    @property
+    def triangles(self) -> int:
+        """How many triangles were drawn for the last frame; of what is cached, none."""
+        return self.record.triangles
+
+
 class FrameSource(Protocol):
     """What draws frames, as far as those need it that look at the last one."""
 

@@ -16,6 +16,7 @@ from playground.engine.plan import Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
+from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
@@ -27,26 +28,6 @@ from playground.sketch.wiring import initial_names
 if TYPE_CHECKING:
     import moderngl
 
-_COPY = """#version 330
-uniform sampler2D k_picture;
-uniform ivec2 k_size;
-out vec4 k_out;
-void main() {
-    ivec2 whole = textureSize(k_picture, 0);
-    ivec2 texel = ivec2(gl_FragCoord.xy / vec2(k_size) * vec2(whole));
-    k_out = texelFetch(k_picture, min(texel, whole - 1), 0);
-}
-"""
-_SPREAD = """#version 330
-uniform sampler2D k_picture;
-uniform int k_shift;
-out vec4 k_out;
-void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    bool known = ((texel.x | texel.y) & ((1 << k_shift) - 1)) == 0;
-    k_out = known ? texelFetch(k_picture, texel >> k_shift, 0) : vec4(0.0);
-}
-"""
 _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
@@ -61,13 +42,13 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    turn: tuple[int, int] | None = None  # of the loop around it, and its turns in all
-    start: Result | None = None  # the same step after fewer turns, to go on from; it is used up
+    turn: tuple[int, int] | None = None  # of the loop around it, and its iterations in all
+    start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
     def count(self, program: Program, iteration: int, repeat: str, whole: int, turns: int = 1) -> None:
-        """Tell a kernel its turn: its own where it repeats, else that of the loop around it."""
+        """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
         now, total = (iteration, whole) if repeat != "1" or self.turn is None else self.turn
         program.set("iteration", now)
         program.set("iterations", total)
@@ -87,7 +68,7 @@ class Kernels:
         self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
     ) -> None:
         self.ctx = ctx
-        self.software = software  # whether the processor draws
+        self.software = software  # whether it is a software renderer
         self.programs = programs
         self.binder = binder
         self.pool = pool
@@ -107,7 +88,7 @@ class Kernels:
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
 
-        Where the processor draws there is one for each choice of menus, and of what is wired.
+        On a software renderer there is one for each choice of menus, and of what is wired.
         ``more`` are whole numbers to compile in as well.
         """
         kernel, values = job.step.kernel, job.step.values
@@ -133,7 +114,7 @@ class Kernels:
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
         target.use()
-        program = self.programs.own(_COPY)
+        program = self.programs.own(own_shader("copy.frag"))
         self.binder.texture(program, "k_picture", 0, texture, Sampling())
         program.set("k_size", size)
         program.fill()
@@ -224,7 +205,7 @@ class Kernels:
         return before
 
     def _shift(self, job: Job, iteration: int) -> int:
-        """Return the power of two that texels known after a turn lie apart."""
+        """Return the power of two that texels known after an iteration lie apart."""
         kernel = job.step.kernel
         stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
         if stride < 1 or stride & (stride - 1):
@@ -246,7 +227,7 @@ class Kernels:
         for output in close.outputs:
             single = make_framebuffer(self.ctx, [result.textures[output.name]])
             single.use()
-            program = self.programs.own(_SPREAD)
+            program = self.programs.own(own_shader("spread.frag"))
             self.binder.texture(program, "k_picture", 0, close.textures[output.name], Sampling())
             program.set("k_shift", shift)
             program.fill()
@@ -290,7 +271,7 @@ class Kernels:
         return result
 
     def _initial(self, job: Job) -> dict[str, moderngl.Texture]:
-        """Return the state before the first turn to run, by output; what is missing is zero."""
+        """Return the state before the first iteration to run, by output; what is missing is zero."""
         if job.start is not None:
             return dict(job.start.textures)
         step = job.step
@@ -308,7 +289,7 @@ class Kernels:
         return found
 
     def _untouched(self, step: Step, state: Mapping[str, moderngl.Texture]) -> Result:
-        """Return the state before the first turn, in textures of its own."""
+        """Return the state before the first iteration, in textures of its own."""
         result = self.empty(step)
         for output in step.kernel.outputs:
             if output.name in state:

@@ -7,49 +7,37 @@ size or a count names a changed value or the time, or where the terrain's file i
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from numbers import Integral, Real
 from pathlib import Path
 
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
-from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
+from playground.engine.plan_request import PlanRequest, checked_pixels, checked_seconds, checked_steps
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flatten import Fed, Flat, Leaf, Loop, Node, flatten
-from playground.sketch.identity import Same
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flatten import flatten
+from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Land, source_kind
+from playground.terrain.sources import Terrain, source_kind
 
 DEFAULT_LAND = (513, 513)
 DEFAULT_EXTENT = 10_240.0
 DEFAULT_RELIEF = 1_800.0
 MAX_REPEAT = 1_000_000
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
-
-
-@dataclass(frozen=True, slots=True)
-class _Request:
-    """What a plan is made for, besides a graph, its values, the camera and the time."""
-
-    frame_size: tuple[int, int]
-    stopped: tuple[tuple[str, int], ...]  # repeats that are stopped early: steps to run, by path
-    fills: bool
-    compute: bool
-    varies: bool  # keyframes set parameters, and so perhaps counts of steps
-    terrain: Land  # what the sketch says of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,14 +71,16 @@ class Planner:
         largest: int = LARGEST_SIDE,
     ) -> Plan:
         """Make a plan as ``make_plan`` does."""
-        size, seconds = _pixels(frame_size, largest), _seconds(time)
+        size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
         varies = any(keyframe.values for keyframe in sketch.keyframes)
         sketch = sketch.at(seconds)
-        stopped = {repeated_in(sketch, path): _steps(path, count) for path, count in (steps or {}).items()}
+        stopped = {
+            repeated_in(sketch, path): checked_steps(path, count) for path, count in (steps or {}).items()
+        }
         fills = not wanted if interpolated is None else interpolated
-        terrain = Land(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
-        request = _Request(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
-        place = (Same(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
+        terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
+        request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
+        place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
         known = self._plans.pop(place, None)
 
         def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
@@ -170,38 +160,16 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
-    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
+    """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
     found: dict[str, int] = {}
     for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
-        if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
+        if isinstance(node, LoopStep) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
 
 
-def _pixels(size: object, largest: int) -> tuple[int, int]:
-    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
-        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
-    width, height = int(found[0]), int(found[1])
-    if not (1 <= width <= largest and 1 <= height <= largest):
-        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
-    return width, height
-
-
-def _seconds(time: object) -> float:
-    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
-        raise ParameterError(f"time {time!r}: expected a number of seconds")
-    return float(time)
-
-
-def _steps(path: str, count: object) -> int:
-    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
-        raise ParameterError(f"steps: '{path}' stops after {count!r} turns; expected a whole number from 0")
-    return int(count)
-
-
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
+    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
     flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
@@ -227,7 +195,7 @@ class _Planning:
     """One plan being made; ``known`` is the last of the same graph, made for the same request."""
 
     def __init__(
-        self, sketch: Sketch, flat: Flat, request: _Request, time: float, known: _Known | None
+        self, sketch: Sketch, flat: Flat, request: PlanRequest, time: float, known: _Known | None
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -249,12 +217,16 @@ class _Planning:
                 now = self._with_files(leaf)  # another file may have come to stand before the one known
                 values = values if values == now else now
             self._values[leaf.path] = values
-        self.land = self._land()
+        self.terrain = self._described()
 
     def renewed(self) -> _Known | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
         known = self.known
-        if known is None or known.plan.land != self.land or (known.by_time and known.plan.time != self.time):
+        if (
+            known is None
+            or known.plan.terrain != self.terrain
+            or (known.by_time and known.plan.time != self.time)
+        ):
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
         if [path for path in known.named if now[path] is not before[path]]:
@@ -265,7 +237,7 @@ class _Planning:
         return replace(known, plan=plan, values=self._values)
 
     def _renewed(self, node: PlanNode) -> PlanNode:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             body = tuple([self._renewed(inside) for inside in node.body])
             same = all([now is before for now, before in zip(body, node.body, strict=True)])
             return node if same else replace(node, body=body)
@@ -288,7 +260,7 @@ class _Planning:
             sketch=self.sketch,
             nodes=nodes,
             flat=self.flat,
-            land=self.land,
+            terrain=self.terrain,
             eye=self._eye(),
             frame_size=self.request.frame_size,
             time=self.time,
@@ -313,7 +285,7 @@ class _Planning:
         return found
 
     def _eye(self) -> Eye:
-        extent, relief = self.land.extent, self.land.relief
+        extent, relief = self.terrain.extent, self.terrain.relief
         assert extent is not None and relief is not None
         return look(self.sketch.camera, extent, relief, self.request.frame_size)
 
@@ -323,7 +295,9 @@ class _Planning:
             whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
             count = self._stopped(node.path, whole, node.repeat)
             body = tuple(self._node(inside) for inside in node.body)
-            return Turns(node.path, count, whole, body, node.feedback, node.spec)
+            return LoopStep(
+                path=node.path, repeat=count, whole=whole, body=body, feedback=node.feedback, spec=node.spec
+            )
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
@@ -364,7 +338,7 @@ class _Planning:
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
     ) -> int:
-        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
+        """Return how many iterations; ``owner`` is what says so, and where a mistake is."""
         if text == "1":
             return 1
         try:
@@ -388,8 +362,8 @@ class _Planning:
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )
 
-    def _land(self) -> Land:
-        known = Land()
+    def _described(self) -> Terrain:
+        known = Terrain()
         for leaf in self.flat.leaves:
             if leaf.kernel.kind == "source":
                 self._check_source(leaf)
@@ -397,7 +371,7 @@ class _Planning:
                     known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
                 except DataError as error:
                     raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if known != Land():
+                if known != Terrain():
                     break
         size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
         extent = self.sketch.extent or known.extent
@@ -407,7 +381,7 @@ class _Planning:
             extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
         relief = self.sketch.relief if self.sketch.relief is not None else known.relief
         base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
-        return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
+        return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
 
     def _check_source(self, leaf: Leaf) -> None:
         try:
@@ -473,8 +447,8 @@ class _Planning:
     def _base(self, path: str, prefix: str) -> tuple[int, int]:
         if prefix:
             return self.size_of(prefix)
-        assert self.land.size is not None
-        return self.request.frame_size if path == "view" else self.land.size
+        assert self.terrain.size is not None
+        return self.request.frame_size if path == "view" else self.terrain.size
 
     def _names(self, prefix: str, spec: PassSpec) -> Names:
         return Names(self, prefix, spec)

@@ -1,4 +1,4 @@
-"""A stage: a sketch of one technique alone, on stand-ins for what it reads.
+"""A stage: a sketch of one technique alone, on placeholders for what it reads.
 
 Nothing else is on it, so that a mistake elsewhere cannot pass for one of the technique's own.
 """
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.gpu.own_shaders import own_shader
 from playground.images.files import write_values
 from playground.paths import shown
 from playground.sketch.assign import values_of
@@ -26,17 +27,19 @@ from playground.sketch.model import (
 from playground.sketch.source import Line, SourceText
 
 SEED = "seed"
-"""The stand-ins' parameter: which terrain."""
+"""The placeholders' parameter: which terrain."""
 
 
-def stage(technique: Technique, subject: str, folder: Path, picture: Path, *, seed: int = 0) -> Sketch:
-    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to stand-ins.
+def standalone_sketch(
+    technique: Technique, subject: str, folder: Path, picture: Path, *, seed: int = 0
+) -> Sketch:
+    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to placeholders.
 
     ``folder`` is where its files are; ``picture`` is the file of parameters that name none.
     """
     wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
-    passes = [PassSpec(name, "a stand-in", _TERRAIN, values=((SEED, seed),)) for name in wanted]
+    passes = [PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),)) for name in wanted]
     passes.append(PassSpec(subject, subject, technique, file=shown(technique.path), line=line))
     passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
     graph = Graph(subject, technique.path, tuple(passes))
@@ -75,36 +78,17 @@ def _text(code: str) -> SourceText:
     return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(lines, 1)))
 
 
-# Hills of six octaves, each turned against the one before; its channels are four terrains.
 _TERRAIN = Kernel(
-    "a stand-in",
-    "kernel",
-    _text("""
-uniform uint seed = 0u;
-vec4 kernel(ivec2 texel) {
-    vec2 place = vec2(texel) / vec2(max(size - 1, ivec2(1)));
-    vec4 sum = vec4(0.5);
-    for (int octave = 0; octave < 6; octave++) {
-        float turn = 1.7 * float(octave) + float(seed);
-        float share = exp2(float(octave));
-        vec2 way = vec2(cos(turn), sin(turn)) * 4.0 * share;
-        vec4 along = vec4(dot(place, way) + turn) + vec4(0.0, 1.0, 2.0, 3.0);
-        float across = dot(place, vec2(-way.y, way.x)) * 1.3;
-        sum += 0.24 / share * sin(along) * cos(across + turn);
-    }
-    return clamp(sum, 0.0, 1.0);
-}
-"""),
-    (Output("value", "rgba32f"),),
-    (Parameter(SEED, "uint", 0),),
+    name="a placeholder",
+    kind="kernel",
+    source=_text(own_shader("placeholder_terrain.glsl")),
+    outputs=(Output("value", "rgba32f"),),
+    parameters=(Parameter(SEED, "uint", 0),),
 )
 _COPY = Kernel(
-    "a copy",
-    "kernel",
-    _text("""
-uniform sampler2D shown;
-vec4 kernel(ivec2 texel) { return texelFetch(shown, min(texel, textureSize(shown, 0) - 1), 0); }
-"""),
-    (Output("frame", "rgba16f"),),
+    name="a copy",
+    kind="kernel",
+    source=_text(own_shader("placeholder_view.glsl")),
+    outputs=(Output("frame", "rgba16f"),),
     inputs=(Input("shown"),),
 )

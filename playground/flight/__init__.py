@@ -1,4 +1,4 @@
-"""Fly over an endless land that is made while one flies: parts, budget, flight model, record and replay.
+"""Fly over endless terrain, generated during the flight: parts, budget, flight model, record and replay.
 
-There is no window here. What a sketch must be for it, ``plot`` says.
+There is no window here. ``layout`` says what a flight requires of a sketch.
 """

@@ -1,7 +1,7 @@
-"""Fly: a craft that is easy to hold, in steps of a sixtieth of a second, never through the ground.
+"""Simulate the craft: easy to fly, in steps of a sixtieth of a second, never through the ground.
 
-It turns as it banks, climbs as it pitches, gains speed downhill and loses it uphill; let go,
-it levels out. It cannot stall and cannot be turned over: who flies is to look at the land.
+It turns as it banks, climbs as it pitches, gains speed downhill and loses it uphill; without
+input it levels out. It cannot stall or roll over: the pilot is to look at the terrain.
 Where the ground comes too near it lifts the craft, and turns its nose up along the slope.
 """
 
@@ -12,20 +12,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 STEP = 1 / 60
-"""Seconds of a step; nothing else is ever passed, so a flight is the same whatever draws it."""
+"""Seconds of a step, always the same, so a flight does not depend on the frame rate."""
 
-SLOWEST, FASTEST = 40.0, 320.0  # [m/s] that the throttle holds
+SLOWEST, FASTEST = 40.0, 320.0  # [m/s] range of the throttle
 DIVING = 400.0  # [m/s] never more
 GRAVITY = 9.81  # [m/s²]
 STEEPEST, BANKED = math.radians(55.0), math.radians(70.0)  # pitch and roll never more
 CEILING = 9_000.0  # [m above height 0]
 CLEARANCE = 14.0  # [m] over the ground, at least
-AHEAD = 0.35  # [s] of the way ahead that the ground is looked at
+AHEAD = 0.35  # [s] of flight ahead whose ground is sampled
 
 _PITCHES, _ROLLS, _YAWS, _THROTTLES = 0.7, 1.7, 0.45, 0.35  # [1/s] at full deflection
-_LEVELS, _RIGHTS = 0.35, 1.1  # [1/s] with which pitch and roll go back when let go
+_LEVELS, _RIGHTS = 0.35, 1.1  # [1/s] with which pitch and roll return without input
 _EAGER = 0.55  # [1/s] with which speed follows the throttle
-_QUICK = 7.0  # [1/s] with which the stick's way is followed: nothing jerks
+_QUICK = 7.0  # [1/s] with which the stick is followed: smooths jerks
 
 Ground = Callable[[float, float], float]
 """Height of the ground at a place [m above height 0]."""
@@ -33,7 +33,7 @@ Ground = Callable[[float, float], float]
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """What hands do, in hundredths: whole numbers, so that a record is exact."""
+    """The pilot's input, in hundredths: whole numbers, so that a record is exact."""
 
     throttle: int = 0  # -100..100: less, more
     pitch: int = 0  # up
@@ -41,7 +41,7 @@ class Controls:
     yaw: int = 0  # to the right
 
     def within(self) -> Controls:
-        """Return the same, no number past its end."""
+        """Return the controls clamped to their range."""
         return Controls(*(min(max(int(n), -100), 100) for n in self.values))
 
     @property
@@ -65,7 +65,7 @@ class Craft:
     roll: float = 0.0  # [radians, right wing down]
     speed: float = 120.0  # [m/s]
     throttle: float = 0.3  # 0..1
-    stick: tuple[float, float, float] = (0.0, 0.0, 0.0)  # pitch, roll and yaw as they are followed, -1..1
+    stick: tuple[float, float, float] = (0.0, 0.0, 0.0)  # pitch, roll and yaw as followed so far, -1..1
     steps: int = 0  # since the start
     touched: int = 0  # steps in which the ground lifted it
 
@@ -77,24 +77,24 @@ class Craft:
 
 def stepped(craft: Craft, controls: Controls, ground: Ground) -> Craft:
     """Return the craft a step later."""
-    held = controls.within()
+    given = controls.within()
     share = 1 - math.exp(-_QUICK * STEP)
-    wanted = (held.pitch / 100, held.roll / 100, held.yaw / 100)
+    wanted = (given.pitch / 100, given.roll / 100, given.yaw / 100)
     stick = tuple(s + (w - s) * share for s, w in zip(craft.stick, wanted, strict=True))
-    throttle = _held(craft.throttle + held.throttle / 100 * _THROTTLES * STEP, 0.0, 1.0)
+    throttle = _clamped(craft.throttle + given.throttle / 100 * _THROTTLES * STEP, 0.0, 1.0)
 
     pitch = craft.pitch + stick[0] * _PITCHES * STEP
-    if held.pitch == 0:
+    if given.pitch == 0:
         pitch *= math.exp(-_LEVELS * STEP)
-    pitch = _held(pitch, -STEEPEST, STEEPEST)
+    pitch = _clamped(pitch, -STEEPEST, STEEPEST)
     roll = craft.roll + stick[1] * _ROLLS * STEP
-    if held.roll == 0:
+    if given.roll == 0:
         roll *= math.exp(-_RIGHTS * STEP)
-    roll = _held(roll, -BANKED, BANKED)
+    roll = _clamped(roll, -BANKED, BANKED)
 
-    kept = SLOWEST + (FASTEST - SLOWEST) * throttle
-    change = _EAGER * (kept - craft.speed) - GRAVITY * math.sin(pitch)
-    speed = _held(craft.speed + change * STEP, SLOWEST, DIVING)
+    wanted_speed = SLOWEST + (FASTEST - SLOWEST) * throttle
+    change = _EAGER * (wanted_speed - craft.speed) - GRAVITY * math.sin(pitch)
+    speed = _clamped(craft.speed + change * STEP, SLOWEST, DIVING)
 
     # A banked wing pulls the craft around: a level turn has g tan(roll) / v.
     turn = GRAVITY * math.tan(roll) / speed * 1.6 + stick[2] * _YAWS
@@ -131,5 +131,5 @@ def _lifted(craft: Craft, ground: Ground) -> Craft:
     return replace(craft, up=max(craft.up, floor), pitch=max(craft.pitch, nose), touched=touched)
 
 
-def _held(value: float, low: float, high: float) -> float:
+def _clamped(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)

@@ -1,40 +1,15 @@
-"""Cut a part out of the textures that a sketch made of it and its apron."""
+"""Cut a part out of the textures that a sketch computed for it and its apron."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from playground.flight.layout import Plot
+from playground.flight.programs import screen_program
 from playground.gpu.textures import make_framebuffer
-from playground.gpu.triangle import TRIANGLE
 
 if TYPE_CHECKING:
     import moderngl
-
-_HEIGHTS = """#version 330
-uniform sampler2D source;
-uniform int apron;
-out float height;
-void main() { height = texelFetch(source, ivec2(gl_FragCoord.xy) + apron, 0).r; }
-"""
-# Between texels only where the source is coarser: on a texel the part of the way is 0, and
-# a + (b - a) 0 is a to the last bit.
-_GROUND = """#version 330
-uniform sampler2D source;
-uniform float first;
-uniform float rise;
-out vec4 ground;
-void main() {
-    vec2 place = first + rise * floor(gl_FragCoord.xy);
-    ivec2 low = ivec2(place);
-    ivec2 high = min(low + 1, textureSize(source, 0) - 1);
-    vec2 share = place - vec2(low);
-    vec3 a = texelFetch(source, low, 0).rgb, b = texelFetch(source, ivec2(high.x, low.y), 0).rgb;
-    vec3 c = texelFetch(source, ivec2(low.x, high.y), 0).rgb, d = texelFetch(source, high, 0).rgb;
-    vec3 south = a + (b - a) * share.x, north = c + (d - c) * share.x;
-    ground = vec4(south + (north - south) * share.y, 1.0);
-}
-"""
 
 
 class Cutter:
@@ -43,7 +18,7 @@ class Cutter:
     def __init__(self, ctx: moderngl.Context, plot: Plot) -> None:
         self.ctx: Any = ctx
         self.plot = plot
-        self._programs = [ctx.program(vertex_shader=TRIANGLE, fragment_shader=t) for t in (_HEIGHTS, _GROUND)]
+        self._programs = [screen_program(ctx, name) for name in ("part_heights", "part_ground")]
         self._arrays = [ctx.vertex_array(program, []) for program in self._programs]
         self._surfaces: dict[int, moderngl.Framebuffer] = {}  # by the texture's own number
 
@@ -66,9 +41,9 @@ class Cutter:
         self._surface(target).clear(0.7, 0.7, 0.7, 1.0)
 
     def release(self) -> None:
-        """Give programs and framebuffers back."""
-        kept: list[Any] = [*self._surfaces.values(), *self._arrays, *self._programs]
-        for item in kept:
+        """Release programs and framebuffers."""
+        owned: list[Any] = [*self._surfaces.values(), *self._arrays, *self._programs]
+        for item in owned:
             item.release()
         self._surfaces.clear()
 

@@ -1,7 +1,7 @@
-"""A flight: a sketch's land, a craft over it, a time of day; step by step, and a picture of any moment.
+"""A flight: a sketch's terrain, a craft over it, a time of day; step by step, and a picture of any moment.
 
-A step depends on nothing but what came before it and what the hands do: not on the clock of
-the machine, not on which pictures were drawn. Only which parts are there depends on the budget,
+A step depends on the steps before it and the pilot's input alone: not on the clock of the
+machine, not on which pictures were drawn. Only which parts are there depends on the budget,
 and never what lies under the craft, which is made before it is needed.
 """
 
@@ -25,7 +25,7 @@ from playground.sketch.model import Sketch
 if TYPE_CHECKING:
     import moderngl
 
-RADIUS = 5.0  # [parts] seen
+RADIUS = 5.0  # [parts] visible
 PARTS_A_STEP = 1  # of a flight without a window
 START_ABOVE = 450.0  # [m] over the ground
 CACHE_BYTES = 192 * 2**20  # of the engine, beside the flight's own textures
@@ -54,7 +54,7 @@ class Flight:
         self.scene = Scene(engine.ctx, self.plot, max(min(wanted, engine.info.max_samples), 1))
         self.craft = self._placed(start)
         self._first, self._first_hour = self.craft, self.parts.hour
-        self._coming: _Coming | None = None
+        self._next: _Next | None = None
         self._look()
         self._take_daylight()
 
@@ -65,12 +65,12 @@ class Flight:
         self.release()
 
     def release(self) -> None:
-        """Give every texture of the flight's own back."""
+        """Release every texture of the flight's own."""
         self.drop_change()
         self.parts.release()
         self.scene.release()
 
-    # ── where one is ─────────────────────────────────────────────────────────
+    # ── where the craft is ─────────────────────────────────────────────────────────
 
     @property
     def hour(self) -> float:
@@ -99,7 +99,7 @@ class Flight:
     # ── what happens ─────────────────────────────────────────────────────────
 
     def step(self, moment: Moment | Controls = LEVEL, parts: int = PARTS_A_STEP) -> None:
-        """Fly a sixtieth of a second, and make at most so many parts beside those under the craft."""
+        """Fly a sixtieth of a second, and make at most so many parts besides those under the craft."""
         if isinstance(moment, Controls):
             moment = Moment(moment)
         if moment.reset:
@@ -125,13 +125,13 @@ class Flight:
 
     @property
     def changing(self) -> bool:
-        """Whether another sketch is being made ready."""
-        return self._coming is not None
+        """Whether another sketch is being prepared."""
+        return self._next is not None
 
     def change(self, sketch: Sketch) -> None:
-        """Begin to go on over another sketch, from the same place; what is seen stays until it is ready.
+        """Prepare another sketch, to fly on over it from the same place; what is visible stays until then.
 
-        The time of day stays, unless the sketch says another than the one before did. Raises
+        The time of day stays, unless the sketch has another than the one before. Raises
         ``SketchError`` where it cannot be flown over: then nothing changes.
         """
         self.drop_change()
@@ -143,45 +143,45 @@ class Flight:
             parts.release()
             raise
         parts.hour = self.hour if plot.first_hour() == self.plot.first_hour() else plot.first_hour()
-        self._coming = _Coming(sketch, plot, parts, scene)
+        self._next = _Next(sketch, plot, parts, scene)
 
     def tend_change(self, seconds: float) -> bool:
-        """Go on making the other sketch's parts for so long; say whether it has taken the place of this one.
+        """Make the other sketch's parts for so long; return whether it has replaced this one.
 
         Raises ``PlaygroundError`` where a part cannot be made: then this one stays.
         """
-        coming = self._coming
-        if coming is None:
+        upcoming = self._next
+        if upcoming is None:
             return False
         try:
-            coming.parts.look(self.craft.east, self.craft.north, self.craft.heading)
-            coming.parts.tend_for(seconds)
-            if coming.parts.missing:
+            upcoming.parts.look(self.craft.east, self.craft.north, self.craft.heading)
+            upcoming.parts.tend_for(seconds)
+            if upcoming.parts.missing:
                 return False
-            _take_daylight(self.engine, coming.plot, coming.parts.hour, coming.scene)
+            _take_daylight(self.engine, upcoming.plot, upcoming.parts.hour, upcoming.scene)
         except Exception:
             self.drop_change()
             raise
-        self._coming = None
+        self._next = None
         self.parts.release()
         self.scene.release()
-        self.sketch, self.plot, self.parts, self.scene = coming
+        self.sketch, self.plot, self.parts, self.scene = upcoming
         self._first_hour = self.plot.first_hour()
         floor = self.floor(self.craft.east, self.craft.north) + CLEARANCE
         self.craft = replace(self.craft, up=max(self.craft.up, floor))
         return True
 
     def drop_change(self) -> None:
-        """Leave the other sketch, if one is being made ready."""
-        coming, self._coming = self._coming, None
-        if coming is not None:
-            coming.parts.release()
-            coming.scene.release()
+        """Drop the other sketch, if one is being prepared."""
+        upcoming, self._next = self._next, None
+        if upcoming is not None:
+            upcoming.parts.release()
+            upcoming.scene.release()
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
     def draw(self, size: tuple[int, int], *, bare: bool = False) -> moderngl.Texture:
-        """Draw what is seen and return its texture, rgba8; it lives until the next."""
+        """Draw the view and return its texture, rgba8, valid until the next draw."""
         craft = self.craft
         lens = through(craft, size, (self.parts.radius + 1.5) * self.plot.width)
         eye = (craft.east, craft.north, craft.up)
@@ -193,7 +193,7 @@ class Flight:
                 bound.use()
 
     def picture(self, size: tuple[int, int]) -> Frame:
-        """Return what is seen as a picture that saves itself."""
+        """Return the view as a picture that saves itself."""
         return Frame(read_picture(self.draw(size)), self.sketch.name, self.craft.seconds)
 
     def _look(self) -> None:
@@ -211,8 +211,8 @@ class Flight:
         _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
 
 
-class _Coming(NamedTuple):
-    """What a flight goes on over, once it is ready."""
+class _Next(NamedTuple):
+    """What a flight continues over, once it is ready."""
 
     sketch: Sketch
     plot: Plot

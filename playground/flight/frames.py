@@ -20,7 +20,7 @@ def fly_again(
 ) -> Iterator[Flight]:
     """Fly a record; yield the flight at its start, then after every so many steps, 0 for its end only.
 
-    Parts are made by number, not by time: what is seen does not depend on the machine's speed.
+    Parts are made by number, not by time: the pictures do not depend on the machine's speed.
     """
     header = record.header
     with Flight(engine, sketch, radius=header.radius, start=header.start, samples=samples) as flight:
@@ -44,7 +44,7 @@ def write_frames(
     size: tuple[int, int] | None = None,
     done: Callable[[], None] = lambda: None,
 ) -> list[Path]:
-    """Write the pictures of a flight, each whole or not at all, and return their paths.
+    """Write the pictures of a flight, each complete or not at all, and return their paths.
 
     They are named by their steps, ``frame-000120.png``; ``done`` is called after each.
     """
@@ -62,7 +62,7 @@ def write_frames(
 
 
 def _refuse_others(folder: Path, expected: set[str]) -> None:
-    """Raise ``DataError`` where pictures of another flight would stand among those of this one."""
+    """Raise ``DataError`` where there are pictures of another flight among those of this one."""
     others = sorted({path.name for path in folder.glob("frame-*.png")} - expected)
     if others:
         raise DataError(

@@ -1,9 +1,9 @@
-"""Read from a sketch how its land is cut into parts, or say in a sentence why it cannot be flown over.
+"""Read from a sketch how its terrain is cut into parts, or explain why it cannot be flown over.
 
-A flight asks of a sketch no more than this: a pass ``height`` whose technique has a parameter
-``part`` (whole, two numbers: which part is made), on land as wide as it is long. If it has
+A flight requires of a sketch no more than this: a pass ``height`` whose technique has a parameter
+``part`` (two whole numbers: which part is made), on terrain as wide as it is long. If it has
 ``apron`` as well, so many texels on each side belong to the neighbours, and are cut off once
-the light is there. Every other pass with a parameter ``part`` is told it too. The passes
+the light is computed. Every other pass with a parameter ``part`` receives it too. The passes
 ``colour``, ``light`` and ``daylight`` are used where they are there, and so are the colours
 of the view. A parameter ``daylight.hour`` makes the time of day the pilot's.
 """
@@ -18,7 +18,7 @@ from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.model import Sketch, Value
 
 PartName = tuple[int, int]
-"""Which part of the land, counted east and north."""
+"""Which part of the terrain, counted east and north."""
 
 _HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
 _PART, _APRON, _HOUR, _REACH = "part", "apron", "hour", "reach"
@@ -29,7 +29,7 @@ FARTHEST = 2**20
 
 @dataclass(frozen=True)
 class View:
-    """The view's colours and its sea: what a sketch does not say is as ``view/terrain`` has it."""
+    """The view's colours and its sea; defaults are those of ``view/terrain``."""
 
     zenith: tuple[float, float, float] = (0.105, 0.245, 0.56)
     horizon: tuple[float, float, float] = (0.60, 0.70, 0.80)
@@ -45,10 +45,10 @@ class View:
 
 @dataclass(frozen=True)
 class Plot:
-    """A sketch's land, cut into parts."""
+    """A sketch's terrain, cut into parts."""
 
     sketch: Sketch
-    told: tuple[str, ...]  # paths of the parameters that say which part
+    part_paths: tuple[str, ...]  # of the parameters that receive the part
     intervals: int  # of a part, from node to node
     apron: int  # [texels of the height] around it
     spacing: float  # [m] from node to node
@@ -69,13 +69,13 @@ class Plot:
 
     def at(self, part: PartName, hour: float | None = None) -> Sketch:
         """Return the sketch of one part, at a time of day."""
-        values: dict[str, object] = {path: part for path in self.told}
+        values: dict[str, object] = {path: part for path in self.part_paths}
         if hour is not None and self.hour:
             values[self.hour] = hour
         return self.sketch.with_values(values)
 
     def first_hour(self) -> float:
-        """Return the time of day that the sketch says, in hours; 12 where it says none."""
+        """Return the sketch's time of day in hours; 12 where it has none."""
         if not self.hour:
             return 12.0
         found = value_of(self.sketch, self.hour, values_of(self.sketch))
@@ -83,40 +83,76 @@ class Plot:
 
 
 def plot_of(sketch: Sketch, engine: Engine) -> Plot:
-    """Return how a sketch's land is cut into parts; raise ``SketchError`` where it cannot be flown over."""
+    """Return a sketch's terrain, cut into parts; raise ``SketchError`` where it cannot be flown over."""
     names = [spec.name for spec in sketch.graph.passes]
     if _HEIGHT not in names:
         raise _refused(sketch, f"it has no pass named '{_HEIGHT}'")
     leaves = values_of(sketch)
+    _check_part(sketch, leaves)
+    apron = _apron(sketch, leaves)
+    # What is made with another apron would not fit: one for all.
+    aprons = [f"{name}.{_APRON}" for name in names]
+    others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
+    sketch = sketch.with_values(dict.fromkeys(others, apron))
+    ground = engine.plan_for(sketch, (1, 1)).terrain
+    extent, relief = ground.extent, ground.relief
+    assert extent is not None and relief is not None
+    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
+    side, intervals = _intervals(sketch, sizes[_HEIGHT], extent, apron)
+    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
+    finest = max(lit.values(), default=1)
+    parts = [f"{name}.{_PART}" for name in names]
+    hour = f"{_DAYLIGHT}.{_HOUR}"
+    return Plot(
+        sketch=sketch,
+        part_paths=tuple(path for path in parts if _value(sketch, path, leaves) is not None),
+        intervals=intervals,
+        apron=apron,
+        spacing=extent[0] / (side - 1),
+        relief=relief,
+        base=ground.base_elevation or 0.0,
+        ground=intervals * finest + 1,
+        shares={name: (float(apron * times), times / finest) for name, times in lit.items()},
+        view=_view(sketch, leaves),
+        hour=hour if _value(sketch, hour, leaves) is not None else "",
+        has_daylight=_DAYLIGHT in names,
+    )
+
+
+def _check_part(sketch: Sketch, leaves: dict[str, Value]) -> None:
+    """Raise ``SketchError`` where the height has no parameter for the part to make."""
     part = _value(sketch, f"{_HEIGHT}.{_PART}", leaves)
     if not (isinstance(part, tuple) and len(part) == 2 and all(isinstance(n, int) for n in part)):
         raise _refused(
             sketch,
             f"the technique of its pass '{_HEIGHT}' has no parameter '{_PART}' of two whole numbers, "
-            "which part of the land to make",
+            "which part of the terrain to make",
         )
-    apron = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
-    apron = apron if isinstance(apron, int) else 0
-    # What is made with another apron would not fit: one for all.
-    aprons = [f"{name}.{_APRON}" for name in names]
-    others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
-    sketch = sketch.with_values(dict.fromkeys(others, apron))
+
+
+def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
+    """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
+    found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
+    apron = found if isinstance(found, int) else 0
     reach = _value(sketch, f"{_LIGHT}.{_REACH}", leaves)
     if isinstance(reach, int | float) and reach > apron > 0:
         raise _refused(
             sketch,
-            f"shadows reach {reach:g} texels ({_LIGHT}.{_REACH}), and there are only {apron} beside a part "
+            f"shadows reach {reach:g} texels ({_LIGHT}.{_REACH}), and there are only {apron} around a part "
             f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_REACH}={apron}",
         )
-    plan = engine.plan_for(sketch, (1, 1))
-    extent, relief = plan.land.extent, plan.land.relief
-    assert extent is not None and relief is not None
-    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
-    side = sizes[_HEIGHT][0]
-    if sizes[_HEIGHT] != (side, side) or abs(extent[0] - extent[1]) > 1e-6 * extent[0]:
+    return apron
+
+
+def _intervals(
+    sketch: Sketch, size: tuple[int, int], extent: tuple[float, float], apron: int
+) -> tuple[int, int]:
+    """Return the texels of a side, and the intervals of a part; raise ``SketchError`` for a bad fit."""
+    side = size[0]
+    if size != (side, side) or abs(extent[0] - extent[1]) > 1e-6 * extent[0]:
         raise _refused(
             sketch,
-            f"its land is {side} x {sizes[_HEIGHT][1]} texels on {extent[0]:g} x {extent[1]:g} m, "
+            f"its terrain is {side} x {size[1]} texels on {extent[0]:g} x {extent[1]:g} m, "
             "and parts are as wide as they are long",
         )
     intervals = side - 1 - 2 * apron
@@ -126,25 +162,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
             f"{side} texels less an apron of {apron} on each side leave a part of {intervals} intervals; "
             f"2 to {_FINEST} were expected",
         )
-    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
-    finest = max(lit.values(), default=1)
-    shares = {name: (float(apron * times), times / finest) for name, times in lit.items()}
-    told = tuple(f"{name}.{_PART}" for name in names if _value(sketch, f"{name}.{_PART}", leaves) is not None)
-    hour = f"{_DAYLIGHT}.{_HOUR}"
-    return Plot(
-        sketch=sketch,
-        told=told,
-        intervals=intervals,
-        apron=apron,
-        spacing=extent[0] / (side - 1),
-        relief=relief,
-        base=plan.land.base_elevation or 0.0,
-        ground=intervals * finest + 1,
-        shares=shares,
-        view=_view(sketch, leaves),
-        hour=hour if _value(sketch, hour, leaves) is not None else "",
-        has_daylight=_DAYLIGHT in names,
-    )
+    return side, intervals
 
 
 def _refused(sketch: Sketch, why: str) -> SketchError:

@@ -1,4 +1,4 @@
-"""Look from the craft: matrices around the eye, so that numbers stay small far from the first part."""
+"""The lens of the craft: matrices around the eye, so that numbers stay small far from the first part."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NEAREST = 2.0  # [m]
 
 @dataclass(frozen=True)
 class Lens:
-    """What is seen, in a space whose origin is the eye: x east, y north, z up, metres."""
+    """The view frustum, in a space whose origin is the eye: x east, y north, z up, metres."""
 
     clip_from_near: NDArray[np.float32]  # (4, 4), rows; acts on columns
     near_from_clip: NDArray[np.float32]
@@ -24,7 +24,7 @@ class Lens:
     pixel: float  # [radians] high
 
     def sees(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Say which boxes, given by their corners (n, 3), may be in the picture."""
+        """Return which boxes, given by their corners (n, 3), may be in the picture."""
         normals = self.planes[:, None, :3]
         farthest = np.where(normals >= 0, high[None], low[None])
         inside: NDArray[np.bool_] = ((farthest * normals).sum(axis=2) + self.planes[:, 3:] >= 0).all(axis=0)

@@ -1,6 +1,6 @@
-"""Build the meshes of a part: fewer triangles the farther, skirts around each so that no crack shows.
+"""Build the meshes of a part: fewer triangles the farther, skirts around each to hide cracks.
 
-Two parts side by side have the same nodes on their border; where one is drawn with every
+Neighbouring parts have the same nodes on their border; where one is drawn with every
 second node only, its edge cuts corners that the other's does not. A skirt hangs from each
 edge, lower than what may be cut, in the colour of the edge.
 """
@@ -14,7 +14,7 @@ LEVELS = 4
 
 
 def steps_of(intervals: int) -> tuple[int, ...]:
-    """Return, level by level, how many intervals a triangle's side takes: 1, 2, 4 … as far as they fit."""
+    """Return for each level how many intervals a triangle's side spans: 1, 2, 4 … as far as they fit."""
     found = [1]
     while len(found) < LEVELS and intervals % (2 * found[-1]) == 0 and intervals // (2 * found[-1]) >= 4:
         found.append(2 * found[-1])

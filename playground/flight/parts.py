@@ -1,13 +1,13 @@
-"""Keep the parts of the land that lie around the eye: make what is near, drop what is far.
+"""Cache the parts of the terrain around the eye: make what is near, drop what is far.
 
 A part is made by the engine, which runs the sketch for it: height, colour and light of the
 part and its apron. The part itself is cut out into a slot's textures, which are the
 flight's own: heights at its nodes, and its ground, colour times light. There are as many
-slots as may ever be wanted, and no more, so memory is bounded however long one flies.
+slots as may ever be wanted, and no more, so memory is bounded however long a flight is.
 
-The order is: what is not there yet, nearest first, what is in view before the rest; then
-what is there, but lit at another time of day. What makes a part does not know the way there,
-so a part that comes again has the same bits.
+The order is: missing parts, nearest first, those in view before the rest; then parts that are
+lit at another time of day. A part depends on its number alone, not on the way there, so a part
+that is made again has the same bits.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ if TYPE_CHECKING:
     import moderngl
 
 MOST_BYTES = 2 * 2**30
-"""Of all parts kept at once."""
+"""Of all parts in memory at once."""
 BEHIND = 1.6
-"""How many times as far a part seems that is out of view, when it is chosen what to make."""
-_SPARE = 12  # slots more than are ever wanted at once: one may turn back without making much anew
+"""How many times its distance a part out of view counts when the next part is chosen."""
+_SPARE = 12  # slots more than are ever wanted at once: after turning back, little is made again
 _GRAIN = 4  # the eye's place is taken to this share of a part when parts are chosen
-_TURNS = 32  # and its heading to this share of a circle
+_HEADINGS = 32  # and its heading to this share of a circle
 
 
 @dataclass(eq=False)
 class Slot:
-    """Textures that hold one part."""
+    """The textures of one part."""
 
     heights: moderngl.Texture  # r32f, a texel a node, 0..1 times relief
     ground: moderngl.Texture  # rgba16f with mipmaps, colour times light
-    nodes: NDArray[np.float32]  # the heights again, for the processor: row 0 south
+    nodes: NDArray[np.float32]  # the heights again, for the CPU: row 0 south
     hour: float = 0.0
     lowest: float = 0.0
     highest: float = 0.0
@@ -54,12 +54,12 @@ class Slot:
 
     @property
     def bytes(self) -> int:
-        """Bytes held, mipmaps and the processor's copy included."""
+        """Bytes held, mipmaps and the CPU's copy included."""
         ground = bytes_of(self.ground.size, "rgba16f")
         return bytes_of(self.heights.size, "r32f") + ground + ground // 3 + self.nodes.nbytes
 
     def release(self) -> None:
-        """Give the textures back to the driver."""
+        """Release the textures."""
         self.heights.release()
         self.ground.release()
 
@@ -72,11 +72,11 @@ class Parts:
         self.plot = plot
         self.radius = radius  # in parts: all whose middle is as near as that are wanted
         self.hour = plot.first_hour()
-        self.made = 0  # parts made so far, those lit anew included
+        self.made = 0  # parts made so far, those lit again included
         self.slots: dict[PartName, Slot] = {}
         self._near = _around(radius)
         self.limit = len(self._near) + _SPARE
-        _refuse_hunger(plot, radius, self.limit)
+        _check_memory(plot, radius, self.limit)
         self._cutter = Cutter(engine.ctx, plot)
         self._spare: list[Slot] = []
         self._all: list[Slot] = []  # those being filled included
@@ -111,9 +111,9 @@ class Parts:
         return math.floor(east / width), math.floor(north / width)
 
     def ground_at(self, east: float, north: float) -> float:
-        """Return the highest of the four nodes around a place [m above height 0]; makes the part if need be.
+        """Return the highest of the four nodes around a place [m above height 0]; makes the part if needed.
 
-        It stands over the ground between them, however that is drawn.
+        It is above the ground between them, however that is drawn.
         """
         part = self.part_at(east, north)
         slot = self.slots.get(part) or self.make(part)
@@ -125,25 +125,25 @@ class Parts:
     # ── what is to come ──────────────────────────────────────────────────────
 
     def look(self, east: float, north: float, heading: float) -> None:
-        """Say where the eye is [m] and which way it goes [radians from north]; drops nothing yet."""
+        """Set where the eye is [m] and its heading [radians from north]; drops nothing yet."""
         width = self.plot.width
-        turn = round(heading / math.tau * _TURNS) % _TURNS
-        now = (round(east / width * _GRAIN), round(north / width * _GRAIN), turn)
+        direction = round(heading / math.tau * _HEADINGS) % _HEADINGS
+        now = (round(east / width * _GRAIN), round(north / width * _GRAIN), direction)
         if now == self._chosen:
             return
         self._chosen = now
         self._clock += 1
         x, y = now[0] / _GRAIN, now[1] / _GRAIN
         middle = math.floor(x), math.floor(y)
-        ahead = math.sin(turn / _TURNS * math.tau), math.cos(turn / _TURNS * math.tau)
+        ahead = math.sin(direction / _HEADINGS * math.tau), math.cos(direction / _HEADINGS * math.tau)
         offsets = self._near + middle
         away = offsets + 0.5 - (x, y)
         far = np.hypot(away[:, 0], away[:, 1])
         # Within a right angle of straight ahead; around the eye itself, nothing is behind.
-        seen = (away @ ahead > 0.7 * far) | (far < 1.0)
-        order = np.lexsort((offsets[:, 0], offsets[:, 1], np.where(seen, far, BEHIND * far)))
-        kept = order[far[order] <= self.radius]
-        self._wanted = [(int(i), int(j)) for i, j in offsets[kept]]
+        visible = (away @ ahead > 0.7 * far) | (far < 1.0)
+        order = np.lexsort((offsets[:, 0], offsets[:, 1], np.where(visible, far, BEHIND * far)))
+        wanted = order[far[order] <= self.radius]
+        self._wanted = [(int(i), int(j)) for i, j in offsets[wanted]]
         for part in self._wanted:
             if part in self.slots:
                 self.slots[part].used = self._clock
@@ -176,18 +176,18 @@ class Parts:
         return stages
 
     def make(self, part: PartName) -> Slot:
-        """Make a part now, or light it anew, and return it."""
+        """Make a part now, or light it again, and return it."""
         for _ in self._stages(part):
             pass
         return self.slots[part]
 
     def _stages(self, part: PartName) -> Generator[None, None, None]:
-        """Make a part: each turn runs one pass for it, the last puts it in its place.
+        """Make a part: each step runs one pass for it, the last puts it in its place.
 
-        It is made in a slot that is not shown, so that an old light stays until the new one is whole.
+        It is made in a slot that is not shown, so that the old light stays until the new one is complete.
         """
         hour = self.hour
-        sketch = self.plot.at((_held(part[0]), _held(part[1])), hour)
+        sketch = self.plot.at((_clamped(part[0]), _clamped(part[1])), hour)
         slot = self._take_slot(part)
         self._cutter.heights(slot.heights, self.engine.texture(sketch, "height"))
         yield
@@ -199,7 +199,7 @@ class Parts:
         slot.ground.build_mipmaps()
         last = slot.ground.read(level=self.plot.ground.bit_length() - 1, alignment=1)
         slot.mean = tuple(float(n) for n in np.frombuffer(last, np.float16))
-        # What is no number is drawn at height 0, and stood on there.
+        # NaN and infinity are drawn at height 0, and the craft stays above that.
         slot.nodes = np.nan_to_num(read_texture(slot.heights), nan=0.0, posinf=0.0, neginf=0.0)
         slot.lowest, slot.highest = float(slot.nodes.min()), float(slot.nodes.max())
         slot.hour, slot.used = hour, self._clock
@@ -219,17 +219,17 @@ class Parts:
             yield from (p for p in self._wanted if p in self.slots and self.slots[p].hour != self.hour)
 
     def _take_slot(self, part: PartName) -> Slot:
-        """Return a slot to fill: a spare one, a new one, or that of a part not wanted for longest."""
+        """Return a slot to fill: a spare one, a new one, or the one least recently wanted."""
         if self._spare:
             return self._spare.pop()
         if len(self._all) < self.limit:
             return self._new_slot()
 
-        def worth(name: PartName) -> tuple[int, int, PartName]:
+        def recency(name: PartName) -> tuple[int, int, PartName]:
             away = (name[0] - part[0]) ** 2 + (name[1] - part[1]) ** 2
             return self.slots[name].used, -away, name
 
-        return self.slots.pop(min(self.slots, key=worth))
+        return self.slots.pop(min(self.slots, key=recency))
 
     def _new_slot(self) -> Slot:
         ctx, n = self.engine.ctx, self.plot.intervals + 1
@@ -244,7 +244,7 @@ class Parts:
         return self._all[-1]
 
     def release(self) -> None:
-        """Give every texture back to the driver."""
+        """Release every texture."""
         if self._open is not None:
             self._open[1].close()
         for slot in self._all:
@@ -255,8 +255,8 @@ class Parts:
         self._cutter.release()
 
 
-def _refuse_hunger(plot: Plot, radius: float, slots: int) -> None:
-    """Raise ``SketchError`` where the parts that one sees would take more than ``MOST_BYTES``."""
+def _check_memory(plot: Plot, radius: float, slots: int) -> None:
+    """Raise ``SketchError`` where the visible parts would take more than ``MOST_BYTES``."""
     nodes, ground = (plot.intervals + 1) ** 2, plot.ground**2 * 8
     each = 2 * 4 * nodes + ground + ground // 3
     if each * slots <= MOST_BYTES:
@@ -264,7 +264,7 @@ def _refuse_hunger(plot: Plot, radius: float, slots: int) -> None:
     fits = [r / 2 for r in range(3, 33) if each * (len(_around(r / 2)) + _SPARE) <= MOST_BYTES]
     way = f"; --radius {fits[-1]:g} would fit" if fits else "; smaller parts would be less"
     raise SketchError(
-        f"sketch {plot.sketch.name}: {slots} parts of {each / 2**20:.0f} MiB, as many as one sees within "
+        f"sketch {plot.sketch.name}: {slots} parts of {each / 2**20:.0f} MiB, as many as are visible within "
         f"{radius:g}, are more than {MOST_BYTES / 2**30:g} GiB{way}",
         file=plot.sketch.file,
     )
@@ -272,8 +272,8 @@ def _refuse_hunger(plot: Plot, radius: float, slots: int) -> None:
 
 def _around(radius: float) -> NDArray[np.int64]:
     """Return the parts that may be wanted from anywhere in part (0, 0)."""
-    reach = math.ceil(radius) + 1
-    steps = np.arange(-reach, reach + 1)
+    farthest = math.ceil(radius) + 1
+    steps = np.arange(-farthest, farthest + 1)
     grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     # How far the middle of a part is from the nearest place in part (0, 0).
     far = np.maximum(np.abs(grid) - 0.5, 0.0)
@@ -281,6 +281,6 @@ def _around(radius: float) -> NDArray[np.int64]:
     return found
 
 
-def _held(number: int) -> int:
-    """Return a part's number where its nodes still fit a whole number of 32 bits: the land ends there."""
+def _clamped(number: int) -> int:
+    """Clamp a part's number so that its nodes fit an integer of 32 bits: the terrain ends there."""
     return min(max(number, -FARTHEST), FARTHEST)

@@ -1,4 +1,4 @@
-"""Write down a flight as JSON lines, and read it back: a header, then what the hands did, step by step.
+"""Record a flight as JSON lines, and read it back: a header, then the pilot's input, step by step.
 
 A line of controls is ``[steps, throttle, pitch, roll, yaw]``, in hundredths, for so many
 steps alike; ``{"hour": 17.5}`` sets the time of day before the next step, and
@@ -11,51 +11,40 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any
+from typing import IO, Any, TypeGuard
 
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.json_text import read_json
 
 FORMAT, VERSION = "playground flight", 1
-LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] seen: nearer, the end of the land would show
-LONGEST = 60 * 60 * 24  # [steps] of one line, and lines are so few that no file takes for ever
-SAVED_EVERY = 60  # [steps] alike after which they are written, lest a flight that ends badly be lost
+LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] visible: nearer, the end of the terrain would show
+LONGEST = 60 * 60 * 24  # [steps] of one line: no file takes for ever to read
+SAVED_EVERY = 60  # [steps] alike after which they are written, so that a crash loses no more
 _MOST_STEPS = 60 * 60 * 60 * 100
 
 
 @dataclass(frozen=True)
 class Header:
-    """What a flight stands on."""
+    """What a flight is recorded over."""
 
     sketch: str  # as the command line takes it
     size: tuple[int, int] = (640, 360)  # [pixels] of its pictures
     values: dict[str, Any] = field(default_factory=dict)  # by path, as --set
-    radius: float = 5.0  # [parts] seen
+    radius: float = 5.0  # [parts] visible
     start: tuple[float, float, float, float] | None = None  # east, north, up [m], heading [degrees]
 
     def line(self) -> str:
         """Return it as the first line of a record."""
-        return json.dumps(
-            {
-                "format": FORMAT,
-                "version": VERSION,
-                "sketch": self.sketch,
-                "size": list(self.size),
-                "step": STEP,
-                "radius": self.radius,
-                "values": self.values,
-                "start": list(self.start) if self.start else None,
-            }
-        )
+        return json.dumps({"format": FORMAT, "version": VERSION, "step": STEP} | asdict(self))
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """One step of a record: the hands, and what was asked for just before."""
+    """One step of a record: the controls, and what was set just before."""
 
     controls: Controls
     hour: float | None = None
@@ -93,7 +82,7 @@ class Recorder:
         self.close()
 
     def add(self, moment: Moment) -> None:
-        """Write down one step."""
+        """Record one step."""
         count, last = self._alike
         if moment.hour is not None or moment.reset or moment.controls != last or count >= SAVED_EVERY:
             self._flush()
@@ -110,7 +99,7 @@ class Recorder:
             try:
                 self._flush()
             finally:
-                with contextlib.suppress(OSError):  # what could not be written has been said
+                with contextlib.suppress(OSError):  # the error is raised already
                     self._file.close()
 
     def _flush(self) -> None:
@@ -132,7 +121,7 @@ class Recorder:
 
 @dataclass(frozen=True)
 class Record:
-    """A flight that was written down."""
+    """A recorded flight."""
 
     header: Header
     lines: tuple[tuple[int, Moment], ...]  # how many steps alike
@@ -161,39 +150,50 @@ def read_record(path: str | Path) -> Record:
     rows = text.split("\n")
     if len(rows) > 1 and rows[-1] and not _is_json(rows[-1]):
         rows.pop()  # cut while it was written
-    header = _header(_json(rows[0], path, 1), path)
+    with _at_line(path, 1):
+        header = _header(rows[0])
     lines: list[tuple[int, Moment]] = []
     hour: float | None = None
     reset, total = False, 0
     for number, row in enumerate(rows[1:], 2):
         if not row.strip():
             continue
-        found = _json(row, path, number)
-        if isinstance(found, dict) and set(found) == {"hour"} and _is_number(found["hour"]):
-            hour = float(found["hour"]) % 24.0
-        elif isinstance(found, dict) and found == {"reset": True}:
-            reset = True
-        elif isinstance(found, list) and len(found) == 5 and all(_is_whole(n) for n in found):
-            count, controls = found[0], Controls(*found[1:])
-            if not 1 <= count <= LONGEST or controls != controls.within():
-                raise DataError(
-                    f"{row.strip()[:60]}: expected 1 to {LONGEST} steps and controls from -100 to 100",
-                    file=str(path),
-                    line=number,
-                )
-            total += count
-            lines.append((count, Moment(controls, hour, reset)))
-            hour, reset = None, False
-        else:
-            raise DataError(
-                f"{row.strip()[:60]}: expected [steps, throttle, pitch, roll, yaw] in whole numbers, "
-                'or {"hour": 17.5}, or {"reset": true}',
-                file=str(path),
-                line=number,
-            )
-        if total > _MOST_STEPS:
-            raise DataError("is longer than a hundred hours", file=str(path), line=number)
+        with _at_line(path, number):
+            found = _json(row)
+            if isinstance(found, dict) and set(found) == {"hour"} and _is_number(found["hour"]):
+                hour = float(found["hour"]) % 24.0
+            elif isinstance(found, dict) and found == {"reset": True}:
+                reset = True
+            else:
+                count, controls = _steps(found, row)
+                total += count
+                lines.append((count, Moment(controls, hour, reset)))
+                hour, reset = None, False
+            if total > _MOST_STEPS:
+                raise ValueError("is longer than a hundred hours")
     return Record(header, tuple(lines))
+
+
+@contextlib.contextmanager
+def _at_line(path: str | Path, number: int) -> Iterator[None]:
+    """Raise ``DataError`` at a line for what is wrong with it."""
+    try:
+        yield
+    except ValueError as error:
+        raise DataError(str(error), file=str(path), line=number) from None
+
+
+def _steps(found: Any, row: str) -> tuple[int, Controls]:
+    """Return how many steps of which controls a line holds; raise ``ValueError``."""
+    if not (isinstance(found, list) and len(found) == 5 and all(map(_is_whole, found))):
+        raise ValueError(
+            f"{row.strip()[:60]}: expected [steps, throttle, pitch, roll, yaw] in whole numbers, "
+            'or {"hour": 17.5}, or {"reset": true}'
+        )
+    count, controls = found[0], Controls(*found[1:])
+    if not 1 <= count <= LONGEST or controls != controls.within():
+        raise ValueError(f"{row.strip()[:60]}: expected 1 to {LONGEST} steps and controls from -100 to 100")
+    return count, controls
 
 
 def _is_json(row: str) -> bool:
@@ -204,63 +204,50 @@ def _is_json(row: str) -> bool:
     return True
 
 
-def _json(row: str, path: str | Path, number: int) -> Any:
+def _json(row: str) -> Any:
     try:
         return read_json(row)
     except ValueError as error:
-        if number == 1:
-            raise _no_record(path) from None
         why = "is no JSON" if isinstance(error, json.JSONDecodeError) else str(error)
-        raise DataError(f"{row.strip()[:60]}: {why}", file=str(path), line=number) from None
+        raise ValueError(f"{row.strip()[:60]}: {why}") from None
 
 
-def _no_record(path: str | Path) -> DataError:
-    return DataError(
-        f'is no flight: its first line should be {{"format": "{FORMAT}", …}}, as --record writes it',
-        file=str(path),
-        line=1,
-    )
-
-
-def _header(found: Any, path: str | Path) -> Header:
+def _header(row: str) -> Header:
+    """Return the header of a record; raise ``ValueError``."""
+    found = read_json(row) if _is_json(row) else None
     if not isinstance(found, dict) or found.get("format") != FORMAT:
-        raise _no_record(path)
-    if found.get("version") != VERSION:
-        raise DataError(
-            f"is a flight of version {found.get('version')}; this playground reads version {VERSION}",
-            file=str(path),
-            line=1,
+        raise ValueError(
+            f'is no flight: its first line should be {{"format": "{FORMAT}", …}}, as --record writes it'
         )
-    size, start, values = found.get("size"), found.get("start"), found.get("values")
-    good = (
-        isinstance(found.get("sketch"), str)
-        and isinstance(size, list)
-        and len(size) == 2
-        and all(_is_whole(n) and 1 <= n <= 16384 for n in size)
-        and isinstance(values, dict)
-        and _is_number(found.get("radius"))
-        and LEAST_RADIUS <= found["radius"] <= MOST_RADIUS
-        and (start is None or (isinstance(start, list) and len(start) == 4 and all(map(_is_number, start))))
-    )
-    if not good or not isinstance(size, list) or not isinstance(values, dict):
-        raise DataError(
-            "its first line should have sketch, size, radius, values and start, as --record writes them",
-            file=str(path),
-            line=1,
+    if (version := found.get("version")) != VERSION:
+        raise ValueError(f"is a flight of version {version}; this playground reads version {VERSION}")
+    sketch, values, radius = (found.get(key) for key in ("sketch", "values", "radius"))
+    size, start = _tuple(found.get("size"), 2), _tuple(found.get("start"), 4)
+    if (
+        not isinstance(sketch, str)
+        or not all(_is_whole(n) and 1 <= n <= 16384 for n in size)
+        or not size
+        or not isinstance(values, dict)
+        or not (_is_number(radius) and LEAST_RADIUS <= radius <= MOST_RADIUS)
+        or not (all(map(_is_number, start)) and (start or found.get("start") is None))
+    ):
+        raise ValueError(
+            "its first line should have sketch, size, radius, values and start, as --record writes them"
         )
-    if not _is_number(found.get("step")) or abs(found["step"] - STEP) > 1e-9:
-        raise DataError(
-            f"has steps of {found.get('step')} s; this playground flies in steps of 1/60 s",
-            file=str(path),
-            line=1,
-        )
-    place = (start[0], start[1], start[2], start[3]) if start else None
-    return Header(found["sketch"], (size[0], size[1]), values, float(found["radius"]), place)
+    step = found.get("step")
+    if not _is_number(step) or abs(step - STEP) > 1e-9:
+        raise ValueError(f"has steps of {step} s; this playground flies in steps of 1/60 s")
+    return Header(sketch, size, values, float(radius), start or None)
+
+
+def _tuple(value: Any, length: int) -> Any:
+    """Return a list of a length as a tuple, anything else as an empty one."""
+    return tuple(value) if isinstance(value, list) and len(value) == length else ()
 
 
 def _is_whole(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e12

@@ -1,7 +1,7 @@
-"""Draw what is seen from the craft: the sky, then each part in view, then the picture for a screen.
+"""Draw the view from the craft: each visible part, then the sky, then the frame for a screen.
 
-A part has textures of its own, so it is one draw; those out of view are not drawn. What is not
-made yet is a plain of the land's mean height and colour, mostly within the haze, and no hole.
+A part has textures of its own, so it is one draw; parts out of view are culled. A missing part
+is drawn as a plain of the terrain's mean height and colour, mostly within the haze.
 """
 
 from __future__ import annotations
@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from playground.flight import shaders
 from playground.flight.layout import Plot
 from playground.flight.lens import Lens
 from playground.flight.meshes import part_mesh, steps_of
 from playground.flight.parts import Parts, Slot
+from playground.flight.programs import AIR_DIRECTIONS, screen_program, terrain_program
 from playground.gpu.textures import make_framebuffer, make_texture
-from playground.paths import GLSL
-from playground.sketch.source import read_source
 
 if TYPE_CHECKING:
     import moderngl
@@ -25,14 +23,14 @@ if TYPE_CHECKING:
 LEVEL_AT = (0.35, 1.2, 2.6)
 """Parts away from the eye from which each next level is drawn."""
 SKIRT = 2.0
-"""How far a part's skirt hangs down, over a triangle's side: so much or less is cut from an edge."""
+"""Depth of a part's skirt over a triangle's side: at most that much is cut from an edge."""
 GRAIN = 700.0
-"""[m] that the grain of the ground near by repeats after, about."""
+"""[m] period of the ground's fine grain, about."""
 MAGENTA = (1.0, 0.0, 1.0)
 
 
-def sight(radius: float) -> float:
-    """Return how far one sees [parts] where parts are wanted whose middle is as near as ``radius``.
+def visibility_range(radius: float) -> float:
+    """Return how far terrain is visible [parts] where parts are wanted whose middle is within ``radius``.
 
     From their middle to their farthest corner is 0.71 parts, and the eye's place is known to 0.18.
     """
@@ -48,16 +46,15 @@ class Scene:
         self.samples = samples
         self.drawn = 0  # parts drawn last
         self.triangles = 0  # of the last picture
-        library = read_source(GLSL / "flight" / "scene.glsl", (GLSL,)).code
-        self._land = shaders.land(ctx, library)
-        self._sky = shaders.screen(ctx, library, shaders.SKY)
-        self._present = shaders.screen(ctx, library, shaders.PRESENT)
-        self._airs = shaders.screen(ctx, library, shaders.AIR)
+        self._terrain = terrain_program(ctx)
+        self._sky = screen_program(ctx, "sky")
+        self._present = screen_program(ctx, "present")
+        self._horizon = screen_program(ctx, "air")
         self._levels = steps_of(plot.intervals)
         self._buffers: list[moderngl.Buffer] = []
         self._meshes = [self._mesh(step) for step in self._levels]
         self._plain = self._mesh(plot.intervals)
-        self._arrays = {p.glo: ctx.vertex_array(p, []) for p in (self._sky, self._present, self._airs)}
+        self._arrays = {p.glo: ctx.vertex_array(p, []) for p in (self._sky, self._present, self._horizon)}
         self._daylight = make_texture(ctx, (1, 1), "rgba32f", np.array([0, 0, 0, 1], np.float32).tobytes())
         self._flat = make_texture(ctx, (1, 1), "r32f", np.array([0.3], np.float32).tobytes())
         self._mean = make_texture(
@@ -65,7 +62,7 @@ class Scene:
         )
         self._form: type = np.float32
         self._grain = _grain(ctx)
-        self._air = make_texture(ctx, (shaders.AIRS, 1), "rgba16f")
+        self._air = make_texture(ctx, (AIR_DIRECTIONS, 1), "rgba16f")
         self._air.filter = (ctx.LINEAR, ctx.LINEAR)
         self._air.repeat_x = self._air.repeat_y = False
         self._ring = make_framebuffer(ctx, [self._air])
@@ -79,7 +76,7 @@ class Scene:
         return self.plot.view.sky == 1 and self._daylight.width > 1
 
     def take_daylight(self, texture: moderngl.Texture) -> None:
-        """Keep a copy of what ``daylight`` gives; it is small. Something else of that name is left alone."""
+        """Copy the small texture of ``daylight``; another kind of texture of that name is ignored."""
         if texture.components != 4 or texture.dtype not in ("f2", "f4") or texture.width < 2:
             return
         self._form = np.float16 if texture.dtype == "f2" else np.float32
@@ -90,7 +87,7 @@ class Scene:
         self._take_air()
 
     def _take_air(self) -> None:
-        """Find the sun's side: the land needs the air's colour by the angle from it alone."""
+        """Find the sun's direction: the air's colour depends on the angle from it alone."""
         east, north = (float(n) for n in np.frombuffer(self._daylight.read(alignment=1), self._form)[:2])
         level = float(np.hypot(east, north))
         self._towards_sun = (east / level, north / level) if level > 1e-9 else (0.0, 1.0)
@@ -100,16 +97,16 @@ class Scene:
         return max(eye[2] + self.plot.base, 0.0) / 1000
 
     def _draw_air(self, eye: tuple[float, float, float]) -> None:
-        """Work out the air's colour on the horizon as the eye sees it."""
+        """Compute the air's colour on the horizon for the eye's height."""
         self._ring.use()
-        self._ring.viewport = (0, 0, shaders.AIRS, 1)
+        self._ring.viewport = (0, 0, AIR_DIRECTIONS, 1)
         self.ctx.enable_only(0)
         self.ctx.clear_samplers(0, 3)
         self._daylight.use(2)
         view = self.plot.view
-        _set(self._airs, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
-        _set(self._airs, altitude=self._altitude(eye))
-        self._arrays[self._airs.glo].render(self.ctx.TRIANGLES, vertices=3)
+        _set(self._horizon, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
+        _set(self._horizon, altitude=self._altitude(eye))
+        self._arrays[self._horizon.glo].render(self.ctx.TRIANGLES, vertices=3)
 
     def draw(
         self,
@@ -120,10 +117,10 @@ class Scene:
         *,
         bare: bool = False,
     ) -> moderngl.Texture:
-        """Draw a picture and return its texture, rgba8, encoded; it lives until the next.
+        """Draw a picture and return its texture, rgba8, encoded, valid until the next draw.
 
-        ``bare`` leaves out sky, air and what stands in for missing parts, and puts magenta
-        there, to look for holes.
+        ``bare`` leaves out sky, air and the replacement of missing parts, and shows magenta
+        there, to find holes.
         """
         self._draw_air(eye)
         surface = self._surface_of(size)
@@ -135,9 +132,9 @@ class Scene:
         self._air.use(4)
         self._daylight.use(2)
         self.ctx.enable_only(self.ctx.DEPTH_TEST)
-        self._draw_land(parts, eye, lens, bare=bare)
+        self._draw_terrain(parts, eye, lens, bare=bare)
         if not bare:
-            # After the land: of the sky, only what is seen is worked out.
+            # After the terrain: the sky is computed where it is visible only.
             self.ctx.depth_func = "<="
             self._set_sky(self._sky, lens, eye)
             self._arrays[self._sky.glo].render(self.ctx.TRIANGLES, vertices=3)
@@ -154,24 +151,24 @@ class Scene:
         return surface.picture
 
     def release(self) -> None:
-        """Give everything back to the driver."""
+        """Release everything."""
         if self._surface is not None:
             self._surface.release()
-        kept: list[Any] = [array for array, _ in (*self._meshes, self._plain)]
-        kept += [*self._arrays.values(), *self._buffers, self._ring]
-        kept += [self._land, self._sky, self._present, self._airs]
-        kept += [self._daylight, self._flat, self._mean, self._grain, self._air]
-        for item in kept:
+        owned: list[Any] = [array for array, _ in (*self._meshes, self._plain)]
+        owned += [*self._arrays.values(), *self._buffers, self._ring]
+        owned += [self._terrain, self._sky, self._present, self._horizon]
+        owned += [self._daylight, self._flat, self._mean, self._grain, self._air]
+        for item in owned:
             item.release()
 
-    # ── the land ─────────────────────────────────────────────────────────────
+    # ── the terrain ─────────────────────────────────────────────────────────────
 
-    def _draw_land(self, parts: Parts, eye: tuple[float, float, float], lens: Lens, *, bare: bool) -> None:
-        plot, program = self.plot, self._land
+    def _draw_terrain(self, parts: Parts, eye: tuple[float, float, float], lens: Lens, *, bare: bool) -> None:
+        plot, program = self.plot, self._terrain
         self._set_sky(program, lens, eye)
         view = plot.view
         _set(program, heights=0, ground=1, spacing=plot.spacing, relief=plot.relief)
-        _set(program, width=plot.width, end=sight(parts.radius) * plot.width, clear=bare)
+        _set(program, width=plot.width, end=visibility_range(parts.radius) * plot.width, clear=bare)
         _set(program, sea=view.sea, sea_level=view.sea_level - plot.base, eye_up=eye[2])
         _set(program, air_table=4, towards_sun=self._towards_sun, grain=3)
         _set(program, grain_times=max(round(plot.width / GRAIN), 1))
@@ -191,13 +188,13 @@ class Scene:
         sea_up = view.sea_level - plot.base if view.sea else -1e9
         boxes_low = np.column_stack([corner, below - skirt - eye[2]])
         boxes_high = np.column_stack([corner + plot.width, np.maximum(above, sea_up) - eye[2]])
-        seen = lens.sees(boxes_low, boxes_high) if names else np.zeros(0, bool)
+        visible = lens.sees(boxes_low, boxes_high) if names else np.zeros(0, bool)
         gap = np.maximum(np.maximum(boxes_low, -boxes_high), 0.0)
         far = np.sqrt((gap**2).sum(axis=1)) / plot.width
         self.drawn = self.triangles = 0
-        # Nearest first: what they hide is then not coloured for nothing.
+        # Nearest first: the depth test then skips what they hide.
         for index in np.lexsort((np.arange(len(names)), far)):
-            if seen[index]:
+            if visible[index]:
                 slot = found[index]
                 if slot is None and bare:
                     continue
@@ -213,8 +210,8 @@ class Scene:
             heights, ground = slot.heights, slot.ground
         heights.use(0)
         ground.use(1)
-        _set(self._land, corner=(float(corner[0]), float(corner[1]), -eye_up), flat_land=slot is None)
-        _set(self._land, skirt=SKIRT * self.plot.spacing * step)
+        _set(self._terrain, corner=(float(corner[0]), float(corner[1]), -eye_up), is_flat=slot is None)
+        _set(self._terrain, skirt=SKIRT * self.plot.spacing * step)
         array.render(self.ctx.TRIANGLES)
         self.drawn += 1
         self.triangles += count
@@ -224,7 +221,7 @@ class Scene:
         buffers = self.ctx.buffer(vertices.tobytes()), self.ctx.buffer(indices.tobytes())
         self._buffers += buffers
         array = self.ctx.vertex_array(
-            self._land, [(buffers[0], "3f", "node")], index_buffer=buffers[1], index_element_size=4
+            self._terrain, [(buffers[0], "3f", "node")], index_buffer=buffers[1], index_element_size=4
         )
         return array, len(indices) // 3
 
@@ -244,7 +241,7 @@ class Scene:
 
 
 class Surface:
-    """What is drawn on: light with depth and samples, and the picture for a screen."""
+    """Framebuffers: light with depth and samples, and the frame for a screen."""
 
     def __init__(self, ctx: moderngl.Context, size: tuple[int, int], samples: int) -> None:
         self.size = size
@@ -253,29 +250,29 @@ class Surface:
         self.picture = make_texture(ctx, size, "rgba8")
         self.picture.filter = (ctx.NEAREST, ctx.NEAREST)
         self.shown = make_framebuffer(ctx, [self.picture])
-        self._kept: list[Any] = [self.light, self.picture]
+        self._owned: list[Any] = [self.light, self.picture]
         self.single: moderngl.Framebuffer | None = None
         depth = ctx.depth_renderbuffer(size, samples=samples if samples > 1 else 0)
         if samples > 1:
             colour = ctx.renderbuffer(size, 4, samples=samples, dtype="f2")
             self.many = make_framebuffer(ctx, [colour], depth)
             self.single = make_framebuffer(ctx, [self.light])
-            self._kept += [colour]
+            self._owned += [colour]
         else:
             self.many = make_framebuffer(ctx, [self.light], depth)
-        self._kept += [depth]
+        self._owned += [depth]
 
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release it."""
         for framebuffer in (self.many, self.single, self.shown):
             if framebuffer is not None:
                 framebuffer.release()
-        for kept in self._kept:
-            kept.release()
+        for item in self._owned:
+            item.release()
 
 
 def _set(program: moderngl.Program, **values: Any) -> None:
-    """Set uniforms that the driver kept."""
+    """Set those uniforms that the driver has not optimised out."""
     for name, value in values.items():
         uniform: Any = program.get(name, None)
         if uniform is not None:
@@ -283,7 +280,7 @@ def _set(program: moderngl.Program, **values: Any) -> None:
 
 
 def _grain(ctx: moderngl.Context) -> moderngl.Texture:
-    """Return noise around a half that fits beside its copy: every frequency as strong, but none too low."""
+    """Return periodic noise around a half, of all frequencies but the lowest."""
     side = 128
     random = np.random.default_rng(15)
     fy, fx = np.meshgrid(np.fft.fftfreq(side), np.fft.fftfreq(side), indexing="ij")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-TRIANGLE = """#version 330
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
-"""
+from playground.gpu.own_shaders import own_shader
+
+TRIANGLE = own_shader("triangle.vert")
 """Made of the vertices' numbers alone: draw three vertices, of no buffer."""

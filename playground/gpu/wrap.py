@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
+from playground.gpu.own_shaders import own_part
+from playground.gpu.triangle import TRIANGLE
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 from playground.sketch.source import Line, SourceText
@@ -20,18 +22,9 @@ _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
 """Side of a compute driver's work group, in texels."""
 
-_QUAD = """#version 330
-void main() {
-    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}
-"""
 CORNER = "k_corner"
 """What a vertex shader is handed where its version has no numbers of vertices: a vec2 in clip space."""
 
-_OLD_QUAD = f"""#version 330
-attribute vec2 {CORNER};
-void main() {{ gl_Position = vec4({CORNER}, 0.0, 1.0); }}
-"""
 _VERSION = re.compile(r"\s*#\s*version\b")
 _NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
@@ -40,7 +33,7 @@ _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 
 
 @dataclass(frozen=True)
-class Stage:
+class ShaderStage:
     """The text of one shader stage."""
 
     text: str
@@ -60,7 +53,7 @@ class Wrapped:
 
     kernel: Kernel
     driver: str  # fragment | compute | draw
-    stages: dict[str, Stage]  # vertex and fragment, or compute
+    stages: dict[str, ShaderStage]  # vertex and fragment, or compute
 
 
 def wrap(kernel: Kernel, driver: str) -> Wrapped:
@@ -85,7 +78,7 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
 def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
     """Write checkboxes and menus into a wrapped text as constants, lines and columns kept.
 
-    A processor that draws goes both ways of every ``if``: what was not chosen costs as much
+    A software renderer goes both ways of every ``if``: what was not chosen costs as much
     as what was, unless the compiler can see that it never happens.
     """
     stages = {}
@@ -123,26 +116,27 @@ def signature(kernel: Kernel) -> str:
 
 
 def previous_name(kernel: Kernel, output: Output) -> str:
-    """Return the name of the function that reads an output's texel of the turn before."""
+    """Return the name of the function that reads an output's texel of the iteration before."""
     return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
 
 
-def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
+def _quad(kernel: Kernel, version: str = "#version 330") -> ShaderStage:
     """Return the vertex shader that covers the picture, in the version of the fragment shader.
 
     Versions differ in their words, and those of OpenGL ES link with their own kind only.
     """
     number = _NUMBER.match(version)
     is_old = number is not None and int(number.group(1)) < 130
-    return Stage((_OLD_QUAD if is_old else _QUAD).replace("#version 330", version), 0, kernel.source, "")
+    text = own_part("triangle_from_buffer.vert", corner=CORNER) if is_old else TRIANGLE
+    return ShaderStage(text.replace("#version 330", version), 0, kernel.source, "")
 
 
-def _whole(kernel: Kernel) -> Stage:
+def _whole(kernel: Kernel) -> ShaderStage:
     """Return a plain shader as it is, but // for blank lines above #version: Mesa does not count those."""
     lines = [line.code for line in kernel.source.lines]
     above = next((i for i, code in enumerate(lines) if code.strip()), 0)
     text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"
-    return Stage(text, 1, kernel.source, "void main()")
+    return ShaderStage(text, 1, kernel.source, "void main()")
 
 
 def version_line(source: SourceText) -> Line | None:
@@ -157,25 +151,17 @@ def _version(kernel: Kernel) -> str:
 
 
 def reads_unwired(kernel: Kernel) -> bool:
-    """Say whether a kernel fetches texels while some input of it may stay unwired."""
+    """Return whether a kernel fetches texels while some input of it may stay unwired."""
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
-def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
+def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> ShaderStage:
     if reads_unwired(kernel):
-        # OpenGL gives 0 outside a texture, and what stands for an unwired input has one texel.
-        fetch, shifted = FETCHES.values()
-        place = f"{UNWIRED} && textureSize(k_s, k_l) == ivec2(1) ? ivec2(0) : k_p"
-        before = [
-            *before,
-            f"uniform bool {UNWIRED};",
-            f"vec4 {fetch}(sampler2D k_s, ivec2 k_p, int k_l) {{ return texelFetch(k_s, {place}, k_l); }}",
-            f"vec4 {shifted}(sampler2D k_s, ivec2 k_p, int k_l, ivec2 k_o) "
-            f"{{ return {fetch}(k_s, k_p + k_o, k_l); }}",
-        ]
+        fetch, offset = FETCHES.values()
+        before = [*before, own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)]
         code = _FETCH.sub(lambda match: FETCHES[match.group()], code)
-    text = "\n".join(before) + "\n" + code + "\n".join(after) + "\n"
-    return Stage(text, len(before) + 1, kernel.source, expected)
+    head = "\n".join(before) + "\n"
+    return ShaderStage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
 
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
@@ -198,36 +184,25 @@ def _wrap_fragment(kernel: Kernel) -> Wrapped:
     if strides:
         before.append("uniform int k_shift, k_previous_shift;")
     for output in kernel.outputs:
-        name = previous_name(kernel, output)
-        if kernel.reads(name):
-            before.append(f"uniform sampler2D k_previous_{output.name};")
-            before.append(_previous(output, name, strides=strides))
+        if kernel.reads(previous_name(kernel, output)):
+            before.append(_previous(kernel, output, "strided" if strides else "sampler"))
     after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
-    texel = "(ivec2(gl_FragCoord.xy) << k_shift)" if strides else "ivec2(gl_FragCoord.xy)"
-    names = [f"k_out_{o.name}" for o in kernel.outputs]
-    call = f"{names[0]} = kernel({texel});" if len(names) == 1 else f"kernel({texel}, {', '.join(names)});"
-    after.append(f"void main() {{ {call} }}")
+    shift = " << k_shift" if strides else ""
+    after.append(own_part("main_fragment.glsl", shift=shift, call=_call(kernel)))
     stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
     return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
 
 
-def _previous(output: Output, name: str, *, strides: bool) -> str:
-    """Return the function that reads a texel of the turn before from its sampler.
+def _previous(kernel: Kernel, output: Output, where: str) -> str:
+    """Return the function that reads an output's texel of the iteration before, and what it reads."""
+    names = {"output": output.name, "type": output.glsl, "previous": previous_name(kernel, output)}
+    return own_part(f"previous_{where}.glsl", swizzle={1: ".r", 2: ".rg", 4: ""}[output.components], **names)
 
-    With strides that turn's texels lie close together, those at multiples of its stride
-    alone, and every other is 0.
-    """
-    sampler, swizzle = f"k_previous_{output.name}", {1: ".r", 2: ".rg", 4: ""}[output.components]
-    last = f"textureSize({sampler}, 0) - 1"
-    if not strides:
-        fetched = f"texelFetch({sampler}, clamp(k_texel, ivec2(0), {last}), 0){swizzle}"
-        return f"{output.glsl} {name}(ivec2 k_texel) {{ return {fetched}; }}"
-    fetched = f"texelFetch({sampler}, min(k_texel >> k_previous_shift, {last}), 0){swizzle}"
-    return (
-        f"{output.glsl} {name}(ivec2 k_texel) {{ k_texel = clamp(k_texel, ivec2(0), size - 1); "
-        f"bool k_known = ((k_texel.x | k_texel.y) & ((1 << k_previous_shift) - 1)) == 0; "
-        f"return k_known ? {fetched} : {output.glsl}(0.0); }}"
-    )
+
+def _call(kernel: Kernel) -> str:
+    """Return the call of a kernel's function for ``k_texel``."""
+    names = [f"k_out_{output.name}" for output in kernel.outputs]
+    return f"{names[0]} = kernel(k_texel);" if len(names) == 1 else f"kernel(k_texel, {', '.join(names)});"
 
 
 def _wrap_compute(kernel: Kernel) -> Wrapped:
@@ -237,51 +212,20 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
     if in_place:
         before.append("uniform ivec2 k_cells;")
     for unit, output in enumerate(kernel.outputs):
-        name = previous_name(kernel, output)
-        swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
-        access = "" if in_place and kernel.reads(name) else "writeonly "
+        reads = kernel.reads(previous_name(kernel, output))
+        access = "" if in_place and reads else "writeonly "
         before.append(
             f"layout({output.format}, binding = {unit}) uniform {access}image2D k_image_{output.name};"
         )
-        if not kernel.reads(name):
-            continue
-        if in_place:
-            fetch = f"imageLoad(k_image_{output.name}, clamp(k_texel, ivec2(0), size - 1)){swizzle}"
-        else:
-            sampler = f"k_previous_{output.name}"
-            before.append(f"uniform sampler2D {sampler};")
-            fetch = (
-                f"texelFetch({sampler}, clamp(k_texel, ivec2(0), textureSize({sampler}, 0) - 1), 0){swizzle}"
-            )
-        before.append(f"{output.glsl} {name}(ivec2 k_texel) {{ return {fetch}; }}")
-    cells = "k_cells" if in_place else "size"
-    after = [
-        "void main() {",
-        "    ivec2 k_cell = ivec2(gl_GlobalInvocationID.xy);",
-        f"    if (k_cell.x >= {cells}.x || k_cell.y >= {cells}.y) return;",
-    ]
-    if in_place:
-        after.append("    ivec2 k_texel = visit(k_cell);")
-        after.append(
-            "    if (any(lessThan(k_texel, ivec2(0))) || any(greaterThanEqual(k_texel, size))) return;"
-        )
-    else:
-        after.append("    ivec2 k_texel = k_cell;")
-    after += [f"    {o.glsl} k_out_{o.name};" for o in kernel.outputs]
-    names = [f"k_out_{o.name}" for o in kernel.outputs]
-    call = f"{names[0]} = kernel(k_texel);" if len(names) == 1 else f"kernel(k_texel, {', '.join(names)});"
-    after.append(f"    {call}")
-    for output in kernel.outputs:
-        after.append(f"    imageStore(k_image_{output.name}, k_texel, {_texel(output)});")
-    after.append("}")
+        if reads:
+            before.append(_previous(kernel, output, "image" if in_place else "sampler"))
+    lines = [f"{o.glsl} k_out_{o.name};" for o in kernel.outputs]
+    lines.append(_call(kernel))
+    lines += [f"imageStore(k_image_{o.name}, k_texel, k_filled(k_out_{o.name}));" for o in kernel.outputs]
+    main = "main_compute_in_place.glsl" if in_place else "main_compute.glsl"
+    after = [own_part(main, call="\n    ".join(lines))]
     stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
     return Wrapped(kernel, COMPUTE, {"compute": stage})
-
-
-def _texel(output: Output) -> str:
-    return {1: "vec4({0}, 0.0, 0.0, 1.0)", 2: "vec4({0}, 0.0, 1.0)", 4: "{0}"}[output.components].format(
-        f"k_out_{output.name}"
-    )
 
 
 def _wrap_variant(kernel: Kernel) -> Wrapped:
@@ -319,16 +263,15 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
     after = [f"in {kind} k_in_{name};" for kind, name in attributes]
     after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
     arguments = [f"k_to_{name}" if way == "out" else f"k_in_{name}" for way, _, name in vertex]
-    zoom = f" gl_Position.xy = gl_Position.xy * {ZOOM}.xy + gl_Position.w * {ZOOM}.zw;"
-    stretched = zoom if kernel.reads(ZOOM) else ""
-    after.append(f"void main() {{ gl_Position = vertex({', '.join(arguments)});{stretched} }}")
+    zoom = f"gl_Position.xy = gl_Position.xy * {ZOOM}.xy + gl_Position.w * {ZOOM}.zw;"
+    main = own_part(
+        "main_vertex.glsl", arguments=", ".join(arguments), zoom=zoom if kernel.reads(ZOOM) else ""
+    )
+    after.append(main)
     first = _stage(kernel, before, _without(code, "fragment"), after, expected)
     before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
     after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]
-    after.append("layout(location = 0) out vec4 k_out;")
-    after.append(
-        f"void main() {{ k_out = fragment({', '.join(f'k_to_{name}' for _, _, name in fragment)}); }}"
-    )
+    after.append(own_part("main_draw.glsl", arguments=", ".join(f"k_to_{name}" for _, _, name in fragment)))
     second = _stage(kernel, before, _without(code, "vertex"), after, expected)
     return Wrapped(kernel, "draw", {"vertex": first, "fragment": second})
 
@@ -398,9 +341,11 @@ def _argument(text: str) -> tuple[str, str, str]:
 
 
 def _check_previous(kernel: Kernel) -> None:
-    """Refuse what reads a turn before where there is none, or by a name that no output has."""
+    """Refuse what reads an iteration before where there is none, or by a name that no output has."""
     names = [previous_name(kernel, output) for output in kernel.outputs]
     for number, line in enumerate(kernel.source.lines):
+        if "previous" not in line.code:
+            continue
         for match in re.finditer(r"\bprevious(?:_(\w+))?\s*\(", line.code):
             called = match.group().rstrip("( \t")
             if called in names and kernel.repeat == "1":

@@ -6,7 +6,7 @@ caller wires through ``[inputs]``, else the latest earlier pass of its name, els
 latest earlier pass with an output of its name. What is wired to a path inside a technique
 wins over what is wired to the export that stands for it.
 
-Where a fast variant stands in for a technique (see ``variants``), its own kernel or passes are
+Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
 in the result; those of a ``.fast.toml`` are at ``pass.fast.inner``, which no path may name.
 
 The shape of the result depends on the graph alone, so it is worked out once for each; a
@@ -16,15 +16,16 @@ slider only puts new values into it.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
-from playground.sketch.follows import Rule, follow, rules_of
-from playground.sketch.identity import Same
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
+from playground.sketch.follows import follow, rules_of
+from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import standing
@@ -38,106 +39,6 @@ from playground.sketch.wiring import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Ref:
-    """A texture: an output of a leaf pass."""
-
-    path: str  # of the leaf, "height.sum"
-    output: str
-
-    def __str__(self) -> str:
-        return f"{self.path}:{self.output}"
-
-
-@dataclass(frozen=True, slots=True)
-class Fed:
-    """A texture that a loop feeds back: its own output of the turn before."""
-
-    loop: str  # path of the loop
-    name: str  # of the fed input
-
-
-Source = Ref | Fed
-
-
-@dataclass(frozen=True)
-class Leaf:
-    """One kernel, draw or source to run."""
-
-    path: str
-    kernel: Kernel
-    values: tuple[tuple[str, Value], ...]
-    inputs: tuple[tuple[str, Source | None], ...]  # None: its fallback, or no initial state
-    folder: str  # where its files are looked for
-    spec: PassSpec
-
-
-@dataclass(frozen=True)
-class Loop:
-    """Passes that run over and over, some inputs fed by outputs of the turn before."""
-
-    path: str
-    repeat: str
-    body: tuple[Leaf | Loop, ...]
-    feedback: tuple[tuple[str, Source | None, Ref], ...]  # input, what the first turn reads, output
-    spec: PassSpec
-
-
-Node = Leaf | Loop
-
-
-@dataclass(frozen=True)
-class Flat:
-    """A sketch without nesting."""
-
-    nodes: tuple[Node, ...]  # in an order that wiring allows
-    specs: dict[str, PassSpec]  # every pass at every level, by path
-    graphs: dict[str, Graph]  # every technique of several passes, by path; "" is the sketch
-    values: dict[str, Value]  # every leaf parameter, by path
-    outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
-    wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
-    shape: Shape  # the same before any value is set
-    folder: str
-
-    @cached_property
-    def leaves(self) -> list[Leaf]:
-        """Every leaf, those inside loops included."""
-        return leaves_of(self.nodes)
-
-    def user(self, path: str) -> PassSpec:
-        """Return the sketch's own pass that a pass at any level belongs to."""
-        return self.specs[path.partition(".")[0]]
-
-    def ref(self, text: str, sketch: str) -> Ref:
-        """Return the texture that ``pass[.inner…][:output]`` stands for; raise ``SketchError``."""
-        path, _, output = text.partition(":")
-        if path not in self.outputs:
-            raise SketchError(f"no pass '{path}' in sketch {sketch}{nearest(path, self.outputs)}")
-        found = self.outputs[path]
-        if not output:
-            return found.get(path.rpartition(".")[2], next(iter(found.values())))
-        if output not in found:
-            raise SketchError(f"pass '{path}' has no output '{output}'{nearest(output, found)}")
-        return found[output]
-
-
-@dataclass(frozen=True)
-class Shape:
-    """A flat graph before any value is set."""
-
-    nodes: tuple[Node, ...]  # leaves without values and folder
-    specs: dict[str, PassSpec]
-    graphs: dict[str, Graph]
-    outputs: dict[str, dict[str, Ref]]
-    wires: dict[str, dict[str, Source | None]]
-    paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
-    constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
-    copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
-    rules: tuple[Rule, ...]  # of parameters that follow others until they are set
-    readers: dict[str, set[str]]  # path of a value → the leaves that have it
-    targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
-
-
 def flatten(
     sketch: Sketch,
     *,
@@ -149,7 +50,7 @@ def flatten(
 ) -> Flat:
     """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
 
-    A variant gives its technique's outputs only, and after the last step: it does not stand in for
+    A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, nor for one that is itself among
     the ``stopped`` or the ``refused``, or that starts from something wired.
@@ -160,7 +61,7 @@ def flatten(
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
     inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
     asked = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
-    shape = _shape(Same(graph), kinds, *asked)
+    shape = _shape(Identity(graph), kinds, *asked)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -188,20 +89,9 @@ def flatten(
     )
 
 
-def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
-    """Return every leaf, those inside loops included."""
-    found: list[Leaf] = []
-    for node in nodes:
-        if isinstance(node, Loop):
-            found += leaves_of(node.body)
-        else:
-            found.append(node)
-    return found
-
-
 @lru_cache(maxsize=32)
 def _shape(
-    key: Same[Graph],
+    key: Identity[Graph],
     kinds: frozenset[str],
     opened: tuple[str, ...],
     stopped: tuple[str, ...],
@@ -253,7 +143,14 @@ class _Filler:
             return replace(node, body=tuple([self.node(inside) for inside in node.body]))
         values = self.values
         own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
-        return Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec)
+        return Leaf(
+            path=node.path,
+            kernel=node.kernel,
+            values=own,
+            inputs=node.inputs,
+            folder=self.folder,
+            spec=node.spec,
+        )
 
     def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
         """Return nodes that had values, with those of now in the ``stale`` leaves."""
@@ -272,7 +169,7 @@ class _Filler:
 
 
 def _is_exported(graph: Graph, path: str) -> bool:
-    """Say whether a technique shows a parameter inside, and nothing else, by a name of its own."""
+    """Return whether a technique shows a parameter inside, and nothing else, by a name of its own."""
     try:
         wanted = {target.path for target in resolve(graph, path)}
         return any({t.path for t in resolve(graph, e.name)} == wanted for e in graph.parameters)
@@ -341,7 +238,7 @@ class _Flattener:
         self._open_set(spec.technique, here, rest)
 
     def _standing(self, technique: Technique, path: str) -> Variant | None:
-        """Return the fast variant that may stand in for a technique, if any may."""
+        """Return the fast variant that may replace a technique, if any may."""
         return standing(technique, self.kinds) if self.kinds and path not in self.opened else None
 
     def real(self, source: Source | None) -> Any:
@@ -430,7 +327,8 @@ class _Flattener:
         else:
             return self.expand(technique, path, wires)
         wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
-        return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
+        inputs = tuple((name, wires.get(name)) for name in wanted)
+        return [Leaf(path=path, kernel=kernel, values=(), inputs=inputs, folder="", spec=spec)]
 
     def _passes(
         self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]
@@ -460,7 +358,7 @@ class _Flattener:
         return replace(node, inputs=tuple((name, self.real(source)) for name, source in node.inputs))
 
     def _know(self, graph: Graph, prefix: str) -> None:
-        """Know the passes that a fast variant stands in for: their sizes are still asked for."""
+        """Know the passes that a fast variant replaces: their sizes are still asked for."""
         self.graphs[prefix] = graph
         for spec in graph.passes:
             self.specs[_join(prefix, spec.name)] = spec
@@ -509,7 +407,7 @@ class _Flattener:
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
-    """Say whether all that an exported input stands for is wired by paths inside."""
+    """Return whether all that an exported input stands for is wired by paths inside."""
     if isinstance(technique, Kernel):
         return False
     return all(
@@ -535,7 +433,7 @@ def _reads(node: Node) -> set[str]:
 
 
 def _starts(loop: Loop) -> set[str]:
-    """Return what the first turns of a loop, and of the loops in it, read."""
+    """Return what the first steps of a loop, and of the loops in it, read."""
     found = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
     inside = [_starts(node) for node in loop.body if isinstance(node, Loop)]
     return found | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})

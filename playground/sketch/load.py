@@ -13,7 +13,6 @@ from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import (
     SHADERS,
-    canonical_of,
     following_links_once,
     is_absolute,
     is_file,
@@ -31,6 +30,7 @@ from playground.sketch.techniques import (
     read_kernel,
     read_technique,
     refuse_monster,
+    technique_beside,
 )
 from playground.sketch.toml_graph import TECHNIQUE_KEYS
 from playground.sketch.toml_sketch import SKETCH_KEYS, read_sketch
@@ -56,8 +56,7 @@ def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
     if not isinstance(name, str | Path):
         raise SketchError(f"a sketch is loaded by its name or its path, not by {name!r}")
     path = find(name or DEFAULT_SKETCH).resolve()
-    if is_variant(path):
-        path = canonical_of(path) or path
+    path = technique_beside(path) or path
     try:
         if path.suffix in SHADERS:
             return _shader_alone(path)
@@ -74,7 +73,7 @@ def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
 
 
 def is_technique(path: Path) -> bool:
-    """Say whether a TOML file is a technique of several passes, not a sketch."""
+    """Return whether a TOML file is a technique of several passes, not a sketch."""
     try:
         return _holds_technique(TomlFile(path, path.parent))
     except SketchError:

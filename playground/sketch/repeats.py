@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from playground.sketch.flatten import Loop, Node, leaves_of
+from playground.sketch.flat import Loop, Node, leaves_of
 
 
 def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:

@@ -7,7 +7,6 @@ place among the others; a new one comes after the last, or at the end of the fil
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from itertools import pairwise
@@ -19,12 +18,9 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import says_same_as, write_over
 from playground.sketch.save_values import said_so_far, written_number, written_value
-from playground.sketch.toml_lines import TOKEN, Place
-from playground.sketch.toml_spans import drop, newline_of, put, text_of
+from playground.sketch.toml_edit import drop, newline_of, put, text_of
+from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import shortest
-
-_LIST = re.compile(r"\[\[\s*[\"']?keyframe[\"']?\s*\]\]")
-_INSIDE = re.compile(r"\[\s*[\"']?keyframe[\"']?\s*\.")
 
 
 def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
@@ -94,12 +90,12 @@ def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: s
 
 def _blocks(text: str) -> list[tuple[int, int]]:
     """Return where each keyframe's block begins and ends, without the empty lines after it."""
-    headers = _headers(text)
+    headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
     found = []
-    for number, (start, line) in enumerate(headers):
-        if not _LIST.match(line):
+    for number, (start, header) in enumerate(headers):
+        if not header.is_list or header.keys != ["keyframe"]:
             continue
-        following = (s for s, other in headers[number + 1 :] if not _INSIDE.match(other))
+        following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
         end = next((_above(text, s) for s in following), len(text))
         body = text[start:end]
         found.append((_above(text, start), start + len(body.rstrip()) + _line_end(body)))
@@ -120,25 +116,6 @@ def _above(text: str, start: int) -> int:
             break
         start = before
     return start
-
-
-def _headers(text: str) -> list[tuple[int, str]]:
-    """Return every table's header: where its line begins, and the line without what is before it."""
-    found, depth, fresh = [], 0, True
-    for match in TOKEN.finditer(text):
-        token = match.group()
-        if token == "\n":
-            fresh = fresh or depth == 0
-            continue
-        if token.isspace() or token.startswith("#"):
-            continue
-        if token == "[" and fresh and depth == 0:
-            start = text.rfind("\n", 0, match.start()) + 1
-            end = text.find("\n", start)
-            found.append((start, text[match.start() : end if end >= 0 else len(text)]))
-        depth += (token in "[{") - (token in "]}")
-        fresh = False
-    return found
 
 
 def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int | None]:

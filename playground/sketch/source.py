@@ -77,12 +77,12 @@ class SourceText:
     @cached_property
     def code(self) -> str:
         """The text for the driver, one line for each of ``lines``."""
-        return "\n".join(line.code for line in self.lines) + "\n"
+        return "\n".join([line.code for line in self.lines]) + "\n"
 
     @cached_property
     def canonical(self) -> str:
         """The text without comments, blank lines or indentation: what staleness is judged by."""
-        return "\n".join(" ".join(line.code.split()) for line in self.lines if line.code.strip())
+        return "\n".join([" ".join(line.code.split()) for line in self.lines if line.code.strip()])
 
     @cached_property
     def names(self) -> frozenset[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -67,7 +66,7 @@ class Kernel:
     accepts: str = ""
     own_accepts: str = ""  # of a compute variant: the sizes that it takes, where its technique takes more
     visits: str = ""
-    stride: str = ""  # after a turn, only texels at multiples of it are known
+    stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
@@ -79,7 +78,7 @@ class Kernel:
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
-    stages: tuple[int, ...] = ()  # of a compute variant: what each of its turns does
+    stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
     agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
     title: str = ""  # the sentence that the file begins with
@@ -117,10 +116,14 @@ class Kernel:
 
     def parameter(self, name: str) -> Parameter | None:
         """Return the parameter of that name, if there is one."""
-        return next((p for p in self.parameters if p.name == name), None)
+        return self._parameters_by_name.get(name)
+
+    @cached_property
+    def _parameters_by_name(self) -> dict[str, Parameter]:
+        return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
     def reads(self, given: str) -> bool:
-        """Say whether the text names something that the engine gives."""
+        """Return whether the text names something that the engine gives."""
         return given in self.source.names
 
     @property
@@ -184,9 +187,24 @@ class Graph:
             found |= dict.fromkeys(variant.files)
         return tuple(found)
 
+    @cached_property
+    def kernels(self) -> tuple[tuple[str, Kernel], ...]:
+        """Every kernel inside, by its path."""
+        found: list[tuple[str, Kernel]] = []
+        for spec in self.passes:
+            if isinstance(spec.technique, Kernel):
+                found.append((spec.name, spec.technique))
+            else:
+                found += [(f"{spec.name}.{path}", kernel) for path, kernel in spec.technique.kernels]
+        return tuple(found)
+
+    @cached_property
+    def _passes_by_name(self) -> dict[str, PassSpec]:
+        return {spec.name: spec for spec in reversed(self.passes)}
+
     def find(self, name: str) -> PassSpec | None:
         """Return the pass of that name, if there is one."""
-        return next((p for p in self.passes if p.name == name), None)
+        return self._passes_by_name.get(name)
 
 
 Technique = Kernel | Graph
@@ -216,10 +234,6 @@ class Variant:
         return (*self.technique.files, *filter(None, [self.record]))
 
 
-def kernels_of(technique: Technique, prefix: str = "") -> Iterator[tuple[str, Kernel]]:
-    """Yield (path, kernel) of every kernel a technique is made of, in the order of the files."""
-    if isinstance(technique, Kernel):
-        yield prefix, technique
-        return
-    for spec in technique.passes:
-        yield from kernels_of(spec.technique, f"{prefix}.{spec.name}" if prefix else spec.name)
+def kernels_of(technique: Technique) -> tuple[tuple[str, Kernel], ...]:
+    """Return (path, kernel) of every kernel a technique is made of, in the order of the files."""
+    return (("", technique),) if isinstance(technique, Kernel) else technique.kernels

@@ -10,11 +10,13 @@ from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import (
     FAST,
     TECHNIQUES,
+    canonical_of,
     is_file,
     is_inside,
     is_variant,
     leads_outside,
     names_below,
+    root_of,
 )
 from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_names
@@ -59,6 +61,21 @@ def nothing_to_run(path: Path) -> SketchError:
     return SketchError(message, file=shown(path))
 
 
+def technique_beside(path: Path) -> Path | None:
+    """Return the technique that a fast variant replaces; None for another file, and where there is none.
+
+    A ``.comp`` with its own ``#version`` is a plain shader, whatever stands beside it.
+    """
+    if not is_variant(path) or (path.suffix == ".comp" and _is_plain(path)):
+        return None
+    return canonical_of(path)
+
+
+def _is_plain(path: Path) -> bool:
+    kernel = read_kernel(path, root_of(path))
+    return kernel is not None and kernel.kind.startswith("plain")
+
+
 def lonely_variant(path: Path) -> SketchError:
     """Return the error of a fast variant with no technique beside it."""
     name = path.name.removesuffix(".comp").removesuffix(".fast.toml")
@@ -92,7 +109,7 @@ class Techniques:
         self.deepest = 0  # the most that were open at once
 
     def has_room_for(self, depth: int) -> bool:
-        """Say whether techniques nested so deep may stand where the reading is."""
+        """Return whether techniques nested so deep may stand where the reading is."""
         return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
@@ -185,7 +202,7 @@ class WithLibrary(Techniques):
 
 
 def refuse_monster(graph: Graph) -> None:
-    """Raise ``SketchError`` for more kernels than any land needs: a few lines can nest millions."""
+    """Raise ``SketchError`` for more kernels than any terrain needs: a few lines can nest millions."""
     count = _count(graph, {})
     if count > _MAX_KERNELS:
         raise SketchError(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from playground.sketch.model import Camera
-from playground.sketch.toml_lines import Place
+from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 

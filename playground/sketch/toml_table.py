@@ -12,7 +12,7 @@ from typing import Any
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.source import read_text
-from playground.sketch.toml_lines import key_lines, line_of
+from playground.sketch.toml_places import TomlPlaces
 from playground.sketch.values import spell
 
 FORMAT = 1
@@ -41,7 +41,7 @@ class TomlFile:
         self._before = before
         if text is None:
             text = read_text(self.path)
-        self._lines = key_lines(text)
+        self._places = TomlPlaces(text)
         try:
             self.table: dict[str, Any] = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
@@ -71,7 +71,7 @@ class TomlFile:
 
     def line(self, *place: str | int) -> int:
         """Return the line of a place, or of the nearest table around it; 0 if none is known."""
-        found = line_of(self._lines, place)
+        found = self._places.line(place)
         return self._before + found if found or self._before else 0
 
     def error(self, message: str, *place: str | int) -> SketchError:

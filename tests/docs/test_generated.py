@@ -14,6 +14,7 @@ from typer.main import get_command
 import playground
 from playground.cli import app
 from playground.live.keys import KEYS
+from playground.paths import GLSL
 from playground.sketch.catalogue import techniques as listed
 
 from .pages import ROOT
@@ -53,6 +54,13 @@ def test_methods_name_their_source_and_their_checks():
     checks = set(re.findall(r"\btests/\w+/\w+\.py", plain))
     missing = [path for path in checks if not (ROOT / path).exists()]
     assert checks and not missing
+
+
+def test_every_fast_variant_is_on_a_page():
+    told = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
+    files = [path for ending in ("comp", "fast.toml") for path in GLSL.rglob(f"*.{ending}")]
+    names = {path.relative_to(GLSL).as_posix().replace("_", "&#95;") for path in files}
+    assert names and not {name for name in names if name not in told}
 
 
 def test_a_technique_that_says_nothing_of_itself_is_refused(tmp_path: Path):

@@ -390,5 +390,5 @@ def test_the_errors_old_names_are_read_with_a_note():
     import playground
 
     for kind in ("Error", "Timeout", "Crash"):
-        with pytest.warns(DeprecationWarning, match=f"Sandbox{kind} is called Sandbox{kind} now"):
-            assert getattr(playground, f"Sandbox{kind}") is getattr(playground, f"Sandbox{kind}")
+        with pytest.warns(DeprecationWarning, match=f"Trial{kind} is called Sandbox{kind} now"):
+            assert getattr(playground, f"Trial{kind}") is getattr(playground, f"Sandbox{kind}")

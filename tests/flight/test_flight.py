@@ -16,7 +16,7 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import Flight
 from playground.flight.frames import count_frames, fly_again, write_frames
 from playground.flight.record import Header, Moment, Record, Recorder, read_record
-from playground.flight.scene import sight
+from playground.flight.scene import visibility_range
 from playground.gpu.textures import read_picture
 from playground.images.files import read_png
 from playground.sketch.load import load
@@ -283,7 +283,9 @@ def test_where_the_land_ends_nothing_is_seen_of_it(flight):
         part: np.hypot(*np.maximum(np.abs((np.array(part) + 0.5) * width - here) - width / 2, 0))
         for part in flight.parts.slots
     }
-    beyond = [p for p, away in nearest.items() if away >= 0.98 * sight(flight.parts.radius) * width]
+    beyond = [
+        p for p, away in nearest.items() if away >= 0.98 * visibility_range(flight.parts.radius) * width
+    ]
     changes = []
     for shining in (beyond, [p for p, away in nearest.items() if 0 < away < 1.5 * width]):
         for part in shining:

@@ -34,7 +34,7 @@ def contents(slot):
 def test_a_plot_is_the_sketch_less_its_apron(small_engine, land_of):
     plot = plot_of(land_of(intervals=24, apron=5, spacing=40.0), small_engine)
     assert (plot.intervals, plot.apron, plot.ground, plot.width) == (24, 5, 25, 960.0)
-    assert plot.spacing == pytest.approx(40.0) and plot.told == ("height.part", "colour.part")
+    assert plot.spacing == pytest.approx(40.0) and plot.part_paths == ("height.part", "colour.part")
     assert plot.at((3, -4)).overrides == (("height.part", (3, -4)), ("colour.part", (3, -4)))
     assert plot.hour == "" and plot_of(land_of(daylight=True), small_engine).hour == "daylight.hour"
 

@@ -7,10 +7,10 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from playground.engine.engine import Engine
-from playground.paths import GLSL
 from playground.sketch.model import Camera, kernels_of
-from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names
+
+from ..loading import library
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 HEIGHTS = (90.0, 70.0, 45.0, 20.0, 10.0, 5.0, 2.0, 0.5, 0.0, -0.2, -0.5, -1.0, -3.0, -6.0, -9.0, -12.0)
@@ -310,12 +310,12 @@ float kernel(ivec2 texel) {
 
 def takers():
     """Return the light techniques that have an input for daylight."""
-    names = [n for n in shipped_techniques() if n.startswith("lighting/") and n.count("/") == 1]
-    found = {name: read_technique(name, GLSL, GLSL) for name in names}
     return [
         name
-        for name, technique in found.items()
-        if "daylight" in input_names(technique)
+        for name, technique in library().items()
+        if name.startswith("lighting/")
+        and name.count("/") == 1
+        and "daylight" in input_names(technique)
         and {"sun_colour", "sky_colour", "ambient"} <= {p.name for p in technique.parameters}
     ]
 
@@ -342,12 +342,10 @@ def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sk
 
 def test_turbidity_is_said_once():
     """One kernel has it and all others read that: nothing can be set to another air."""
-    graph = read_technique("lighting/daylight", GLSL, GLSL)
+    graph = library()["lighting/daylight"]
     having = [path for path, kernel in kernels_of(graph) if kernel.parameter("turbidity")]
-    views = [n for n in shipped_techniques() if n.startswith("view/")]
-    having += [
-        n for n in views for _, k in kernels_of(read_technique(n, GLSL, GLSL)) if k.parameter("turbidity")
-    ]
+    views = {name: found for name, found in library().items() if name.startswith("view/")}
+    having += [n for n, view in views.items() for _, k in kernels_of(view) if k.parameter("turbidity")]
     assert having == ["air"]
 
 

@@ -3,8 +3,6 @@
 A kernel's inputs are wired to random textures. Fast variants are ``test_fast_variants``'s.
 """
 
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -12,10 +10,9 @@ from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.expressions import accepted_sizes
 from playground.sketch.model import Graph, Kernel, kernels_of
-from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names, outputs_with_formats
 
-from ..loading import load
+from ..loading import library, load
 
 RANDOM = """
 #include "noise/hash.glsl"
@@ -26,12 +23,7 @@ vec4 kernel(ivec2 texel) { return vec4(random_pair(texel, seed), random_pair(tex
 SIZE = (37, 22)
 
 
-@cache
-def techniques():
-    return {name: read_technique(name, GLSL, GLSL) for name in shipped_techniques()}
-
-
-KERNELS = [n for n, t in techniques().items() if isinstance(t, Kernel) and t.kind == "kernel"]
+KERNELS = [n for n, t in library().items() if isinstance(t, Kernel) and t.kind == "kernel"]
 
 
 @pytest.fixture
@@ -44,7 +36,7 @@ def engines(ctx):
 
 def sketch_of(folder, name):
     """Return a sketch of one technique, a random texture for each of its inputs."""
-    technique = techniques()[name]
+    technique = library()[name]
     (folder / "random.glsl").write_text(RANDOM)
     sizes = [k.accepts for _, k in kernels_of(technique) if k.accepts]
     size = SIZE
@@ -93,7 +85,7 @@ def outputs_of(technique):
 
 @pytest.mark.parametrize("name", KERNELS)
 def test_both_drivers_give_the_same_bits(engines, tmp_path, name):
-    technique = techniques()[name]
+    technique = library()[name]
     sketch = sketch_of(tmp_path, name).plainly()
     fragment, compute = engines
     for what, variant in variants(sketch, technique):

@@ -12,7 +12,8 @@ from playground.paths import GLSL
 from playground.sketch.allowed_files import is_variant
 from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flatten import flatten, leaves_of
+from playground.sketch.flat import leaves_of
+from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.variant_record import NAME, read, written

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -11,31 +10,24 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
-from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.find import is_part
-from playground.sketch.model import Parameter, Sketch, Technique, Value
-from playground.sketch.techniques import read_technique, shipped_techniques
+from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.wiring import input_names, is_optional, output_names
 
-from ..loading import load
+from ..loading import library, load
 
 NEEDS_A_FILE = {"generation/heightmap"}
 MADE = [
     name
-    for name in shipped_techniques()
+    for name in library()
     if name.startswith("generation/") and name not in NEEDS_A_FILE and not is_part(name)
 ]
 SIZES = [(1, 1), (2, 2), (3, 3), (4, 4), (5, 5), (33, 33), (2, 9), (13, 6)]
 
 
-@lru_cache
-def technique(name: str) -> Technique:
-    return read_technique(name, GLSL, GLSL)
-
-
 def outputs(name: str) -> list[str]:
-    return list(output_names(technique(name)))
+    return list(output_names(library()[name]))
 
 
 @pytest.fixture
@@ -43,7 +35,7 @@ def sketch_of(tmp_path) -> Callable[..., Sketch]:
     numbers = iter(range(1_000_000))
 
     def make(name: str, size: tuple[int, int] = (33, 33)) -> Sketch:
-        found = technique(name)
+        found = library()[name]
         wanted = [one for one in input_names(found) if not is_optional(found, one)]
         feeds = "".join(
             f'[[pass]]\nname = "feed_{i}"\nuse = "generation/white_noise"\nset = {{ seed = {i} }}\n'

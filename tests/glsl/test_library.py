@@ -1,6 +1,7 @@
 """Each library file introduces itself, compiles alone in every stage, and is pure."""
 
 import re
+from functools import cache
 
 import moderngl
 import pytest
@@ -9,23 +10,33 @@ from playground.paths import GLSL, SKETCHES
 from playground.sketch.header import parse_kernel
 from playground.sketch.source import read_source
 
+from ..cases import each
+
 TEXTS = sorted(
     p for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp") and not p.is_relative_to(SKETCHES)
 )
 NAMES = [p.relative_to(GLSL).as_posix() for p in TEXTS]
-LIBRARY = [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
-BLOCKS = [n for n in LIBRARY if "/parameters/" in n]  # of parameters that several kernels share
-FUNCTIONS = [n for n in LIBRARY if n not in BLOCKS]
 ASKED = re.compile(r"^(\w+) (\w+)\(([^()]*)\);$", re.MULTILINE)  # a function that the includer gives
 FACTS = ("gives", "needs", "units", "source", "tested")
 PURE = ("maths", "noise", "colour")
 
 
+@cache
+def pure_files():
+    """Return the names of the files that others include: they hold no kernel."""
+    return [n for n in NAMES if parse_kernel(n, read_source(GLSL / n, (GLSL,))) is None]
+
+
+def parameter_blocks():
+    """Return the names of those among them that hold parameters which several kernels share."""
+    return [n for n in pure_files() if "/parameters/" in n]
+
+
 def test_there_is_a_library():
-    assert "noise/hash.glsl" in LIBRARY and len(LIBRARY) >= 5
+    assert "noise/hash.glsl" in pure_files() and len(pure_files()) >= 5
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_it_introduces_itself(name):
     lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith(f"// {name} -- ") and lines[0].endswith((".", "?")), (
@@ -40,7 +51,7 @@ def test_it_introduces_itself(name):
     assert [f for f in facts if f in FACTS] == list(FACTS)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_its_tests_are_there(name):
     tested = re.search(r"//   tested +(tests/\S+?\.py)", (GLSL / name).read_text(encoding="utf-8"))
     assert tested, "names the file that tests it"
@@ -50,7 +61,7 @@ def test_its_tests_are_there(name):
     assert (root / tested.group(1)).is_file()
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@each("name", lambda: [n for n in pure_files() if n not in parameter_blocks()])
 def test_it_holds_no_state(name):
     """Nothing of it is a uniform, an input, an output or a buffer; a texture may come as an argument."""
     source = read_source(GLSL / name, (GLSL,))
@@ -66,7 +77,7 @@ def test_it_holds_no_state(name):
         assert not any(word.startswith("sampler") for word in source.names)
 
 
-@pytest.mark.parametrize("name", BLOCKS)
+@each("name", parameter_blocks)
 def test_a_block_of_parameters_holds_nothing_else(name):
     source = read_source(GLSL / name, (GLSL,))
     code = [line.code for line in source.lines if line.code and not line.code.startswith("#")]
@@ -74,13 +85,13 @@ def test_a_block_of_parameters_holds_nothing_else(name):
     assert all(line.comment.startswith("!") for line in source.lines if line.code.startswith("uniform "))
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n.split("/")[0] not in ("generation", "noise")])
+@each("name", [n for n in NAMES if n.split("/")[0] not in ("generation", "noise")])
 def test_its_lines_can_be_quoted(name):
     lines = (GLSL / name).read_text(encoding="utf-8").splitlines()
     assert [f"{n}: {line}" for n, line in enumerate(lines, 1) if len(line) >= 100] == []
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@each("name", pure_files)
 def test_it_is_guarded(name):
     """Including it twice is including it once."""
     text = (GLSL / name).read_text(encoding="utf-8")
@@ -89,7 +100,7 @@ def test_it_is_guarded(name):
     assert guard.group(1) == re.sub(r"\W", "_", name.removesuffix(".glsl")).upper()
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@each("name", pure_files)
 def test_it_compiles_alone(ctx, name):
     text, code = (GLSL / name).read_text(encoding="utf-8"), read_source(GLSL / name, (GLSL,)).code
     assert bool(ASKED.search(text)) == ("//   asks " in text)

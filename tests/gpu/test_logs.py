@@ -12,6 +12,8 @@ import pytest
 
 from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
 
+from ..cases import each
+
 LOGS = Path(__file__).parent / "logs"
 
 
@@ -283,13 +285,13 @@ def test_every_fixture_is_expected() -> None:
     assert {path.stem for path in LOGS.glob("*.txt")} == EXPECTED.keys()
 
 
-@pytest.mark.parametrize("name", EXPECTED)
+@each("name", EXPECTED)
 def test_a_real_log_becomes_its_entries(name: str) -> None:
     stage, log = split_moderngl(read(name))
     assert (stage, list(parse_log(log))) == EXPECTED[name]
 
 
-@pytest.mark.parametrize("name", EXPECTED)
+@each("name", EXPECTED)
 def test_line_endings_and_a_final_zero_change_nothing(name: str) -> None:
     text = read(name)
     stage, log = split_moderngl(text.replace("\n", "\r\n") + "\0")
@@ -590,9 +592,7 @@ HINTS: dict[str, list[str]] = {
 }
 
 
-@pytest.mark.parametrize(
-    ("part", "message"), [(part, message) for part, messages in HINTS.items() for message in messages]
-)
+@each(("part", "message"), [(part, message) for part, messages in HINTS.items() for message in messages])
 def test_a_common_mistake_gets_its_hint(part: str, message: str) -> None:
     sentence = hint(message)
     assert part in sentence

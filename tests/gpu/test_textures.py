@@ -18,11 +18,13 @@ from playground.gpu.textures import (
 )
 from playground.sketch.header import FORMATS
 
+from ..cases import each
+
 STEP = {"8": 1 / 255, "16": 1 / 65535, "16f": 2**-11, "32f": 0.0}
 
 
-@pytest.mark.parametrize("size", [(1, 1), (3, 5), (17, 4)])
-@pytest.mark.parametrize("form", FORMATS)
+@each("size", [(1, 1), (3, 5), (17, 4)])
+@each("form", FORMATS)
 def test_what_is_written_is_read(ctx, form, size):
     components, _ = split_format(form)
     texture = make_texture(ctx, size, form)

@@ -16,8 +16,10 @@ import pytest
 from playground.live.lesson.formulas import Formulas, can_set, set_formula
 from playground.live.lesson.line_breaking import Extent, broken
 from playground.live.lesson.markdown_runs import Run, parts_of, plain
-from playground.workbench.lesson.labels import _ALL, words_in
+from playground.workbench.lesson.labels import _ALL, labels_in
 from playground.workbench.lesson.progress import NARROWEST, Progress, read_progress, write_progress
+
+from ..cases import each
 
 INK = 0xFFEEEEEE
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,7 +90,7 @@ def test_what_is_wider_than_a_line_is_broken_inside():
     assert "".join(texts(lines)) == "xabcdefghij y"
 
 
-@pytest.mark.parametrize("seed", range(60))
+@each("seed", range(60))
 def test_no_letter_is_lost_doubled_or_out_of_its_line(seed):
     chance = random.Random(seed)
     width = chance.randint(3, 40)
@@ -212,7 +214,7 @@ def test_what_cannot_be_written_is_said_in_a_sentence(tmp_path):
 
 def test_both_languages_have_the_same_words_with_the_same_places():
     english, french = _ALL["en"], _ALL["fr"]
-    assert english.keys() == french.keys() and words_in("xx") is english
+    assert english.keys() == french.keys() and labels_in("xx") is english
     for key, words in english.items():
         places = [
             [p[1] for p in string.Formatter().parse(w) if p[1] is not None] for w in (words, french[key])

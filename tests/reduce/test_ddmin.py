@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 from itertools import combinations
 
-import pytest
-
 from playground.reduce.ddmin import ddmin
+
+from ..cases import each
 
 
 def passing(n, test):
@@ -26,7 +26,7 @@ def assert_one_minimal(kept, test):
         assert not test(kept[:index] + kept[index + 1 :]), f"{kept[index]} can be spared"
 
 
-@pytest.mark.parametrize("seed", range(40))
+@each("seed", range(40))
 def test_of_one_core_it_finds_just_that(seed):
     """Where all that passes holds one set, that set is the smallest: brute force says the same."""
     chance = random.Random(seed)
@@ -36,7 +36,7 @@ def test_of_one_core_it_finds_just_that(seed):
     assert set(ddmin(range(n), test)) == core == min(passing(n, test), key=len)
 
 
-@pytest.mark.parametrize("seed", range(60))
+@each("seed", range(60))
 def test_whatever_the_test_no_item_can_be_spared(seed):
     """Also where the test knows no order: a list may fail though a part of it passes."""
     chance = random.Random(seed)

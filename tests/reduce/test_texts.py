@@ -12,6 +12,8 @@ from playground.reduce.inline import written
 from playground.reduce.tokens import print_tokens, tidy, tokens_of
 from playground.sketch.techniques import read_kernel
 
+from ..cases import each
+
 TEXT = """#pragma kernel(output = "height:r32f", repeat = "8")
 uniform float gain = 1.0;  //! slider(0, 4) step(0.5) How high
 uniform sampler2D land;    //! input "linear"
@@ -27,7 +29,7 @@ float kernel(ivec2 texel) {
 """
 
 
-@pytest.mark.parametrize("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
+@each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
 def test_tidying_changes_no_token_and_is_done_once(path: Path):
     text = path.read_text(encoding="utf-8").replace("\\\n", "")
     tokens = tokens_of(text)

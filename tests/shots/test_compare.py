@@ -8,6 +8,8 @@ import pytest
 from playground.errors import DataError
 from playground.shots.compare import Comparison, compare, difference_picture
 
+from ..cases import each
+
 RNG = np.random.default_rng(11)
 
 
@@ -34,9 +36,9 @@ def changed(base: np.ndarray, x: int, y: int, channel: int, by: int) -> np.ndarr
     return other
 
 
-@pytest.mark.parametrize("spread", [1, 3, 40, 255])
-@pytest.mark.parametrize("tolerance", [0, 1, 3, 254, 255])
-@pytest.mark.parametrize("size", [(1, 2), (7, 5), (64, 3), (31, 33)])
+@each("spread", [1, 3, 40, 255])
+@each("tolerance", [0, 1, 3, 254, 255])
+@each("size", [(1, 2), (7, 5), (64, 3), (31, 33)])
 def test_agrees_with_the_slow_comparison(spread: int, tolerance: int, size: tuple[int, int]) -> None:
     expected = picture(*size)
     noise = RNG.integers(-spread, spread + 1, expected.shape)

@@ -19,6 +19,8 @@ from playground.sketch.expressions import (
     nearest_accepted,
 )
 
+from ..cases import each
+
 NAMES = {"size.x": 513, "size.y": 257, "octaves": 5, "half": 0.5, "sea": True}
 
 
@@ -76,7 +78,7 @@ def test_random_expressions_agree_with_exact_arithmetic():
     assert exact > 1000
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "value"),
     [
         ("2**3**2", 512),
@@ -101,7 +103,7 @@ def test_what_an_expression_gives(text, value):
     assert found == value and type(found) is int
 
 
-@pytest.mark.parametrize("n", range(63))
+@each("n", range(63))
 def test_log2_is_exact_up_to_the_largest_power(n):
     assert evaluate("log2(x)", {"x": 2**n}) == n
     if n > 1:
@@ -109,7 +111,7 @@ def test_log2_is_exact_up_to_the_largest_power(n):
             evaluate("log2(x)", {"x": 2**n - 1})
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "",

@@ -11,7 +11,8 @@ from playground.errors import PlaygroundError
 from playground.sketch import flatten as module
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flatten import Fed, Leaf, Loop, Ref, flatten, leaves_of
+from playground.sketch.flat import Fed, Leaf, Loop, Ref, leaves_of
+from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS
 from playground.sketch.wiring import (
     initial_names,
@@ -21,6 +22,7 @@ from playground.sketch.wiring import (
     takes_input,
 )
 
+from ..cases import each
 from ..loading import load
 
 
@@ -417,9 +419,7 @@ def test_an_edited_file_is_wired_anew(make):
     assert (first["light"]["height"], second["light"]["height"]) == ("b:height", "a:height")
 
 
-@pytest.mark.parametrize(
-    ("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS]))
-)
+@each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()
     for node in flatten(load(name), variants=variants).nodes:

@@ -14,6 +14,8 @@ from playground.sketch.model import Kernel, Parameter
 from playground.sketch.source import read_source
 from playground.sketch.techniques import read_kernel
 
+from ..cases import each
+
 KERNEL = '#pragma kernel(output = "height:r32f")\n'
 
 
@@ -258,7 +260,7 @@ void main() { colour = vec4(texture2D(x, gl_FragCoord.xy)); }
     assert (found.kind, found.local, found.outputs[0].format) == ("plain_compute", (16, 8), "rgba16f")
 
 
-@pytest.mark.parametrize("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
+@each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
 def test_every_shipped_file_has_a_header_that_can_be_read(path):
     found = read_kernel(path, GLSL)
     if found is not None:
@@ -269,7 +271,7 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
 # Mistakes
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "words"),
     [
         ("#pragma kernel", "needs its options in brackets, as #pragma kernel(output"),
@@ -323,7 +325,7 @@ def test_mistakes_in_a_pragma(refused, text, words):
     refused("// first\n" + text + "\n", words, 2)
 
 
-@pytest.mark.parametrize(
+@each(
     ("line", "words"),
     [
         ("uniform float a = 0.2; //! slidr(0, 1)", "no widget 'slidr'; did you mean 'slider'"),

@@ -14,10 +14,12 @@ import pytest
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.find import find, shipped_names, shipped_sketches
-from playground.sketch.load import is_technique, load
+from playground.sketch.load import is_technique, load, load_with
 from playground.sketch.model import Camera, Kernel
-from playground.sketch.techniques import read_technique, shipped_techniques
+from playground.sketch.techniques import Techniques, WithLibrary, read_technique, shipped_techniques
 from playground.sketch.values import coerce
+
+from ..cases import each
 
 LAND = """\
 // land.glsl -- a slope.
@@ -157,13 +159,18 @@ def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
     assert child == found.with_values({"height.rise": 1.0})
 
 
-@pytest.mark.parametrize("name", shipped_sketches())
-def test_every_shipped_sketch_loads_and_is_a_value(name):
-    found = load(name)
-    assert found.title and hash(found) == hash(load(name))
-    assert pickle.loads(pickle.dumps(found)) == found
-    for shot in found.shots:
-        found.for_shot(shot)
+def test_every_shipped_sketch_loads_and_is_a_value():
+    one, other = WithLibrary(Techniques()), WithLibrary(Techniques())  # each reads the library for itself
+
+    @each("name", shipped_sketches())
+    def check(name):
+        found = load_with(one, name)
+        assert found.title and hash(found) == hash(load_with(other, name))
+        assert pickle.loads(pickle.dumps(found)) == found
+        for shot in found.shots:
+            found.for_shot(shot)
+
+    check()
 
 
 # Names
@@ -264,12 +271,26 @@ def test_a_library_file_and_a_lonely_variant_are_sentences(folder):
     assert load(folder.path / "land.comp").graph.find("height").technique.variants[0].kind == "compute"
 
 
+PLAIN_COMPUTE = """#version 430
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba8, binding = 0) uniform image2D picture;
+void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
+"""
+
+
+@pytest.mark.parametrize("name", ["land.comp", "sketch.comp"])
+def test_a_plain_shader_opens_itself_whatever_stands_beside_it(folder, name):
+    folder.sketch('[[pass]]\nname = "height"\nuse = "generation/fbm"\n')
+    found = load(folder.write(name, PLAIN_COMPUTE))
+    assert found.file.endswith(name) and found.graph.passes[0].technique.kind == "plain_compute"
+
+
 # Mistakes
 
 P = PASS
 
 
-@pytest.mark.parametrize(
+@each(
     ("parts", "words", "line"),
     [
         ({"head": ""}, "a sketch begins with format = 1", 0),

@@ -7,9 +7,11 @@ import pytest
 from playground.paths import SKETCHES
 from playground.sketch.assign import resolve
 from playground.sketch.find import shipped_sketches
-from playground.sketch.load import load
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import save
+
+from ..cases import each
+from ..loading import load
 
 HEAD = 'format = 1\nmain = ["height.rise"]  # what it is about\n'
 OTHER = '#pragma kernel(output = "height:r32f")\nuniform float fall = 1.0;  //! slider(0, 2)\n'
@@ -60,7 +62,7 @@ def test_of_a_technique_opened_alone_all_its_own_are_main(folder):
     assert load(folder.path / "land.glsl").main == ("height.rise",)
 
 
-@pytest.mark.parametrize("name", sorted(shipped_sketches()))
+@each("name", sorted(shipped_sketches()))
 def test_a_shipped_sketch_says_what_it_is_about(name):
     sketch = load(SKETCHES / f"{name}.toml")
     assert 1 <= len(sketch.main) <= 8, "a handful: the rest is in the passes"

@@ -23,17 +23,15 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
-from playground.sketch.toml_lines import Place
-from playground.sketch.toml_spans import Spans, append, drop, put
+from playground.sketch.toml_edit import append, drop, put
+from playground.sketch.toml_places import Place, TomlPlaces
+
+from ..cases import each
 
 SHIPPED = sorted(GLSL.rglob("*.toml"))
-shipped = pytest.mark.parametrize(
-    ("path", "every"),
-    [
-        pytest.param(p, every, id=f"{p.relative_to(GLSL).as_posix()}-{every}", marks=marks)
-        for every, marks in ((False, ()), (True, pytest.mark.slow))
-        for p in SHIPPED
-    ],
+each_shipped = each("path", SHIPPED, ids=lambda p: p.relative_to(GLSL).as_posix())
+two_or_all = pytest.mark.parametrize(
+    "every", [pytest.param(False, id="two"), pytest.param(True, id="all", marks=pytest.mark.slow)]
 )
 
 
@@ -55,12 +53,13 @@ def some(places: Iterable[Place], every: bool) -> list[Place]:
     return found if every else random.Random(len(found)).sample(found, min(len(found), 2))
 
 
-@shipped
+@two_or_all
+@each_shipped
 def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alone(
     path: Path, every: bool
 ) -> None:
     text = path.read_bytes().decode()
-    spans, found = Spans(text), dict(leaves(tomllib.loads(text)))
+    spans, found = TomlPlaces(text), dict(leaves(tomllib.loads(text)))
     assert {place for place in spans.pairs if place in found} == set(found), "tomllib sees the same values"
     for place, value in found.items():
         pair = spans.pairs[place]
@@ -76,7 +75,8 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
         assert dict(leaves(tomllib.loads(changed))) == {**found, place: [7, 8]}
 
 
-@shipped
+@two_or_all
+@each_shipped
 def test_any_value_of_any_shipped_file_can_be_added_and_taken_out(path: Path, every: bool) -> None:
     text = path.read_bytes().decode()
     found = dict(leaves(tomllib.loads(text)))
@@ -327,7 +327,7 @@ def test_a_shipped_sketch_is_not_written_to_but_copied(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", sorted(SKETCHES.glob("*.toml")), ids=lambda p: p.stem)
+@each("path", sorted(SKETCHES.glob("*.toml")), ids=lambda p: p.stem)
 def test_what_is_not_set_changes_nothing(path: Path) -> None:
     sketch = load(path)
     text = path.read_bytes().decode()

@@ -14,6 +14,8 @@ from playground.sketch.colour import linear_to_srgb, parse_hex, srgb_to_linear, 
 from playground.sketch.model import Parameter, Widget
 from playground.sketch.values import coerce, expected, spell, write
 
+from ..cases import each
+
 
 def of(kind: str, glsl: str, *numbers: float, choices: tuple[str, ...] = ()) -> Parameter:
     return Parameter("p", glsl, 0, Widget(kind, *numbers, choices=choices))
@@ -32,7 +34,7 @@ FILE = Parameter("p", "sampler2D", "", Widget("file"))
 POINT = of("point", "vec2", 0.0, 1.0)
 
 
-@pytest.mark.parametrize(
+@each(
     ("parameter", "given", "value"),
     [
         (SLIDER, 0.25, 0.25),
@@ -125,7 +127,7 @@ def test_what_is_refused_in_one_sentence(parameter, given, words):
     assert words in message and message.startswith("pass.p") and "\n" not in message and len(message) < 300
 
 
-@pytest.mark.parametrize("parameter", [SLIDER, WHOLE, SEED, PAIR, SUN, TINT, GLASS, MENU, FLAG, FILE, POINT])
+@each("parameter", [SLIDER, WHOLE, SEED, PAIR, SUN, TINT, GLASS, MENU, FLAG, FILE, POINT])
 def test_what_is_expected_is_said(parameter):
     assert expected(parameter)
 

@@ -10,6 +10,8 @@ import pytest
 from playground.sketch.model import Camera
 from playground.terrain.camera import look, orbit, pan, zoom
 
+from ..cases import each
+
 EXTENT, RELIEF = (12_000.0, 8_000.0), 1_500.0
 WIDE, TALL = (1280, 720), (360, 720)
 
@@ -38,9 +40,9 @@ def by_hand(camera: Camera, point, target, distance, size=WIDE) -> tuple[float, 
     return float(offset @ right / (half * size[0] / size[1])), float(offset @ above / half)
 
 
-@pytest.mark.parametrize("elevation", [-89.0, -20.0, 0.0, 32.0, 85.0, 89.0])
-@pytest.mark.parametrize("azimuth", [0.0, 45.0, 135.0, 200.0, 315.0])
-@pytest.mark.parametrize("size", [WIDE, TALL])
+@each("elevation", [-89.0, -20.0, 0.0, 32.0, 85.0, 89.0])
+@each("azimuth", [0.0, 45.0, 135.0, 200.0, 315.0])
+@each("size", [WIDE, TALL])
 def test_points_are_where_angles_put_them(azimuth, elevation, size):
     camera = Camera(azimuth, elevation, 30_000.0, (6_000.0, 4_000.0, 700.0), 40.0)
     for point in [(0, 0, 0), (12_000, 0, 0), (12_000, 8_000, 1_500), (0, 8_000, 300), (6_000, 4_000, 700)]:
@@ -66,11 +68,9 @@ def test_the_eye_stands_where_its_azimuth_says(azimuth, right, up):
     assert abs((towards - azimuth + 180) % 360 - 180) < 1e-6
 
 
-@pytest.mark.parametrize("size", [(1280, 720), (640, 640), (360, 720), (2000, 400), (300, 1500)])
-@pytest.mark.parametrize("elevation", [-40.0, 0.0, 10.0, 32.0, 60.0, 89.0])
-@pytest.mark.parametrize(
-    "land", [((12_000.0, 8_000.0), 1_500.0), ((1_000.0, 9_000.0), 100.0), ((500.0, 500.0), 3_000.0)]
-)
+@each("size", [(1280, 720), (640, 640), (360, 720), (2000, 400), (300, 1500)])
+@each("elevation", [-40.0, 0.0, 10.0, 32.0, 60.0, 89.0])
+@each("land", [((12_000.0, 8_000.0), 1_500.0), ((1_000.0, 9_000.0), 100.0), ((500.0, 500.0), 3_000.0)])
 def test_all_of_the_land_is_in_the_picture_and_fills_it(size, elevation, land):
     (east, north), relief = land
     corners = [(x, y, z) for x in (0, east) for y in (0, north) for z in (0, relief)]

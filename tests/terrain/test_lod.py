@@ -13,6 +13,8 @@ from playground.terrain import lod, tiles
 from playground.terrain import visibility as sight
 from playground.terrain.camera import look
 
+from ..cases import each
+
 EXTENT, RELIEF, SIZE = (1000.0, 800.0), 300.0, (640, 360)
 
 
@@ -51,7 +53,7 @@ def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
     assert all(indices.max() < len(tiles.vertices()) for indices in tiles.pieces().values())
 
 
-@pytest.mark.parametrize("piece", [p for p in tiles.pieces() if p[0] == "fans"], ids=str)
+@each("piece", [p for p in tiles.pieces() if p[0] == "fans"], ids=str)
 def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
     faces = faces_of(piece)
     a, b = faces[:, 1, :2] - faces[:, 0, :2], faces[:, 2, :2] - faces[:, 0, :2]

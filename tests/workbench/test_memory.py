@@ -20,6 +20,8 @@ from playground.workbench.edits import Edits
 from playground.workbench.memory import Compared, Memory, Remembered
 from playground.workbench.session import Session
 
+from ..cases import each
+
 SIZE = (64, 48)
 LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
 uniform float level = 0.25; //! slider(0, 1)
@@ -349,8 +351,8 @@ def test_a_broken_file_is_set_aside_and_one_is_told(place: Place, name: str) -> 
     assert complaint == "" and dict(found.edits.values) == {"height.level": 0.5}
 
 
-@pytest.mark.parametrize("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
-@pytest.mark.parametrize("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
+@each("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
+@each("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
 def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, wrong: object) -> None:
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)

@@ -51,7 +51,7 @@ const uvec4 WORDS[2 * TEXTS] = uvec4[2 * TEXTS](
     // share of light#####
     uvec4(0x72616873u, 0x666F2065u, 0x67696C20u, 0xC1C07468u),
     uvec4(0x00C4C3C2u, 0u, 0u, 0u),
-    // towards the sun no land
+    // towards the sun no terrain
     uvec4(0x61776F74u, 0x20736472u, 0x20656874u, 0x206E7573u),
     uvec4(0x6C206F6Eu, 0x00646E61u, 0u, 0u)
 );
@@ -66,7 +66,7 @@ vec4 kernel(ivec2 texel) {
     ivec2 last = grid - 1;
     ivec2 here = clamp(ivec2(column, row), ivec2(0), last);
     float pitch = paper.x / max(texels, 1.0);
-    // Texels of the land, whole ones at their middles.
+    // Texels of the terrain, whole ones at their middles.
     vec2 spot = (place - 0.5 * paper) / pitch + vec2(here);
     ivec2 cell = ivec2(floor(spot + 0.5));
     bool on_land = all(greaterThanEqual(cell, ivec2(0))) && all(lessThanEqual(cell, last));

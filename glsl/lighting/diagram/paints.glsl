@@ -11,7 +11,7 @@
 
 const vec3 SKY = vec3(0.86, 0.90, 0.93);
 const vec3 GROUND = vec3(0.58, 0.47, 0.33);
-const vec3 EDGE = vec3(0.05, 0.035, 0.02);   // the land's surface
+const vec3 EDGE = vec3(0.05, 0.035, 0.02);   // the terrain's surface
 const vec3 INK = vec3(0.012, 0.012, 0.014);  // letters, level lines
 const vec3 FREE = vec3(0.0, 0.168, 0.445);   // where nothing hides the sun
 const vec3 PARTLY = vec3(0.79, 0.347, 0.0);

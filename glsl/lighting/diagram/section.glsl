@@ -1,9 +1,9 @@
-// lighting/diagram/section.glsl -- a row of heights as a drawn section of the land.
+// lighting/diagram/section.glsl -- a row of heights as a drawn section of the terrain.
 //
 //   gives    Section, columns_shown, section_of, on_paper, node_on_paper, column_before,
 //            ground_above, surface_cover
 //   needs    lighting/diagram/ink.glsl; the texture comes as an argument, no uniform of its own
-//   units    metres of the land, pixels of the picture
+//   units    metres of the terrain, pixels of the picture
 //   source   none: a picture of numbers
 //   tested   tests/glsl/test_diagrams.py, by where heights must be in the picture
 //
@@ -16,14 +16,14 @@
 
 struct Section {
     int row;
-    int last;       // column of the land
+    int last;       // column of the terrain
     float spacing;  // metres from a column to the next
     float relief;   // metres from height 0 to 1
     vec2 corner;    // metres along and up at the picture's lower left corner
     float scale;    // pixels a metre
 };
 
-// The first and the last column shown; a last one of 0 or less is the land's.
+// The first and the last column shown; a last one of 0 or less is the terrain's.
 ivec2 columns_shown(int first, int last, int columns) {
     int from = clamp(first, 0, max(columns - 2, 0));
     int to = last <= 0 ? columns - 1 : min(last, columns - 1);
@@ -53,7 +53,7 @@ int column_before(Section section, float along) {
     return int(clamp(floor(place), 0.0, float(max(section.last - 1, 0))));
 }
 
-// How far the land's surface is above a pixel's middle.
+// How far the terrain's surface is above a pixel's middle.
 float ground_above(sampler2D height, Section section, vec2 place) {
     int column = column_before(section, place.x);
     vec2 from = node_on_paper(height, section, column);

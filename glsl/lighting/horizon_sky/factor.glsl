@@ -8,8 +8,8 @@
 //   source   Belaiche 2010, section 3.4, eqs 3.9 to 3.13, after Stewart and Langer 1997
 //   tested   tests/glsl/test_sky.py, against quadrature and closed forms
 //
-// f = K / (1 - C (1 - K)). Where no sky is seen, land is, and land that is seen is taken to be as
-// bright as the place itself; C is the mean colour of the ground under the texel.
+// f = K / (1 - C (1 - K)). Where no sky is seen, terrain is, and terrain that is seen is taken to
+// be as bright as the place itself; C is the mean colour of the ground under the texel.
 #include "lighting/horizon_sky/ground.glsl"
 #include "terrain/maps.glsl"
 #include "lighting/horizons/open_sky.glsl"

@@ -9,7 +9,7 @@
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
 //   tested   tests/glsl/test_analytic.py, against float64
 //
-// All that is done when the sun moves: a few fetches a texel, and no look at the land. Eq. 3.3
+// All that is done when the sun moves: a few fetches a texel, and no look at the terrain. Eq. 3.3
 // has no 1/pi: its sunlight is already divided by it. The thesis looks up no texel whose light
 // stays the same; here all are looked up at once.
 #include "lighting/daylight_reading.glsl"

@@ -28,6 +28,6 @@ vec4 kernel(ivec2 texel) {
     if (texel.x < 2) {
         return (texel.x == 0 ? weights.upright : weights.slanting) * in_diameters(90.0, diameter);
     }
-    return vec4(given.sky * ambient, in_diameters(elevation_of(to_sun) + 0.5 * diameter,
-                                                  diameter));
+    float upper_edge = elevation_of(to_sun) + 0.5 * diameter;
+    return vec4(given.sky * ambient, in_diameters(upper_edge, diameter));
 }

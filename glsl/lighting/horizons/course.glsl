@@ -11,10 +11,10 @@
 // It goes row after row, and drifts a part of a texel sideways.
 //
 // A row is a line of texels across the axis that the direction follows more. Rows are counted
-// towards the direction from the land's far edge. A line of sight drifts drift / 65536 texels
+// towards the direction from the terrain's far edge. A line of sight drifts drift / 65536 texels
 // to the side from one row to the next. That is a whole number so that every machine takes the
 // same texels; over 4097 rows it is true to 0.03 texels. Parallel lines go through the middles of
-// the texels of one row in the land's middle, so that opposite directions have the same lines.
+// the texels of one row in the terrain's middle, so that opposite directions have the same lines.
 #ifndef LIGHTING_HORIZONS_COURSE
 #define LIGHTING_HORIZONS_COURSE
 #include "maths/angle.glsl"

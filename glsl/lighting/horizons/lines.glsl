@@ -1,9 +1,9 @@
 // lighting/horizons/lines.glsl -- the lines of a sweep, and what it leaves on them for the sums.
 //
-//   gives    Turn, turn_at, first_line, place_of, land_at, own_row, far_row, sees, tangent_at,
+//   gives    Batch, batch_at, first_line, place_of, land_at, own_row, far_row, sees, tangent_at,
 //            UP_TO_4, UP_TO_8, CHUNK; in a compute variant only
 //   needs    lighting/horizons/course.glsl, maths/whole.glsl; size, directions, the buffers of
-//            lighting/horizons.comp and its output land
+//            lighting/horizons.comp and its output terrain
 //   units    texels and rows; heights without unit; tangents: rise over run
 //   source   Timonen and Westerholm 2010, as lighting/horizons.comp
 //   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
@@ -13,35 +13,35 @@
 #include "lighting/horizons/course.glsl"
 #include "maths/whole.glsl"
 
-const int CHUNK = 64;           // rows of the land that a thread sums
+const int CHUNK = 64;           // rows of the terrain that a thread sums
 
 // What is done for each of several rows is written out: an array whose index is a loop's counter
 // would lie in memory.
 #define UP_TO_4(DO) DO(0) DO(1) DO(2) DO(3)
 #define UP_TO_8(DO) UP_TO_4(DO) DO(4) DO(5) DO(6) DO(7)
 
-// How the pairs of directions are shared out over the turns. No buffer may be larger than
-// 128 MiB on some drivers, and the widest lands need that for one pair, so there are two.
-struct Turn {
+// How the pairs of directions are shared out over batches. No buffer may be larger than
+// 128 MiB on some drivers, and the widest terrains need that for one pair, so there are two.
+struct Batch {
     int pairs;      // in all
-    int from, end;  // those of this turn
+    int from, end;  // those of this one
     int apart;      // in a buffer, from one pair to the next
 };
 
-// The turns that the header lists after those that are needed have no pairs.
-Turn turn_at(int number) {
-    Turn turn;
-    turn.pairs = pairs_of(directions);
-    turn.apart = (size.x + 32) * (size.y + 32) / 4;
-    int room = 2 * (even_lines.length() / turn.apart);
-    int turns = (turn.pairs + room - 1) / room;
-    int batch = ((turn.pairs + 1) / 2 + turns - 1) / turns * 2;
-    turn.from = min(number * batch, turn.pairs);
-    turn.end = min(turn.from + batch, turn.pairs);
-    return turn;
+// The batches after those that are needed have no pairs.
+Batch batch_at(int number) {
+    Batch batch;
+    batch.pairs = pairs_of(directions);
+    batch.apart = (size.x + 32) * (size.y + 32) / 4;
+    int room = 2 * (even_lines.length() / batch.apart);
+    int batches = (batch.pairs + room - 1) / room;
+    int pairs_each = ((batch.pairs + 1) / 2 + batches - 1) / batches * 2;
+    batch.from = min(number * pairs_each, batch.pairs);
+    batch.end = min(batch.from + pairs_each, batch.pairs);
+    return batch;
 }
 
-// Line 0 is the one before the first that meets the land: what a texel sees beside it counts.
+// Line 0 is the one before the first that meets the terrain: what a texel sees beside it counts.
 int first_line(Course course) {
     return -1 - max(drifted(course, 0), drifted(course, course.rows - 1));
 }
@@ -70,12 +70,12 @@ int own_row(int word) {
 }
 
 int far_row(int word) {
-    return word < NEAR_WINS ? word : int(intBitsToFloat(((word & (MOST_REST - 1))
-                                                         + SEVEN_BITS) << 16));
+    if (word < NEAR_WINS) return word;
+    return int(intBitsToFloat(((word & (MOST_REST - 1)) + SEVEN_BITS) << 16));
 }
 
-// Whether a texel's own line of sight is still on the land on the row d further on: as the march
-// has it.
+// Whether a texel's own line of sight is still on the terrain on the row d further on: as the
+// march has it.
 bool sees(Course course, int row, int across, int d) {
     float place = float(across) + float(d) * (float(course.drift) * (1.0 / 65536.0));
     return row + d < course.rows && place >= -0.5 && place <= float(course.across) - 0.5;

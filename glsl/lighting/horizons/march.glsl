@@ -9,11 +9,11 @@
 //            Surfaces"; K(p) by eqs 3.12 to 3.15
 //   tested   tests/glsl/test_horizons.py, against brute force in float64
 //
-// The plain form: from each texel a walk over the whole land, in steps of one row of the finer of
-// two grids, the heights' and this pass's own. It ends where the highest land could not be seen
-// over the horizon found so far. A turn walks two opposite directions: no single draw lasts so
-// long that a graphics driver would give it up. Half a texel beyond the land's edge a walk leaves
-// the land.
+// The plain form: from each texel a march over the whole terrain, in steps of one row of the finer
+// of two grids, the heights' and this pass's own. It ends where the highest terrain could not be
+// seen over the horizon found so far. A step of the repeat marches in two opposite directions: no
+// single draw lasts so long that a graphics driver would give it up. Half a texel beyond the
+// terrain's edge a march leaves the terrain.
 #include "lighting/horizons/course.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/horizons/slope.glsl"
@@ -26,8 +26,8 @@ uniform sampler2D range;                //! input
 #include "lighting/parameters/directions.glsl"
 #include "lighting/parameters/normal.glsl"
 
-// The highest tangent on a walk from a place on the grid, in rows and texels of the course.
-float walked(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
+// The highest tangent on a march from a place on the grid, in rows and texels of the course.
+float steepest_from(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
     Course course = course_towards(towards, grid, metres);
     float aside = float(course.drift) / 65536.0;
     float ahead_by = course.upwards ? 1.0 : -1.0;
@@ -67,8 +67,10 @@ void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out flo
     float highest = texelFetch(range, ivec2(0), 0).g;
     float shape = sector_shape(2 * iterations);
     vec2 towards = pair_towards(iteration, iterations, first);
-    float there = min(relief * walked(grid, start, towards, metres, land, highest), 60000.0);
-    float back = min(relief * walked(grid, start, -towards, metres, land, highest), 60000.0);
+    float there = relief * steepest_from(grid, start, towards, metres, land, highest);
+    float back = relief * steepest_from(grid, start, -towards, metres, land, highest);
+    there = min(there, 60000.0);
+    back = min(back, 60000.0);
     // A single pair stands in all channels.
     bvec4 here = equal(ivec4(keep ? iteration : -1),
                        iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));

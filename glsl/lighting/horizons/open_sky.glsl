@@ -14,7 +14,7 @@
 // level unit vector to a sector's middle, dsin and dcos are 2 sin(w/2) u, and
 //   K = 1/n of the sum of  N_z sin² phi + (N · u) (phi - sin 2phi / 2) sin(w/2) / (w/2).
 // The thesis begins the sectors at the directions in which the horizon is measured; here they are
-// centred on them, for else mirrored land would not have mirrored light.
+// centred on them, for else mirrored terrain would not have mirrored light.
 #ifndef LIGHTING_HORIZONS_OPEN_SKY
 #define LIGHTING_HORIZONS_OPEN_SKY
 

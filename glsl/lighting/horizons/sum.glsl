@@ -20,7 +20,7 @@
 
 const float HIGHEST = 60000.0;  // a tangent that a half float holds
 
-// The courses of a turn's pairs, kept by each thread: directions, and drift, axis, sense, first
+// The courses of a batch's pairs, kept by each thread: directions, and drift, axis, sense, first
 // line.
 vec2 ways[8];
 ivec4 courses[8];
@@ -59,9 +59,9 @@ float tangent_of(Course course, int row, int across, int own, int other, float f
     ivec2 texel = ivec2(x, min(y + nth, size.y - 1)); \
     slope[nth] = slope_here(texel, size, metres, relief, normal); \
     foot[nth] = land_at(texel); \
-    total[nth] = turn.from > 0 ? sky[texel.y * size.x + texel.x] : 0.0; \
-    ahead[nth] = keep && turn.from > 0 ? imageLoad(out_ahead, texel) : vec4(0.0); \
-    behind[nth] = keep && turn.from > 0 ? imageLoad(out_behind, texel) : vec4(0.0); }
+    total[nth] = batch.from > 0 ? sky[texel.y * size.x + texel.x] : 0.0; \
+    ahead[nth] = keep && batch.from > 0 ? imageLoad(out_ahead, texel) : vec4(0.0); \
+    behind[nth] = keep && batch.from > 0 ? imageLoad(out_behind, texel) : vec4(0.0); }
 #define ADD(nth, lines) { \
     int along = course.along_x ? x : y + nth; \
     int across = course.along_x ? min(y + nth, size.y - 1) : x; \
@@ -78,29 +78,29 @@ float tangent_of(Course course, int row, int across, int own, int other, float f
     behind[nth] = mix(behind[nth], vec4(tangents.y), channel); \
     total[nth] += sky_of_sector(tangents.x, slope[nth], towards, \
         shape) + sky_of_sector(tangents.y, slope[nth], -towards, shape); }
-#define ADD_PAIR(number, lines) if (number < turn.end) { \
-    vec2 towards = ways[number - turn.from]; \
-    Course course = course_of(number - turn.from); \
-    int line_0 = courses[number - turn.from].w; \
-    bvec4 channel = equal(ivec4(number), turn.pairs == 1 ? ivec4(0) : ivec4(0, 1, 2, 3)); \
+#define ADD_PAIR(number, lines) if (number < batch.end) { \
+    vec2 towards = ways[number - batch.from]; \
+    Course course = course_of(number - batch.from); \
+    int line_0 = courses[number - batch.from].w; \
+    bvec4 channel = equal(ivec4(number), batch.pairs == 1 ? ivec4(0) : ivec4(0, 1, 2, 3)); \
     ADD(0, lines) ADD(1, lines) ADD(2, lines) ADD(3, lines) ADD(4, lines) ADD(5, lines) \
         ADD(6, lines) ADD(7, lines) }
 #define STORE(nth) if (y + nth < end) { \
     ivec2 texel = ivec2(x, y + nth); \
-    float whole = max(total[nth], 0.0) / float(2 * turn.pairs) / sqrt(1.0 + dot(slope[nth], \
+    float whole = max(total[nth], 0.0) / float(2 * batch.pairs) / sqrt(1.0 + dot(slope[nth], \
         slope[nth])); \
-    sky[texel.y * size.x + texel.x] = turn.end == turn.pairs ? whole : total[nth]; \
-    if (keep && turn.from < 4) imageStore(out_ahead, texel, ahead[nth]); \
-    if (keep && turn.from < 4) imageStore(out_behind, texel, behind[nth]); }
+    sky[texel.y * size.x + texel.x] = batch.end == batch.pairs ? whole : total[nth]; \
+    if (keep && batch.from < 4) imageStore(out_ahead, texel, ahead[nth]); \
+    if (keep && batch.from < 4) imageStore(out_behind, texel, behind[nth]); }
 
-// Each thread has a column of the land's texels, eight rows at a time.
-void sum(Turn turn) {
+// Each thread has a column of the terrain's texels, eight rows at a time.
+void sum(Batch batch) {
     int x = int(gl_GlobalInvocationID.x);
     int end = x < size.x ? min(int(gl_WorkGroupID.y + 1u) * CHUNK, size.y) : 0;
-    float shape = sector_shape(2 * turn.pairs);
+    float shape = sector_shape(2 * batch.pairs);
     vec2 metres = spacing_of(size, extent);
-    for (int k = 0; k < turn.end - turn.from; k++) {
-        ways[k] = pair_towards(turn.from + k, turn.pairs, first);
+    for (int k = 0; k < batch.end - batch.from; k++) {
+        ways[k] = pair_towards(batch.from + k, batch.pairs, first);
         Course course = course_towards(ways[k], size, metres);
         courses[k] = ivec4(course.drift, course.along_x, course.upwards, first_line(course));
         steeps[k] = course.steep;
@@ -111,8 +111,8 @@ void sum(Turn turn) {
         float foot[8];
         vec4 ahead[8], behind[8];
         UP_TO_8(BEGIN)
-        for (int pair = turn.from; pair < turn.end; pair += 2) {
-            int at = turn.apart * ((pair - turn.from) >> 1);
+        for (int pair = batch.from; pair < batch.end; pair += 2) {
+            int at = batch.apart * ((pair - batch.from) >> 1);
             ADD_PAIR(pair, even_lines)
             ADD_PAIR(pair + 1, odd_lines)
         }

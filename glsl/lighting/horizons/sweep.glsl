@@ -32,7 +32,7 @@ const int BLOCK = 8;            // rows of a block, and bits of a word of the hu
 const int NEAR = 16;            // rows that are looked at exactly
 const int ROWS = BLOCK + NEAR;
 const float NONE = -1e30;       // a height that hides nothing
-const float OFF = 1e9;          // a place that is on no land
+const float OFF = 1e9;          // a place that is on no terrain
 
 // Each of several rows, or pairs of rows, written out as in lighting/horizons/lines.glsl.
 #define FROM_8(DO) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
@@ -50,7 +50,7 @@ const float OFF = 1e9;          // a place that is on no land
     DO(19, 4) DO(20, 1) DO(20, 2) DO(20, 3) DO(21, 1) DO(21, 2) DO(22, 1)
 
 // A block's rows and after them the nearest rows of the blocks before, on four lines. A texel
-// beside the land is as high as the land's edge.
+// beside the terrain is as high as the terrain's edge.
 vec4 here[ROWS];       // heights of the texels
 vec4 along[ROWS];      // heights where the lines cross the row
 vec4 upper[ROWS];      // how much higher the next texel of the row is
@@ -79,7 +79,7 @@ void enter_row(int row, Course course, int line, int first_row) {
     lower[row] = vec4(t1 - t0, upper[row].xyz);
     beside[row] = beside_of(course, first_row + row);
     aside[row] = on_row ? float(at) - 0.5 * float(last) : OFF;
-    // Lines beside the land belong to it as far as a line of sight between them and it may run.
+    // Lines beside the terrain belong to it as far as a line of sight between them and it may run.
     // As unsigned numbers, those below 0 are large.
     uvec4 across = uvec4(ivec4(at + 1, at + 2, at + 3, at + 4));
     bvec4 on_land = lessThan(across, uvec4(on_row ? course.across + 2 : 0));
@@ -162,7 +162,7 @@ int nearest_in(int word) {
     if ((pair & 1) == 0) PUT(even_lines); else PUT(odd_lines); }
 
 ivec4 chosen[BLOCK];  // where each texel sees its horizon, as own_row and far_row read it
-// a bit for each texel whose line looked where its own line of sight has left the land
+// a bit for each texel whose line looked where its own line of sight has left the terrain
 int lost;
 
 // Of a row's texels: the steepest of the near rows, or the one that the line found, if it is
@@ -195,7 +195,7 @@ void choose(int row, Course course, int line, int first_row) {
     ivec4 both = NEAR_WINS + (near - 1) * MOST_REST + rest;
     ivec4 alone = ivec4(bvec4(ivec4(equal(near, ivec4(0))) + steeper + left));
     chosen[row] = both + alone * (saw * away - both);
-    // Only texels of the land count.
+    // Only texels of the terrain count.
     left *= ivec4(lessThan(uvec4(ivec4(across, across + 1, across + 2, across + 3)),
                            uvec4(first_row + row < course.rows ? course.across : 0)));
     lost |= (left.x | left.y << 1 | left.z << 2 | left.w << 3) << (4 * row);
@@ -293,21 +293,21 @@ void follow_hull(int which, int block, Course course, int line, int hull_at, int
     UP_TO_8(GIVE)
 }
 
-void sweep(Turn turn) {
-    int pair = turn.from + int(gl_WorkGroupID.y);
+void sweep(Batch batch) {
+    int pair = batch.from + int(gl_WorkGroupID.y);
     int group = int(gl_GlobalInvocationID.x);
-    vec2 towards = pair_towards(pair, turn.pairs, first);
+    vec2 towards = pair_towards(pair, batch.pairs, first);
     int apart = size.x + size.y + 64;
     int hull_at = int(gl_WorkGroupID.y) * ((max(size.x, size.y) + 31) >> 3) * apart + 4 * group;
     for (int side = 0; side < 2; side++) {
         bool back = side == 1;
         Course course = course_towards(back ? -towards : towards, size, spacing_of(size, extent));
         int line = first_line(course) + 4 * group;
-        bool off = pair >= turn.end || line + min(drifted(course, 0),
-                                                  drifted(course, course.rows - 1))
-                                                  > course.across;
+        int drift_away = min(drifted(course, 0), drifted(course, course.rows - 1));
+        bool off = pair >= batch.end || line + drift_away > course.across;
         float half_width = 0.5 * float(course.across);
-        // The rows on which one of the four lines is on the land, or less than a texel beside it.
+        // The rows on which one of the four lines is on the terrain, or less than a texel beside
+        // it.
         vec2 ends = vec2(0.0, float(course.rows - 1));
         if (course.drift != 0) {
             vec2 met = vec2(-line - 5, course.across + 1 - line) * (65536.0 / float(course.drift))
@@ -330,7 +330,7 @@ void sweep(Turn turn) {
             for (int which = 0; which < 4; which++) {
                 follow_hull(which, block, course, line, hull_at, apart, top_word, top_block);
             }
-            int place = turn.apart * ((pair - turn.from) >> 1)
+            int place = batch.apart * ((pair - batch.from) >> 1)
                     + place_of(course, group, back ? course.rows - 1 - first_row : first_row);
             lost = 0;
             UP_TO_8(CHOOSE)

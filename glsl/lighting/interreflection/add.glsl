@@ -7,8 +7,8 @@
 //   tested   tests/glsl/test_sky.py, against float64
 //
 // light = given + sky colour ambient f. Shadows of local methods are pitch black, since they
-// leave out all light that comes by way of the sky and of other land. Asked to, the given light
-// is thrown back as well: land that is seen is taken to be as bright as the place itself, so it
+// leave out all light that comes by way of the sky and of other terrain. Asked to, the given light
+// is thrown back as well: terrain that is seen is taken to be as bright as the place itself, so it
 // grows by 1 / (1 - C (1 - K)) = f / K; that is for lit slopes, and adds nothing in a shadow.
 #include "lighting/daylight_reading.glsl"
 #include "terrain/maps.glsl"

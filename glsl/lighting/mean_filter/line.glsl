@@ -9,7 +9,7 @@
 // It is that of a window around each texel, or of the texel's patch.
 //
 // The mean over a square is the mean over rows of the means over columns, also at the border,
-// where what is left of the square is still a rectangle: two turns of this are the filter.
+// where what is left of the square is still a rectangle: two passes of this are the filter.
 #include "maths/whole.glsl"
 #pragma kernel(output = "light:rgba16f")
 

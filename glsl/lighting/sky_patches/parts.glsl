@@ -12,7 +12,7 @@
 // One is overhead, the others are low in the four quarters.
 //
 // f of a patch is K of the patch / (1 - C (1 - K)), where K below is that of all patches: what one
-// patch lights is thrown back by land that all of them light.
+// patch lights is thrown back by terrain that all of them light.
 #include "lighting/horizon_sky/ground.glsl"
 #include "terrain/maps.glsl"
 #include "lighting/horizons/open_sky.glsl"

@@ -25,7 +25,7 @@
 #ifndef LIGHTING_SUN_SWEEP_BAND
 #define LIGHTING_SUN_SWEEP_BAND
 
-// A tangent below all others: no land stands towards the sun.
+// A tangent below all others: no terrain stands towards the sun.
 const float NO_HORIZON = -10000.0;
 const float NOWHERE = -1e30;  // metres
 
@@ -91,7 +91,7 @@ struct Band {
     vec3 texels2;
     vec3 texels3;
     vec3 parts;
-    vec2 feet1;    // one to four rows ago; NOWHERE beside the land
+    vec2 feet1;    // one to four rows ago; NOWHERE beside the terrain
     vec2 feet2;
     vec2 feet3;
     vec2 feet4;
@@ -119,17 +119,17 @@ float moved_part(Lines lines, int row) {
 // The first row on which a band may hold texels, with those that are near it; and the row after
 // the last.
 int first_row(Lines lines, int line) {
-    float entry = lines.drift == 0.0 ? 0.0 : float((lines.drift > 0.0 ? -1 : lines.last + 1)
-                                                   - line) / lines.drift;
+    int start = lines.drift > 0.0 ? -1 : lines.last + 1;
+    float entry = lines.drift == 0.0 ? 0.0 : float(start - line) / lines.drift;
     return max(int(clamp(entry, 0.0, 65000.0)) - NEAR_ROWS - 1, 0);
 }
 int last_row(Lines lines, int line) {
-    float leave = lines.drift == 0.0 ? 65000.0
-            : float((lines.drift > 0.0 ? lines.last + 1 : -1) - line) / lines.drift;
+    int end = lines.drift > 0.0 ? lines.last + 1 : -1;
+    float leave = lines.drift == 0.0 ? 65000.0 : float(end - line) / lines.drift;
     return min(int(clamp(leave, -2.0, 65000.0)) + 2, lines.rows);
 }
 
-// The texel of the land on a row.
+// The texel of the terrain on a row.
 ivec2 texel_on(Lines lines, int row, int across) {
     int ahead = lines.from_high ? lines.rows - 1 - row : row;
     return lines.along_x ? ivec2(ahead, across) : ivec2(across, ahead);
@@ -164,7 +164,7 @@ void enter_row(inout Band band, sampler2D field, Lines lines, int row, vec4 clim
         height_across(field, lines, row, band.across + 2)
     );
     band.feet = band.texels.xy + (band.texels.yz - band.texels.xy) * band.part;
-    // Beside the land a line has a foot, on the land's edge, but throws no shadow.
+    // Beside the terrain a line has a foot, on the terrain's edge, but throws no shadow.
     int beyond = lines.last - (band.part > 0.0 ? 1 : 0);
     band.feet4 = band.feet3;
     band.feet3 = band.feet2;
@@ -175,7 +175,7 @@ void enter_row(inout Band band, sampler2D field, Lines lines, int row, vec4 clim
     );
 }
 
-// The band's texel on the row that it has reached: across the row, perhaps beside the land.
+// The band's texel on the row that it has reached: across the row, perhaps beside the terrain.
 int texel_of(Band band) {
     return band.across + (band.part > 0.0 ? 1 : 0);
 }
@@ -200,7 +200,7 @@ float horizon_of(Band band, Lines lines) {
     float lead = between ? 1.0 - band.part : 0.0;
     float one = tangent_over(band.first, band.feet.x, lines.run);
     float two = tangent_over(band.second, band.feet.y, lines.run);
-    // A line that has met no land says nothing of what lies beside it.
+    // A line that has met no terrain says nothing of what lies beside it.
     if (between && one <= NO_HORIZON) one = two;
     if (two <= NO_HORIZON) two = one;
     float tangent = one + (two - one) * lead;
@@ -210,7 +210,7 @@ float horizon_of(Band band, Lines lines) {
         near_rise(band.texels2, band.parts.y, lead, foot),
         near_rise(band.texels3, band.parts.z, lead, foot)
     );
-    // The way leaves the land at its sides; rows before the first are nowhere already.
+    // The way leaves the terrain at its sides; rows before the first are nowhere already.
     vec3 steps = vec3(1.0, 2.0, 3.0);
     vec3 place = float(texel_of(band)) - steps * lines.drift;
     vec3 near = rise / (steps * lines.run);

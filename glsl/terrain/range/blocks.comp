@@ -1,6 +1,6 @@
 // terrain/range/blocks.comp -- the range of heights in each block, by 64 readers.
 //
-//   gives    range: lowest in red, highest in green; a block of the land for each texel
+//   gives    range: lowest in red, highest in green; a block of the terrain for each texel
 //   needs    terrain/extremes.glsl, maths/whole.glsl
 //   units    as the heights
 //   source   a tree reduction in shared memory, as in M. Harris 2007, "Optimizing Parallel
@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_fast_variants.py, against terrain/range/blocks.glsl
 //   agrees   exactly: the lowest of numbers is the same in any order
 //
-// The kernel beside it has one thread walk a whole block. Here a work group shares the block:
+// The kernel beside it has one thread read a whole block. Here a work group shares the block:
 // each reader takes every eighth texel of every eighth row, so that neighbours read
 // neighbours, then pairs of readers are joined until one is left.
 #include "maths/whole.glsl"
@@ -17,7 +17,7 @@
 
 uniform sampler2D height; //! input
 uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest")
-                          //! With nothing, 0 and 1 are told without a look at the land
+                          //! With nothing, 0 and 1 are told without a look at the terrain
 
 const int READERS = 64;
 shared vec2 found[READERS];

@@ -1,13 +1,13 @@
-// terrain/range/blocks.glsl -- the lowest and the highest height in each block of a land.
+// terrain/range/blocks.glsl -- the lowest and the highest height in each block of a terrain.
 //
-//   gives    range: lowest in red, highest in green; a block of the land for each texel
+//   gives    range: lowest in red, highest in green; a block of the terrain for each texel
 //   needs    terrain/extremes.glsl, maths/whole.glsl
 //   units    as the heights
 //   source   none: a reduction
 //   tested   tests/glsl/test_normalise.py, against NumPy
 //
-// The first of the two turns of terrain/range. It works at every size of its own, whatever
-// the land's: the blocks cover the land and do not overlap, and where there are more blocks
+// The first of the two passes of terrain/range. It works at every size of its own, whatever
+// the terrain's: the blocks cover the terrain and do not overlap, and where there are more blocks
 // than texels, some are empty and tell a range that holds nothing.
 #include "maths/whole.glsl"
 #include "terrain/extremes.glsl"
@@ -15,7 +15,7 @@
 
 uniform sampler2D height; //! input
 uniform int sought = 2;   //! menu("nothing", "highest", "lowest and highest")
-                          //! With nothing, 0 and 1 are told without a look at the land
+                          //! With nothing, 0 and 1 are told without a look at the terrain
 
 vec2 kernel(ivec2 texel) {
     if (sought == 0) return vec2(0.0, 1.0);

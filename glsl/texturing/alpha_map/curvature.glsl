@@ -1,14 +1,14 @@
-// texturing/alpha_map/curvature.glsl -- how much the land bends: up in a hollow, down on a crest.
+// texturing/alpha_map/curvature.glsl -- how much the terrain bends: hollows and crests.
 //
 //   gives    curvature_at
 //   needs    terrain/heightfield.glsl; the texture comes as an argument
 //   units    places in texels of the texture, metres a texel, reach in metres; units of height
 //            per square metre (times relief: 1/m), above 0 in a hollow
 //   source   second differences; half the sum over two directions at right angles is the mean
-//            curvature of land that lies level (do Carmo 1976, section 3.3)
+//            curvature of terrain that lies level (do Carmo 1976, section 3.3)
 //   tested   tests/glsl/test_splat_rules.py, against paraboloids
 //
-// Four lines through the place, along the axes and between them. One that leaves the land is
+// Four lines through the place, along the axes and between them. One that leaves the terrain is
 // left out: past the edge the height stays what it is there, and that would count as a bend.
 #ifndef TEXTURING_ALPHA_MAP_CURVATURE
 #define TEXTURING_ALPHA_MAP_CURVATURE

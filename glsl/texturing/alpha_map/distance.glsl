@@ -3,7 +3,7 @@
 //   gives    weights, whose sum is 1 in every texel
 //   needs    terrain/heightfield.glsl, texturing/splat_weights.glsl; weights as of
 //            texturing/alpha_map, of any size, and a height 0..1
-//   units    metres from the eye to the land; weights 0..1
+//   units    metres from the eye to the terrain; weights 0..1
 //   source   Belaiche 2010, section 2.8: where depth is a criterion, the texture changes with
 //            the point of view, as in splatting
 //   tested   tests/glsl/test_splat_rules.py, against distances in float64
@@ -36,7 +36,7 @@ vec4 kernel(ivec2 texel) {
                       relief * height_at(height, place_on(textureSize(height, 0), texel, size)));
     float away = distance(eye, place);
     float gone = clamp((away - begins) / max(ends - begins, 1e-3), 0.0, 1.0);
-    // Land that is not a number is nowhere.
+    // Terrain that is not a number is nowhere.
     float moved = gone >= 0.0 ? gone * dot(share, unit(near)) : 0.0;
     return weights_in_bytes(share + moved * (unit(far) - unit(near)));
 }

@@ -2,7 +2,7 @@
 //
 //   gives    cover, 0..1
 //   needs    maths/land.glsl, maths/segment.glsl, noise/periodic.glsl
-//   units    points as shares of the land, east and north; widths in metres
+//   units    points as shares of the terrain, east and north; widths in metres
 //   source   Belaiche 2010, section 2.5: a texture of its own for the paths that people walk on;
 //            the line: Catmull and Rom 1974, "A Class of Local Interpolating Splines"
 //   tested   tests/glsl/test_splat_rules.py: on the points, on a straight line, and its width

@@ -7,7 +7,7 @@
 //            above 0 in a hollow; a fade in the unit of what fades
 //   source   Belaiche 2010, section 2.5: rock on the hills, grass or mud on the level, snow on
 //            the tops; thresholds, fades and curvature made here
-//   tested   tests/glsl/test_splat_rules.py, against land of one height, slope or curvature
+//   tested   tests/glsl/test_splat_rules.py, against terrain of one height, slope or curvature
 //
 // Three bands, multiplied: a layer covers where height, slope and curvature all lie in
 // theirs. A band's edges fade over a stretch that has the edge in its middle; chance moves
@@ -20,34 +20,34 @@
 uniform sampler2D height;  //! input
 
 uniform float height_from = -1.0;     //! slider(-1, 2) step(0.01) group("Height") label("From")
-                                      //! Lower land has none of it; -1: no land is too low
+                                      //! Lower terrain has none of it; -1: no terrain is too low
 uniform float height_to = 2.0;        //! slider(-1, 2) step(0.01) group("Height") label("To")
-                                      //! Higher land has none of it; 2: no land is too high
+                                      //! Higher terrain has none of it; 2: no terrain is too high
 uniform float height_fade = 0.1;      //! slider(0, 1) step(0.01) group("Height") label("Fade")
                                       //! Over how much height it begins and ends
 uniform float slope_from = 0.0;       //! slider(0, 90) step(0.5) unit("degrees") group("Slope")
                                       //! label("From")
-                                      //! Flatter land has none of it
+                                      //! Flatter terrain has none of it
 uniform float slope_to = 90.0;        //! slider(0, 90) step(0.5) unit("degrees") group("Slope")
                                       //! label("To")
-                                      //! Steeper land has none of it
+                                      //! Steeper terrain has none of it
 uniform float slope_fade = 10.0;      //! slider(0, 45) step(0.5) unit("degrees") group("Slope")
                                       //! label("Fade")
                                       //! Over how much slope it begins and ends
 uniform bool by_curvature = false;    //! group("Curvature") Whether it looks for hollows or crests
 uniform float curvature_from = 0.0;   //! slider(-20, 20) step(0.1) unit("1/km") group("Curvature")
                                       //! label("From")
-                                      //! Land that bends up less has none of it; above 0, hollows
-                                      //! alone
+                                      //! Terrain that bends up less has none of it; above 0,
+                                      //! hollows alone
 uniform float curvature_to = 20.0;    //! slider(-20, 20) step(0.1) unit("1/km") group("Curvature")
                                       //! label("To")
-                                      //! Land that bends up more has none of it; below 0, crests
-                                      //! alone
+                                      //! Terrain that bends up more has none of it; below 0,
+                                      //! crests alone
 uniform float curvature_fade = 1.0;   //! slider(0, 10) step(0.1) unit("1/km") group("Curvature")
                                       //! label("Fade")
                                       //! Over how much curvature it begins and ends
 uniform float reach = 60.0;           //! log_slider(1, 2000) unit("m") group("Curvature")
-                                      //! How far away the land is looked at
+                                      //! How far away the terrain is looked at
 uniform float strength = 1.0;         //! slider(0, 1) step(0.01) How much it covers where it does
 uniform float ragged = 0.0;           //! slider(0, 4) step(0.05) group("Chance")
                                       //! How far chance moves the edges, in fades
@@ -86,6 +86,6 @@ float kernel(ivec2 texel) {
         float bend = 1000.0 * relief * curvature_at(height, place, metres, reach);
         cover *= band(bend, curvature_from, curvature_to, curvature_fade, moved);
     }
-    // Land that is not a number has no cover, so that it stays visible as such in the view.
+    // Terrain that is not a number has no cover, so that it stays visible as such in the view.
     return cover >= 0.0 ? strength * cover : 0.0;
 }

@@ -45,8 +45,8 @@ vec4 kernel(ivec2 texel) {
     vec4 weights = weights_of_covers(covers);
     // What is not wired is one black texel, whose alpha is 1 all the same.
     if (textureSize(painted, 0).x > 1) {
-        vec4 mask = around(painted, texel) * vec4(greaterThanEqual(ivec4(layers),
-                                                                   ivec4(1, 2, 3, 4)));
+        vec4 taken = vec4(greaterThanEqual(ivec4(layers), ivec4(1, 2, 3, 4)));
+        vec4 mask = around(painted, texel) * taken;
         float share = min(mask.x + mask.y + mask.z + mask.w, 1.0);
         weights = mix(weights, weights_of_mask(mask), share);
     }

@@ -1,4 +1,4 @@
-// texturing/drape/laid.glsl -- a texture of the whole land at another size, corners on corners.
+// texturing/drape/laid.glsl -- a texture of the whole terrain at another size, corners on corners.
 //
 //   gives    colour, linear light
 //   needs    maths/drape.glsl, maths/land.glsl; a colour of any size

@@ -1,8 +1,8 @@
-// texturing/height_blend/mix.glsl -- one texture for the whole land from three, chosen by height.
+// texturing/height_blend/mix.glsl -- one texture for the terrain from three, chosen by height.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl, texturing/height_weights.glsl; a height 0..1, and three
-//            colours for the whole land, each of any size
+//            colours for the whole terrain, each of any size
 //   units    thresholds in grey levels, 0 to 255, as the thesis has them; above 255, never
 //   source   Belaiche 2010, sections 2.3.1 to 2.3.3
 //   tested   tests/glsl/test_height_blend.py, against the thesis's function in NumPy
@@ -31,7 +31,7 @@ vec4 nearest(sampler2D field, ivec2 texel) {
 
 vec4 kernel(ivec2 texel) {
     float level = nearest(height, texel).r * 255.0;
-    // Land that is not a number stays visible as such in view/land.
+    // Terrain that is not a number stays visible as such in view/land.
     if (isnan(level)) level = 0.0;
     // anchor: mixed
     vec3 weights = height_weights(level, vec4(grass_below, rock_from, rock_below, snow_from));

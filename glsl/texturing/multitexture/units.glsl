@@ -2,14 +2,14 @@
 //
 //   gives    colour, linear light, the shadow map in it
 //   needs    maths/angle.glsl, maths/drape.glsl, maths/land.glsl; two images that repeat, and
-//            a light for the whole land, each of any size
+//            a light for the whole terrain, each of any size
 //   units    images stand so many times side by side from west to east; turns in degrees,
 //            counter-clockwise; shifts in images
 //   source   Belaiche 2010, section 2.4
 //   tested   tests/glsl/test_texturing_multitexture.py, against bilinear sampling in NumPy
 //
 // As the thesis says of the hardware of its time: textures and coordinates may differ, the
-// transparency may not. `share` is one for all the land; where it should change with the
+// transparency may not. `share` is one for all the terrain; where it should change with the
 // place, take height_blend or splat.
 #include "maths/angle.glsl"
 #include "maths/drape.glsl"

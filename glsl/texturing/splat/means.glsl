@@ -17,10 +17,9 @@ uniform sampler2D path;   //! input("linear", "repeat", "mipmap")
 const float SMALLEST = 20.0;
 
 vec4 kernel(ivec2 texel) {
-    vec4 found = vec4(textureLod(grass, vec2(0.5), SMALLEST).g,
-                      textureLod(rock, vec2(0.5), SMALLEST).g,
-                      textureLod(snow, vec2(0.5), SMALLEST).g, textureLod(path, vec2(0.5),
-                                                                          SMALLEST).g);
+    vec2 middle = vec2(0.5);
+    vec4 found = vec4(textureLod(grass, middle, SMALLEST).g, textureLod(rock, middle, SMALLEST).g,
+                      textureLod(snow, middle, SMALLEST).g, textureLod(path, middle, SMALLEST).g);
     // A tile that is black has no height anywhere.
     return max(found, vec4(1e-6));
 }

@@ -1,8 +1,8 @@
-// texturing/splat/mix.glsl -- one texture for the whole land from four layers and their weights.
+// texturing/splat/mix.glsl -- one texture for the terrain from four layers by weights.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl, texturing/splat_weights.glsl; weights as of texturing/alpha_map,
-//            four colours for the whole land, and texturing/splat/means of their tiles; each
+//            four colours for the whole terrain, and texturing/splat/means of their tiles; each
 //            of any size
 //   units    weights 0..1; contrast: odds are multiplied by e^contrast for a material twice as
 //            bright as its mean

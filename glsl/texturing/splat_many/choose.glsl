@@ -95,8 +95,8 @@ float claim(int number, vec4 band, vec2 site, vec2 patch_place) {
                * rise(site.y, band.z, slope_fade) * rise(-site.y, -band.w, slope_fade);
     // Noise is 0 on its lattice: on one lattice all materials would tie there.
     vec2 moved = patch_place + float(number) * vec2(0.618, 0.382);
-    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5,
-                                                   64u * seed + SALT + 4u * uint(number));
+    uint own = 64u * seed + SALT + 4u * uint(number);
+    float luck = 0.5 + 1.2 * gradient_fbm_periodic(moved, ivec2(1 << 20), 3, 0.5, own);
     return fits * mix(1.0, clamp(luck, 0.0, 1.0), chance);
 }
 
@@ -123,7 +123,7 @@ void kernel(ivec2 texel, out vec4 chosen, out vec4 weights) {
     float incline = degrees(atan(length(relief
                                         * slope_at(height, place, metres, CENTRAL_DIFFERENCES))));
     vec2 site = vec2(height_at(height, place), incline);
-    // Land that is not a number has the first material, and stays visible as such in the view.
+    // Terrain that is not a number has the first material, and stays visible as such in the view.
     if (!(abs(site.x) < 1e30 && abs(site.y) < 1e30)) site = vec2(band_1.x, 0.0);
     vec2 patch_place = share_of_texel(texel, size) * extent / grain;
     // Where nothing claims, the first material lies.

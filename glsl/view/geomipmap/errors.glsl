@@ -4,7 +4,8 @@
 //   needs    view/geomipmap/tiles.glsl; a height
 //   units    of the height, all four
 //   source   Belaiche 2010, section 2.5; de Boer 2000, "Fast Terrain Rendering Using Geometrical
-//            MipMapping", for the error of a level as the largest height between it and the land
+//            MipMapping", for the error of a level as the largest height between it and the
+//            terrain
 //   tested   tests/glsl/test_view_geomipmap.py, against planes through the corners of each
 //            triangle in float64, with every set of coarser neighbours
 //
@@ -13,7 +14,7 @@
 // A level's triangles lie as fans around the middles of blocks of 2 x 2 quads; a coarser
 // neighbour takes the middle of a block's side out of the fan, so two triangles become one.
 // So each triangle of any such mesh is made of whole triangles of any finer one, and two
-// meshes of a tile lie farthest apart at a node of the finer one, which is on the land. That
+// meshes of a tile lie farthest apart at a node of the finer one, which is on the terrain. That
 // is why an error, taken over all nodes, is the largest jump to any finer level as well, and
 // why a level that fits within a number of pixels changes within that number. What lies on
 // the side itself counts for the neighbour, whose triangles end there too.
@@ -100,9 +101,9 @@ float error_of_two(bool turned) {
             vec2 s = vec2(x, y) / float(TILE);
             float plane = x >= y ? corner + s.x * (east - corner) + s.y * (far - east)
                                  : corner + s.y * (north - corner) + s.x * (far - north);
-            float other = x + y <= TILE ? corner + s.x * (east - corner) + s.y * (north - corner)
-                                        : far + (1.0 - s.x) * (north - far)
-                                                + (1.0 - s.y) * (east - far);
+            float other = x + y <= TILE
+                ? corner + s.x * (east - corner) + s.y * (north - corner)
+                : far + (1.0 - s.x) * (north - far) + (1.0 - s.y) * (east - far);
             worst = max(worst, abs((turned ? other : plane) - node(ivec2(x, y))));
             // end: two
         }

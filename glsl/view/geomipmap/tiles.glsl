@@ -1,13 +1,13 @@
-// view/geomipmap/tiles.glsl -- where the nodes of a tiled land stand.
+// view/geomipmap/tiles.glsl -- where the nodes of a tiled terrain stand.
 //
 //   gives    TILE, cells_of_tiles, share_of_node, height_of_node
 //   needs    maths/drape.glsl
-//   units    nodes counted from the land's south-west corner; shares 0..1 of its sides
+//   units    nodes counted from the terrain's south-west corner; shares 0..1 of its sides
 //   source   Belaiche 2010, section 2.5: tiles of a power of two
 //   tested   tests/glsl/test_view_geomipmap.py
 //
 // A tile is 16 x 16 cells, from 512 triangles down to 2 in five levels. So many tiles lie over a
-// land that a cell is no larger than a texel; where the texels less one are a multiple of 16,
+// terrain that a cell is no larger than a texel; where the texels less one are a multiple of 16,
 // each node stands on a texel, and elsewhere between texels, so that all cells are equal.
 #ifndef VIEW_GEOMIPMAP_TILES
 #define VIEW_GEOMIPMAP_TILES

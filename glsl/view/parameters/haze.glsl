@@ -8,7 +8,7 @@
 #ifndef VIEW_PARAMETERS_HAZE
 #define VIEW_PARAMETERS_HAZE
 uniform float haze = 0.0;                       //! slider(0, 2) step(0.01) group("Sky")
-                                                //! Air between the eye and the land: how much a
-                                                //! land's width of it takes away
+                                                //! Air between the eye and the terrain: how much a
+                                                //! terrain's width of it takes away
 uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") The haze's colour
 #endif

@@ -19,9 +19,10 @@ uniform int grid = 257;                         //! slider(2, 1025) group("Mesh"
                                                 //! Vertices a side of the full grid
 uniform float tolerance = 1.0;                  //! slider(0, 16) step(0.1) unit("pixels")
                                                 //! group("Mesh")
-                                                //! How far a coarser level may lie from the land
+                                                //! How far a coarser level may lie from the
+                                                //! terrain
 uniform float skirt = 0.03;                     //! slider(0, 0.5) step(0.005) group("Mesh")
                                                 //! How far the cut earth reaches below height 0,
-                                                //! over the land's width
+                                                //! over the terrain's width
 uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
 #endif

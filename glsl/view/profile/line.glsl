@@ -2,7 +2,7 @@
 //
 //   gives    height, in metres above sea level, a row of it
 //   needs    terrain/heightfield.glsl; a height
-//   units    ends as shares of the land, east and north
+//   units    ends as shares of the terrain, east and north
 //   source   none: heights between texels, as every kernel reads them
 //   tested   tests/glsl/test_view_profile.py, against interpolation in float64
 #include "terrain/heightfield.glsl"

@@ -1,4 +1,4 @@
-// view/splat/land.glsl -- the land, four textures mixed at every pixel by their weights.
+// view/splat/land.glsl -- the terrain, four textures mixed at every pixel by their weights.
 //
 //   gives    frame, linear light, over an earlier frame
 //   needs    maths/drape.glsl, texturing/splat_weights.glsl, view/splat/surface.glsl,
@@ -48,7 +48,7 @@ vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
 
 vec4 fragment(vec3 position, float mark) {
     vec2 share = position.xy / extent;
-    // Tiles are square on the ground, so a long land has more of them along its length.
+    // Tiles are square on the ground, so a long terrain has more of them along its length.
     vec2 tile = share * vec2(1.0, extent.y / extent.x);
     vec3 one = texture(grass, tile * grass_repeats).rgb;
     vec3 two = texture(rock, tile * rock_repeats).rgb;

@@ -22,9 +22,9 @@
 //
 // Light and air belong to each draw, since (1) is a mean, and the mean of colours in one light
 // is the mean colour in that light. Equal depth: it draws where the first layer is seen. Where two
-// parts of the land tie in depth, both draw, and the second is blended over the first: at a crest,
-// where the slope beyond begins at the depth of the one in front. There alone, in less than one
-// pixel in ten thousand, the picture differs from that of view/splat by more than 2 of 255.
+// parts of the terrain tie in depth, both draw, and the second is blended over the first: at a
+// crest, where the slope beyond begins at the depth of the one in front. There alone, in less than
+// one pixel in ten thousand, the picture differs from that of view/splat by more than 2 of 255.
 #include "maths/drape.glsl"
 #include "maths/number.glsl"
 #include "texturing/splat_weights.glsl"

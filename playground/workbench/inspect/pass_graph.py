@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from playground.sketch.flatten import Fed, Flat, Ref, flatten, leaves_of
+from playground.sketch.flat import Fed, Flat, Ref, leaves_of
+from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch
 
 Edge = tuple[str, str]

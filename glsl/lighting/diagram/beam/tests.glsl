@@ -3,7 +3,7 @@
 //   gives    tests. Rows 0 and 1, the two viewpoints: texel 0 the sun's visible part, how many
 //            tests, place and height; texel 1 the test of the least part (-1: none); texel 2 + k
 //            the beam's height over it, its radius, the part left free, 1 if test k is made. Row
-//            2, texel 0: the lowest height shown, and the land's highest
+//            2, texel 0: the lowest height shown, and the terrain's highest
 //   needs    lighting/diagram/section.glsl, maths/angle.glsl, maths/land.glsl; the range of the
 //            heights as an input
 //   units    metres
@@ -14,7 +14,7 @@
 // The beam is a ray, a cylinder or a cone towards the sun.
 //
 // Test k is over the k-th texel towards the east. Tests end where the beam's lower side is above
-// the highest height, off the land, or after land over its upper side.
+// the highest height, off the terrain, or after terrain over its upper side.
 #include "lighting/diagram/section.glsl"
 #include "maths/angle.glsl"
 #include "maths/land.glsl"
@@ -39,7 +39,7 @@ struct Beam {
     float growth;  // metres a texel
 };
 
-// The part that land of some height leaves free of the beam at a step.
+// The part that terrain of some height leaves free of the beam at a step.
 float part_free(Beam way, int k, float land) {
     float wide = way.radius + float(k) * way.growth;
     float above = way.foot + float(k) * way.climb - land;

@@ -1,7 +1,7 @@
 // lighting/diagram/horizon/angles.glsl -- the horizons of a point, and its part of the sun.
 //
 //   gives    angles: texels 0 and 1, to the right and to the left: the horizon's tangent, its
-//            column (-1 where there is no land), the tangent of the plane square to the normal,
+//            column (-1 where there is no terrain), the tangent of the plane square to the normal,
 //            the angle of the effective horizon; texel 2: the viewpoint's place and height, the
 //            sun's visible part, the same by its disc's area; texel 3: the lowest height shown
 //   needs    lighting/diagram/section.glsl, lighting/sun.glsl, maths/land.glsl,
@@ -13,8 +13,8 @@
 // The point is one of a section of the terrain.
 //
 // The horizon is kept within the hemisphere of the normal: the effective one is the higher of
-// the land's and the plane's. Eq. 3.8 takes the share of the sun's diameter for the share of its
-// disc; the area is given beside it.
+// the terrain's and the plane's. Eq. 3.8 takes the share of the sun's diameter for the share of
+// its disc; the area is given beside it.
 #include "lighting/diagram/section.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"

@@ -49,10 +49,10 @@ const uvec4 WORDS[2 * TEXTS] = uvec4[2 * TEXTS](
     // west #####` = ##### of 90`
     uvec4(0x74736577u, 0x92919020u, 0x20609493u, 0xB1B0203Du),
     uvec4(0x20B4B3B2u, 0x3920666Fu, 0x00006030u, 0u),
-    // east: land #####`, plane #####`
+    // east: terrain #####`, plane #####`
     uvec4(0x74736165u, 0x616C203Au, 0xA020646Eu, 0xA4A3A2A1u),
     uvec4(0x70202C60u, 0x656E616Cu, 0xC2C1C020u, 0x0060C4C3u),
-    // west: land #####`, plane #####`
+    // west: terrain #####`, plane #####`
     uvec4(0x74736577u, 0x616C203Au, 0xB020646Eu, 0xB4B3B2B1u),
     uvec4(0x70202C60u, 0x656E616Cu, 0xD2D1D020u, 0x0060D4D3u),
     // sun at ####`, ####` wide
@@ -131,7 +131,7 @@ vec4 kernel(ivec2 texel) {
             colour = mix(colour, FREE, 0.28 * sector_cover(mirrored, eye, ARC * u, from, to));
             colour = mix(colour, FREE, arc_cover(mirrored, eye, ARC * u, from, to, 1.6 * u));
         }
-        // What the plane takes away above the land's own horizon.
+        // What the plane takes away above the terrain's own horizon.
         if (shows == EFFECTIVE && facts.z > facts.x) {
             colour = mix(colour, HIDDEN, 0.45
                          * sector_cover(mirrored, eye, HEMISPHERE * u, max(land, -HALF_PI),
@@ -153,29 +153,29 @@ vec4 kernel(ivec2 texel) {
             vec2 touch = node_on_paper(height, section, int(facts.y));
             vec2 way = way_of(atan(facts.x), side);
             colour = mix(colour, FREE, line_cover(place, eye, touch, 1.6 * u));
-            colour = mix(colour, FREE, dash_cover(place, touch, eye + farthest * way, 1.4 * u,
-                                                  7.0 * u));
+            float dashes = dash_cover(place, touch, eye + farthest * way, 1.4 * u, 7.0 * u);
+            colour = mix(colour, FREE, dashes);
             colour = mix(colour, FREE, dot_cover(place, touch, 4.0 * u));
         }
         if (shows != HORIZON_ANGLE && facts.z > facts.x) {
             vec2 way = way_of(facts.w, side);
-            colour = mix(colour, HIDDEN, dash_cover(place, eye, eye + farthest * way, 1.6 * u,
-                                                    9.0 * u));
+            float dashes = dash_cover(place, eye, eye + farthest * way, 1.6 * u, 9.0 * u);
+            colour = mix(colour, HIDDEN, dashes);
         }
     }
     if (shows == EFFECTIVE) {
-        colour = mix(colour, PARTLY * 0.7, line_cover(place, eye - HEMISPHERE * u * along,
-                                                      eye + HEMISPHERE * u * along, 1.6 * u));
+        vec2 half_line = HEMISPHERE * u * along;
+        float level = line_cover(place, eye - half_line, eye + half_line, 1.6 * u);
+        colour = mix(colour, PARTLY * 0.7, level);
         colour = mix(colour, INK, arrow_cover(place, eye, eye + NORMAL * u * normal, 2.0 * u,
                                               11.0 * u));
     }
     if (shows == SUN_SEEN) {
-        colour = mix(colour, PARTLY * 0.8, line_cover(place, eye,
-                                                      eye + far * cos(0.5 * radians(diameter))
-                                                      * way_of(upper, 1.0), 1.2 * u));
-        colour = mix(colour, PARTLY * 0.8, line_cover(place, eye,
-                                                      eye + far * cos(0.5 * radians(diameter))
-                                                      * way_of(lower, 1.0), 1.2 * u));
+        float length_of_edge = far * cos(0.5 * radians(diameter));
+        vec2 to_upper = eye + length_of_edge * way_of(upper, 1.0);
+        vec2 to_lower = eye + length_of_edge * way_of(lower, 1.0);
+        colour = mix(colour, PARTLY * 0.8, line_cover(place, eye, to_upper, 1.2 * u));
+        colour = mix(colour, PARTLY * 0.8, line_cover(place, eye, to_lower, 1.2 * u));
     }
     colour = mix(colour, SKY, dot_cover(place, eye, 6.0 * u));
     colour = mix(colour, INK, dot_cover(place, eye, 4.6 * u));

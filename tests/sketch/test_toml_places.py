@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from playground.sketch.toml_lines import key_lines, line_of
+from playground.sketch.toml_places import TomlPlaces
 
 TEXT = '''\
 # a comment = 1
@@ -84,15 +84,15 @@ def expected() -> dict[tuple[str | int, ...], int]:
 
 
 def test_every_key_has_its_line():
-    assert key_lines(TEXT) == expected()
+    assert TomlPlaces(TEXT).lines == expected()
 
 
 def test_a_place_without_a_line_has_that_of_what_is_around_it():
-    lines = key_lines(TEXT)
-    assert line_of(lines, ("pass", 0, "set", "nothing", "there")) == 18
-    assert line_of(lines, ("pass", 7, "name")) == 16  # the first of the list
-    assert line_of(lines, ("nothing", 7, "name")) == 0
-    assert line_of(lines, ()) == 0
+    lines = TomlPlaces(TEXT)
+    assert lines.line(("pass", 0, "set", "nothing", "there")) == 18
+    assert lines.line(("pass", 7, "name")) == 16  # the first of the list
+    assert lines.line(("nothing", 7, "name")) == 0
+    assert lines.line(()) == 0
 
 
 @pytest.mark.parametrize(
@@ -100,8 +100,8 @@ def test_a_place_without_a_line_has_that_of_what_is_around_it():
     ["", "\n\n", "[", "[[", "[[pass]", "a", "a =", "a = [", "a = {", "= 1", 'a = "', "[]", "a.=1", "]", "}"],
 )
 def test_what_is_not_toml_gives_what_there_is(text):
-    assert isinstance(key_lines("first = 1\n" + text), dict)
-    assert key_lines("first = 1\n" + text)["first",] == 1
+    places = TomlPlaces("first = 1\n" + text)
+    assert places.lines["first",] == 1 and places.pairs["first",].value == len("first = ")
 
 
 def test_any_text_ends_soon_and_raises_nothing():
@@ -113,7 +113,7 @@ def test_any_text_ends_soon_and_raises_nothing():
             letters[at : at + chance.randint(0, 3)] = chance.choice(
                 ["", "[", '"', "'''", "{", "=", "\n", "\\", "}"]
             )
-        key_lines("".join(letters))
-    key_lines("a = " + "[" * 100_000)
-    key_lines("a = [" + "1, " * 100_000 + "]")
-    key_lines("a = {" + "b = {" * 50_000)
+        TomlPlaces("".join(letters))
+    TomlPlaces("a = " + "[" * 100_000)
+    TomlPlaces("a = [" + "1, " * 100_000 + "]")
+    TomlPlaces("a = {" + "b = {" * 50_000)

@@ -1,12 +1,12 @@
-"""`mend` knows the texts that drivers really print, and gives advice that can be followed."""
+"""`advice` knows the texts that drivers really print, and gives advice that can be followed."""
 
 from __future__ import annotations
 
 import re
 
-import pytest
+from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, advice, complaint
 
-from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, complaint, mend
+from ..cases import each
 
 # Texts as users saw them: in public threads (named), or provoked on Mesa 22.3.6 with
 # glcontext 3.1 and GLFW 3.4, or (binary) as they stand in those two for other platforms.
@@ -98,7 +98,7 @@ MESSAGES = [
 PLATFORMS = ["linux", "darwin", "win32"]
 
 
-@pytest.mark.parametrize(("name", "message"), MESSAGES)
+@each(("name", "message"), MESSAGES)
 def test_a_real_message_is_known(name, message):
     found = complaint(message)
     assert found is not None
@@ -109,44 +109,42 @@ def test_every_complaint_of_the_table_has_a_real_message():
     assert {c.name for c in COMPLAINTS} == {name for name, _ in MESSAGES}
 
 
-@pytest.mark.parametrize("platform", PLATFORMS)
-@pytest.mark.parametrize(
-    "message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"})
-)
+@each("platform", PLATFORMS)
+@each("message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"}))
 def test_the_answer_is_one_line_of_whole_sentences(message, platform):
-    answer = mend(message, platform, {})
+    answer = advice(message, platform, {})
     assert "\n" not in answer
     assert re.fullmatch(r"[A-Zm_].*\.", answer), answer
     assert "  " not in answer
 
 
-@pytest.mark.parametrize("platform", ["darwin", "win32"])
-@pytest.mark.parametrize(("name", "message"), MESSAGES)
+@each("platform", ["darwin", "win32"])
+@each(("name", "message"), MESSAGES)
 def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message, platform):
-    answer = mend(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
+    answer = advice(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
     assert "apt" not in answer.split()
     assert "dnf" not in answer.split()
     assert "WSL" not in answer
 
 
-@pytest.mark.parametrize("platform", PLATFORMS)
+@each("platform", PLATFORMS)
 def test_an_unknown_message_gets_the_general_advice(platform):
     assert complaint("the cat sat on the keyboard") is None
-    assert mend("the cat sat on the keyboard", platform, {}).startswith("OpenGL did not start")
+    assert advice("the cat sat on the keyboard", platform, {}).startswith("OpenGL did not start")
 
 
 def test_an_unknown_platform_is_taken_for_linux():
-    assert mend("libEGL.so not loaded", "freebsd14", {}) == mend("libEGL.so not loaded", "linux", {})
+    assert advice("libEGL.so not loaded", "freebsd14", {}) == advice("libEGL.so not loaded", "linux", {})
 
 
-@pytest.mark.parametrize("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
+@each("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
 def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_developers(message):
-    answer = mend(message, "linux", {})
+    answer = advice(message, "linux", {})
     assert f"apt install {' '.join(DEBIAN_RENDER)}" in answer
     assert "-dev" not in answer
 
 
-@pytest.mark.parametrize(
+@each(
     ("message", "environ", "expected"),
     [
         ("found 0 devices", {"NVIDIA_VISIBLE_DEVICES": "all"}, "NVIDIA_DRIVER_CAPABILITIES=all"),
@@ -171,10 +169,10 @@ def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_
     ],
 )
 def test_the_environment_tells_the_likelier_cause(message, environ, expected):
-    assert expected in mend(message, "linux", environ)
-    assert len(mend(message, "linux", {})) < len(mend(message, "linux", environ))
+    assert expected in advice(message, "linux", environ)
+    assert len(advice(message, "linux", {})) < len(advice(message, "linux", environ))
 
 
 def test_a_container_without_an_nvidia_card_is_not_told_about_one():
-    answer = mend("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
+    answer = advice("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
     assert "NVIDIA" not in answer

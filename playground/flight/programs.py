@@ -1,0 +1,32 @@
+"""Compile the programs that draw a flight; their functions are in ``glsl/flight/scene.glsl``, with tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.paths import GLSL
+from playground.sketch.source import read_source
+
+if TYPE_CHECKING:
+    import moderngl
+
+AIR_DIRECTIONS = 64
+"""Directions that the air's colour is computed for."""
+
+_SHADERS = Path(__file__).resolve().parent / "shaders"
+_BEGINNING = f"#version 330\nconst float AIR_DIRECTIONS = {AIR_DIRECTIONS}.0;\n"
+
+
+def terrain_program(ctx: moderngl.Context) -> moderngl.Program:
+    """Compile the program that draws a part."""
+    return ctx.program(vertex_shader=_read("terrain.vert"), fragment_shader=_read("terrain.frag"))
+
+
+def screen_program(ctx: moderngl.Context, name: str) -> moderngl.Program:
+    """Compile a program that fills its target, by the name of its fragment shader."""
+    return ctx.program(vertex_shader=_read("screen.vert"), fragment_shader=_read(f"{name}.frag"))
+
+
+def _read(name: str) -> str:
+    return _BEGINNING + read_source(_SHADERS / name, (_SHADERS, GLSL)).code

@@ -1,0 +1,24 @@
+"""Read the playground's own GLSL: what wraps a kernel's text, and small programs beside the passes.
+
+A file ending in .vert or .frag is a whole shader; of the others each is a part of one. ``$name`` in a
+part is filled in: names and types that a kernel's header declares.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from string import Template
+
+_FOLDER = Path(__file__).parent / "shaders"
+
+
+@cache
+def own_shader(name: str) -> str:
+    """Return the text of a file."""
+    return (_FOLDER / name).read_text(encoding="utf-8")
+
+
+def own_part(part: str, **names: str) -> str:
+    """Return the text of a part with its names filled in, without its last line's end."""
+    return Template(own_shader(part)).substitute(names).rstrip("\n")

@@ -1,0 +1,121 @@
+"""What flattening a sketch gives: passes and loops, wired and in order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from playground.errors import SketchError, nearest
+from playground.sketch.follows import Rule
+from playground.sketch.model import Graph, Kernel, PassSpec, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Ref:
+    """A texture: an output of a leaf pass."""
+
+    path: str  # of the leaf, "height.sum"
+    output: str
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.output}"
+
+
+@dataclass(frozen=True, slots=True)
+class Fed:
+    """A texture that a loop feeds back: its own output of the step before."""
+
+    loop: str  # path of the loop
+    name: str  # of the fed input
+
+
+Source = Ref | Fed
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """One kernel, draw or source to run."""
+
+    path: str
+    kernel: Kernel
+    values: tuple[tuple[str, Value], ...]
+    inputs: tuple[tuple[str, Source | None], ...]  # None: its fallback, or no initial state
+    folder: str  # where its files are looked for
+    spec: PassSpec
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Passes that run over and over, some inputs fed by outputs of the step before."""
+
+    path: str
+    repeat: str
+    body: tuple[Leaf | Loop, ...]
+    feedback: tuple[tuple[str, Source | None, Ref], ...]  # input, what the first step reads, output
+    spec: PassSpec
+
+
+Node = Leaf | Loop
+
+
+@dataclass(frozen=True)
+class Flat:
+    """A sketch without nesting."""
+
+    nodes: tuple[Node, ...]  # in an order that wiring allows
+    specs: dict[str, PassSpec]  # every pass at every level, by path
+    graphs: dict[str, Graph]  # every technique of several passes, by path; "" is the sketch
+    values: dict[str, Value]  # every leaf parameter, by path
+    outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
+    wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
+    shape: Shape  # the same before any value is set
+    folder: str
+
+    @cached_property
+    def leaves(self) -> list[Leaf]:
+        """Every leaf, those inside loops included."""
+        return leaves_of(self.nodes)
+
+    def user(self, path: str) -> PassSpec:
+        """Return the sketch's own pass that a pass at any level belongs to."""
+        return self.specs[path.partition(".")[0]]
+
+    def ref(self, text: str, sketch: str) -> Ref:
+        """Return the texture that ``pass[.inner…][:output]`` stands for; raise ``SketchError``."""
+        path, _, output = text.partition(":")
+        if path not in self.outputs:
+            raise SketchError(f"no pass '{path}' in sketch {sketch}{nearest(path, self.outputs)}")
+        found = self.outputs[path]
+        if not output:
+            return found.get(path.rpartition(".")[2], next(iter(found.values())))
+        if output not in found:
+            raise SketchError(f"pass '{path}' has no output '{output}'{nearest(output, found)}")
+        return found[output]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A flat graph before any value is set."""
+
+    nodes: tuple[Node, ...]  # leaves without values and folder
+    specs: dict[str, PassSpec]
+    graphs: dict[str, Graph]
+    outputs: dict[str, dict[str, Ref]]
+    wires: dict[str, dict[str, Source | None]]
+    paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
+    constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
+    copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
+    rules: tuple[Rule, ...]  # of parameters that follow others until they are set
+    readers: dict[str, set[str]]  # path of a value → the leaves that have it
+    targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
+
+
+def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
+    """Return every leaf, those inside loops included."""
+    found: list[Leaf] = []
+    for node in nodes:
+        if isinstance(node, Loop):
+            found += leaves_of(node.body)
+        else:
+            found.append(node)
+    return found
