@@ -1,7 +1,7 @@
 // noise/columns.glsl -- octaves of Perlin noise along a column of texels, as polynomials.
 //
-//   gives    perlin, by rows; Column, Rows, Span, octave_span, column_end, column_add, column_moved,
-//            column_height
+//   gives    perlin, by rows; Column, Rows, Span, octave_span, column_end, column_add,
+//            column_moved, column_height
 //   needs    noise/gradient.glsl, noise/octaves.glsl, which it must come before
 //   units    places in cells of the first octave; rows of texels
 //   source   derived here from noise/gradient.glsl
