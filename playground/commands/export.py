@@ -156,19 +156,19 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         jobs = [prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps) for path in paths]
         for job in jobs:
             done = run(engine, job)
-            note(f"{done.path.name}: {done.said}")
+            note(f"{done.path.name}: {done.summary}")
             for warning in done.warnings:
                 complain(f"{done.path.name}: {warning}", "warning")
-            for path in (done.path, *done.beside):
+            for path in (done.path, *done.sidecars):
                 print(path)
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.capture.export_options import besides
+    from playground.capture.export_options import sidecar_paths
 
     taken: set[Path] = set()
     for path in paths:
-        files = {file.resolve(): file for file in (path, *besides(path))}
+        files = {file.resolve(): file for file in (path, *sidecar_paths(path))}
         twins = [named for file, named in files.items() if file in taken]
         if twins:
             raise ParameterError(f"--to {path}: {min(twins)} would be written twice; choose another name")

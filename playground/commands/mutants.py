@@ -31,7 +31,7 @@ from playground.terminal import note, painted, print_json, print_table, progress
 if TYPE_CHECKING:
     from playground.shots.mutants.repeatability import Redrawn
     from playground.shots.mutants.suite import Result
-    from playground.shots.suite import Taken
+    from playground.shots.suite import RenderedShot
 
 HELP = help_text(
     "Break a sketch in every known way, and see whether the comparison of its pictures tells.\n\n"
@@ -73,7 +73,7 @@ def mutants(
     device: DeviceOption = "",
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
-    from playground.shots.mutants.repeatability import again
+    from playground.shots.mutants.repeatability import redraw
     from playground.shots.mutants.suite import Bench, named, shot_of
     from playground.sketch.load import load
 
@@ -97,7 +97,7 @@ def mutants(
     if pictures is not None:
         _write(pictures, bench.expected, results)
     with progress("drawn again", count) if count else nullcontext(lambda: None) as advance:
-        for drawn in again(loaded, first, expected, info, count, **asdict(renderer)):
+        for drawn in redraw(loaded, first, expected, info, count, **asdict(renderer)):
             redrawn.append(drawn)
             advance()
     if as_json:
@@ -144,8 +144,8 @@ def _row(result: Result) -> tuple[str, ...]:
     found = result.comparison
     assert found is not None
     numbers = ["", ""] if found.verdict in ("blank", "size") else [str(found.most), f"{result.share:.2%}"]
-    seen = result.seen
-    numbers += ["", ""] if seen is None else [f"{seen.mean:.3f}", f"{seen.tile:.3f}"]
+    perceived = result.perceived
+    numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]
     words = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
     return (result.mutant.name, *numbers, *words, result.mutant.broke)
 
@@ -191,7 +191,7 @@ def _make(folder: Path) -> None:
         raise DataError(f"no folder can be made: {error.strerror}", file=shown(folder)) from error
 
 
-def _write(folder: Path, expected: Mapping[str, Taken], results: Sequence[Result]) -> None:
+def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[Result]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
     from playground.images.files import write_png
     from playground.shots.compare import difference_picture

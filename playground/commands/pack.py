@@ -46,7 +46,7 @@ def pack(
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:
     """Yield the sketch's reference pictures, and where they go in its folder."""
-    from playground.shots.names import SCREENSHOTS
+    from playground.shots.plugin_constants import SCREENSHOTS
     from playground.shots.references import home_of
 
     try:

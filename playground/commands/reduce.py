@@ -41,7 +41,7 @@ from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
     from playground.reduce.failures import Finding
-    from playground.reduce.initial_case import Beginning, Question
+    from playground.reduce.initial_case import InitialCase, Question
     from playground.reduce.output import Account
     from playground.reduce.search import Search, State
 
@@ -145,8 +145,6 @@ def reduce(
     }
     kind = _kind([name for name, given in kinds.items() if given], shot)
     renderer: Renderer = ctx.obj.or_else(software, device)
-    if kind == "shot" and (settings or size or time or steps):
-        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
     loaded = load(sketch)
     moment = moment_of(
         loaded,
@@ -155,6 +153,8 @@ def reduce(
         steps=read_steps(steps),
         time=read_seconds(time),
     )
+    if kind == "shot" and (settings or size or time or steps):
+        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
     question = Question(
         sketch=loaded if kind == "shot" else moment.sketch,
         kind=kind,
@@ -224,7 +224,7 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         probe, found = beginning.probe, beginning.finding
         # The message of a refusal is its kind; of the rest, the details say where and how much.
         note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, tell=tell)
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=tell)
         stopped = False
         try:
             search.run()
@@ -246,13 +246,13 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
 
 
 def _account(
-    question: Question, beginning: Beginning, search: Search, finding: Finding, folder: Path
+    question: Question, beginning: InitialCase, search: Search, finding: Finding, folder: Path
 ) -> Account:
     """Return what the text in the folder says."""
     from playground.reduce.output import Account, to_reproduce
 
     return Account(
-        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
         sketch=question.sketch.name,
         before=beginning.case,
         after=search.best,

@@ -262,7 +262,7 @@ def test_a_film_that_cannot_be_read_back_is_kept(
         any_engine,
         Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
         tmp_path / "film.mp4",
-        say=said.append,
+        notice=said.append,
     )
     assert decoded(path).shape == (3, 36, 64, 3)
     assert len(said) == 1 and "was written, but could not be checked" in said[0]

@@ -39,8 +39,8 @@ def test_what_a_sweep_says(sketch):
     assert values("view.sea=true,false") == (True, False)
     assert values("view.tone=none,film") == (0, 2)
     assert values("size=33,65") == ((33, 33), (65, 65))
-    assert read_sweep(sketch, "view.tone=none,film").said == ("none", "film")
-    assert read_sweep(sketch, "light.sun_colour=#ff0000;#00ff00").said == ("#ff0000", "#00ff00")
+    assert read_sweep(sketch, "view.tone=none,film").labels == ("none", "film")
+    assert read_sweep(sketch, "light.sun_colour=#ff0000;#00ff00").labels == ("#ff0000", "#00ff00")
     assert len(read_sweep(sketch, "view.haze=0..1").values) == 9
 
 

@@ -153,12 +153,12 @@ def test_numbers_that_are_none_are_magenta() -> None:
 
 
 def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
-    graph = bare.actions.see.graph
+    graph = bare.bench.inspection.graph
     bare.turn(5)
     assert graph.thumbnails.made == 0 and "node colour" not in bare.places
     bare.key(imgui.Key.g)
     bare.turn(40)
-    assert graph.thumbnails.made == 3 and bare.actions.see.patience(0.0) > 1e6
+    assert graph.thumbnails.made == 3 and bare.bench.inspection.patience(0.0) > 1e6
     bare.click("node colour")
     assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
     bare.click("node view")
@@ -190,7 +190,7 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
         for label in "Undo Redo History Random A/B Reset Copy Save PNG Capture Graph".split():
             x, _, width, _ = bare.places[label]
             assert margin <= x and x + width <= bare.panel.width * scale - margin, label
-        graph = bare.actions.see.graph
+        graph = bare.bench.inspection.graph
         bare.click("Graph")
         assert graph.on
         bare.click("Graph")

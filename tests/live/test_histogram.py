@@ -223,8 +223,8 @@ def test_ticks_are_round_and_few(low: float, high: float, marks: tuple[float, ..
 
 
 def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
-    see = bare.actions.see
-    bare.actions.show("height:height")
+    see = bare.bench.inspection
+    bare.bench.session.show("height:height")
     bare.turn(5)
     assert see.counter.latest is None and see.patience(0.0) > 1e6
     bare.click("Histogram###histogram")

@@ -209,16 +209,16 @@ def test_a_key_brings_the_box_and_takes_it_away(folder: Path, any_engine: Engine
     try:
         imgui.get_io().add_mouse_pos_event(800, 600)
         bare.turn(2)
-        assert bare.actions.see.inspector.reads == 0
+        assert bare.bench.inspection.inspector.reads == 0
         bare.key(imgui.Key.i)
         bare.turn(2)
-        assert bare.actions.see.inspector.reads == 1 and not bare.actions.see.inspector.inner
+        assert bare.bench.inspection.inspector.reads == 1 and not bare.bench.inspection.inspector.inner
         imgui.get_io().add_mouse_pos_event(100, 300)  # over the panel
         bare.turn(3)
-        assert bare.actions.see.inspector.reads == 1
+        assert bare.bench.inspection.inspector.reads == 1
         bare.key(imgui.Key.i)
         imgui.get_io().add_mouse_pos_event(800, 500)
         bare.turn(3)
-        assert bare.actions.see.inspector.reads == 1
+        assert bare.bench.inspection.inspector.reads == 1
     finally:
         bare.close()

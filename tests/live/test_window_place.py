@@ -25,7 +25,7 @@ def opened(live):
     turn(live)
     other = Path(sys.argv[2])
     if other.is_file() and live.session.path != other:
-        live.actions.open(other)
+        live.bench.commands.open(other)
 app.Live._turn = opened
 sys.exit(app.run(sys.argv[1], time_limit=300))
 """

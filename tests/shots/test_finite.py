@@ -13,7 +13,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite, not_finite_in
-from playground.shots.suite import shots_of, take
+from playground.shots.suite import render_shot, shots_of
 from playground.sketch.load import load
 
 from ..cases import each
@@ -265,10 +265,10 @@ def test_gaps_that_a_source_fills_are_no_alarm(ctx: moderngl.Context, tmp_path: 
 def test_a_shot_that_is_taken_says_so(drawing: Engine, folder: Path) -> None:
     (folder / "chain.toml").write_text(f'{SKETCH}[[shot]]\nname = "one"\nsize = [32, 16]\n')
     (case,) = shots_of([folder / "chain.toml"])
-    assert take(drawing, case).not_finite == ""
+    assert render_shot(drawing, case).not_finite == ""
     write(folder, "middle:r32f", ILL, NAN)
     (case,) = shots_of([folder / "chain.toml"])
-    assert take(drawing, case).not_finite.startswith("pass 'middle', output 'middle': NaN")
+    assert render_shot(drawing, case).not_finite.startswith("pass 'middle', output 'middle': NaN")
 
 
 def test_it_leaves_no_object_and_no_error_behind(
