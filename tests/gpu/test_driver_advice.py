@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import re
+import runpy
+from pathlib import Path
 
+from playground.gpu import driver_advice
 from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, advice, complaint
 
 from ..cases import each
+
+ROOT = Path(__file__).resolve().parents[2]
 
 # Texts as users saw them: in public threads (named), or provoked on Mesa 22.3.6 with
 # glcontext 3.1 and GLFW 3.4, or (binary) as they stand in those two for other platforms.
@@ -176,3 +181,15 @@ def test_the_environment_tells_the_likelier_cause(message, environ, expected):
 def test_a_container_without_an_nvidia_card_is_not_told_about_one():
     answer = advice("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
     assert "NVIDIA" not in answer
+
+
+def test_play_finds_its_advice_and_its_packages_here() -> None:
+    """It runs this file alone, before anything is installed, by a path that no import checks."""
+    text = (ROOT / "play").read_text(encoding="utf-8")
+    named = set(re.findall(r'"\$root/(playground/gpu/\w+\.py)"', text))
+    assert named == {Path(driver_advice.__file__).relative_to(ROOT).as_posix()}
+    taken = {
+        *re.findall(r'\["(\w+)"\]', text),
+        *re.findall(r"\b(?:DEBIAN|FEDORA)_(?:RENDER|WINDOW|TEST)\b", text),
+    }
+    assert taken <= set(runpy.run_path(str(ROOT / named.pop()))) and len(taken) >= 5

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from imgui_bundle import imgui
 
-from playground.engine.engine import Engine
 from playground.workbench.interface import SIZES, InterfaceSize, remembered_size
 
+from ..cases import each
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
 
 
-@pytest.fixture
-def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    made = Bare(any_engine, tmp_path / "land.glsl")
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height()}
 
 
-@pytest.mark.parametrize(
+@each(
     ("keys", "size"),
     [
         ((imgui.Key.equal,), 1.1),

@@ -1,0 +1,41 @@
+"""Which shots earn their place: what is changed in a shader, and who is named as not needed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playground.shots.mutants.render_mutants import rendering_mutants
+from playground.shots.suite import ShotCase
+from playground.sketch.model import Graph, Shot, Sketch
+
+from .everyday import EACH, changes_of, without_a_place
+
+TEXT = """// 2.5 + 1.5 is a comment
+uniform float gain = 3.5;  //! slider(0, 9)
+float f(float x) {
+    for (int i = 0; i < 9; i++) x += 1.5;
+    return max(x, 0.25) - 4.5 * x;
+}
+"""
+
+
+def test_a_change_is_of_the_code_and_of_no_declaration_or_loop(tmp_path: Path) -> None:
+    path = tmp_path / "f.glsl"
+    path.write_text(TEXT, encoding="utf-8")
+    changes = changes_of(str(path))
+    assert len(changes) == EACH
+    for change in changes:
+        before, after = TEXT.splitlines(), change.text().splitlines()
+        assert [n for n, (a, b) in enumerate(zip(before, after, strict=True), 1) if a != b] == [5]
+    assert changes[0].text().splitlines()[4] == "    return min(x, 0.25) - 4.5 * x;"
+
+
+def test_who_kills_nothing_more_is_not_needed_but_a_sketch_keeps_one() -> None:
+    defects = list(rendering_mutants()[:2])
+
+    def case(sketch: str, shot: str) -> ShotCase:
+        return ShotCase(Sketch(sketch, sketch, "", Graph(sketch, sketch, ())), Shot(shot))
+
+    one, other, alone, second = case("a", "one"), case("a", "other"), case("b", "alone"), case("b", "second")
+    killed = {other: [], one: defects, alone: [], second: []}
+    assert list(without_a_place(killed)) == [other, second]
