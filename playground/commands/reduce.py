@@ -145,8 +145,6 @@ def reduce(
     }
     kind = _kind([name for name, given in kinds.items() if given], shot)
     renderer: Renderer = ctx.obj.or_else(software, device)
-    if kind == "shot" and (settings or size or time or steps):
-        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
     loaded = load(sketch)
     moment = moment_of(
         loaded,
@@ -155,6 +153,8 @@ def reduce(
         steps=read_steps(steps),
         time=read_seconds(time),
     )
+    if kind == "shot" and (settings or size or time or steps):
+        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
     question = Question(
         sketch=loaded if kind == "shot" else moment.sketch,
         kind=kind,

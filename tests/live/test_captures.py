@@ -125,7 +125,7 @@ def test_a_process_that_dies_is_told(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
-    bench.captures.working._process._process.kill()
+    bench.captures.working._worker._process.kill()
     wait(bench)
     assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 
