@@ -191,20 +191,9 @@ def _judged(
     actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, same: bool, strict: bool
 ) -> Judgement:
     """Judge by one reference of the same renderer; ``strict`` allows one level whoever drew it."""
-    comparison = compare(actual, reference.pixels, TOLERANCE)
-    tier = SAME_BUILD if same else OTHER_BUILD
-    differences = fingerprint.differences(reference.fingerprint)
-    found = Judgement(
-        word=comparison.verdict,
-        comparison=comparison,
-        sentence=str(comparison),
-        tier=tier,
-        fingerprint=fingerprint,
-        differences=differences,
-    )
-    if comparison.verdict in ("blank", "size"):
-        return replace(found, tier="")
-    if strict or comparison.verdict == "same":
+    found = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD)
+    comparison = found.comparison
+    if strict or comparison.verdict in _FINAL:
         return found
     most = f"differs: max difference {comparison.most} of 255"
     if comparison.most > OTHER_TOLERANCE:
@@ -232,19 +221,9 @@ def _judged(
 
 def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference) -> Judgement:
     """Judge by a reference of another renderer."""
-    comparison = compare(actual, reference.pixels, TOLERANCE)
-    differences = fingerprint.differences(reference.fingerprint)
-    found = Judgement(
-        word=comparison.verdict,
-        comparison=comparison,
-        sentence=str(comparison),
-        tier=OTHER_RENDERER,
-        fingerprint=fingerprint,
-        differences=differences,
-    )
-    if comparison.verdict in ("blank", "size"):
-        return replace(found, tier="")
-    if comparison.verdict == "same":  # to within one level: nothing is left to be perceived
+    found = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER)
+    comparison = found.comparison
+    if comparison.verdict in _FINAL:
         return found
     difference = flip(actual, reference.pixels)
     tile, place = difference.worst_tile()
@@ -260,6 +239,24 @@ def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, referenc
     passed = replace(comparison, verdict="same")
     sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
     return replace(found, word="same", comparison=passed, sentence=sentence, perceived=perceived)
+
+
+_FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier changes
+
+
+def _by_pixels(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, tier: str
+) -> Judgement:
+    """Return the judgement by `TOLERANCE` alone."""
+    comparison = compare(actual, reference.pixels, TOLERANCE)
+    return Judgement(
+        word=comparison.verdict,
+        comparison=comparison,
+        sentence=str(comparison),
+        tier="" if comparison.verdict in ("blank", "size") else tier,
+        fingerprint=fingerprint,
+        differences=fingerprint.differences(reference.fingerprint),
+    )
 
 
 def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.bool_]:

@@ -75,7 +75,7 @@ def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
     assert report.error is None
 
 
-def test_the_child_is_warm(sandbox, folder):
+def test_the_worker_is_warm(sandbox, folder):
     """The same process answers, mistakes between or not: only its first answer waits for a context."""
     sandbox.run(TrySketch(folder.one(GOOD)))
     pid = sandbox._workers.worker.pid
@@ -92,7 +92,7 @@ def test_a_mistake_comes_back_with_its_place(sandbox, folder):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_it_tries_the_smallest_land_that_is_accepted(sandbox, folder):
+def test_it_tries_the_smallest_terrain_that_is_accepted(sandbox, folder):
     """A kernel that takes powers of two only is tried small: whole, its two textures take 8 GiB."""
     kernel = GOOD.replace('r32f"', 'rgba32f", accepts = "2**n", repeat = "log2(size.x)"')
     kernel = kernel.replace("float kernel", "vec4 kernel").replace("float(texel.x)", "vec4(1)")
@@ -111,7 +111,7 @@ def test_a_library_file_is_compiled_alone(sandbox, folder):
     assert report.error.diagnostics[0].line == 2
 
 
-def test_what_crashes_the_compiler_kills_the_child_only(sandbox, folder):
+def test_what_crashes_the_compiler_kills_the_worker_only(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert not report.ok
     assert isinstance(report.error, SandboxCrash)
@@ -147,7 +147,7 @@ def test_a_crash_says_how_and_where(sandbox, folder, number, said):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def test_a_child_that_died_is_replaced_before_it_is_needed(sandbox, folder):
+def test_a_worker_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert isinstance(report.error, SandboxCrash)
     assert sandbox._workers.worker.runs and not sandbox._workers.worker.busy
@@ -156,7 +156,7 @@ def test_a_child_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     assert sandbox._workers.worker.pid == pid
 
 
-def test_a_child_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
+def test_a_worker_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     """It is dead when it is handed something, or dies just then: another is asked."""
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
     os.kill(sandbox._workers.worker.pid, signal.SIGKILL)
@@ -256,7 +256,7 @@ def test_submit_never_waits_and_the_newest_wins(folder):
         assert sandbox.poll() is None
 
 
-def test_a_child_that_takes_long_has_a_spare_that_takes_its_place(folder):
+def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
         sandbox.submit(TrySketch(folder.one(SLOW)))

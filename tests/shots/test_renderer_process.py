@@ -1,4 +1,4 @@
-"""The child process that takes pictures: the right ones, nothing left behind here, each way it can end."""
+"""The process that renders shots: the right images, nothing left behind here, each way it can end."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_a_case_is_named_by_sketch_and_shot(cases: dict[str, ShotCase]) -> None:
     assert [name for name in cases] == ["plain", "later", "dim", "short", "first"]
 
 
-def test_the_child_draws_what_an_engine_here_draws(
+def test_the_worker_draws_what_an_engine_here_draws(
     cases: dict[str, ShotCase], renderer: RendererProcess, any_engine: Engine
 ) -> None:
     if any_engine.info.slug != renderer.renderer.slug:
@@ -144,7 +144,7 @@ def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
     assert renderer.render(cases["plain"]).size == (48, 32)
 
 
-def test_no_software_renderer_is_said_each_time(
+def test_a_missing_software_renderer_is_reported_each_time(
     monkeypatch: pytest.MonkeyPatch, cases: dict[str, ShotCase]
 ) -> None:
     monkeypatch.setenv("GALLIUM_DRIVER", "no-such-driver")
@@ -154,7 +154,7 @@ def test_no_software_renderer_is_said_each_time(
                 renderer.render(cases["plain"])
 
 
-def test_a_studio_that_took_nothing_starts_nothing() -> None:
+def test_a_renderer_process_that_rendered_nothing_starts_nothing() -> None:
     with RendererProcess() as renderer:
         assert renderer.process is None
 
@@ -243,7 +243,7 @@ ENDS = {
 }
 
 
-def test_each_end_has_its_words_and_the_next_shot_is_drawn(fake: RendererProcess) -> None:
+def test_each_end_has_its_message_and_the_next_shot_is_drawn(fake: RendererProcess) -> None:
     for name, (kind, words) in ENDS.items():
         with pytest.raises(kind, match=words):
             fake.render(made_up(name))
@@ -262,7 +262,7 @@ def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: RendererProces
     assert fake.render(made_up("next")).drawn == "next"
 
 
-def test_a_child_that_cannot_start_is_tried_twice_and_no_more(fake: RendererProcess) -> None:
+def test_a_worker_that_cannot_start_is_tried_twice_and_no_more(fake: RendererProcess) -> None:
     Path("cannot start").touch()
     words = r"starting the process that draws crashed: the process was ended by SIGABRT\n    \| LLVM ERROR"
     for _ in range(4):
@@ -274,7 +274,7 @@ def test_a_child_that_cannot_start_is_tried_twice_and_no_more(fake: RendererProc
         assert other.render(made_up("first")).drawn == "first"
 
 
-def test_a_child_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(
+def test_a_worker_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(
     fake: RendererProcess,
 ) -> None:
     fake.render(made_up("first"))
@@ -289,7 +289,7 @@ def test_a_child_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_t
     assert "drew second" in fake.printed()
 
 
-def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProcess, tmp_path: Path) -> None:
+def test_a_worker_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProcess, tmp_path: Path) -> None:
     os.mkfifo("lives")
     (tmp_path / "parent.py").write_text(PARENT)
     where = os.pathsep.join(path for path in sys.path if path)
@@ -309,7 +309,7 @@ ENDING = (
 )
 
 
-def test_a_real_childs_ends_are_told_by_the_plugin(
+def test_how_a_worker_ends_is_reported_by_the_plugin(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for variable in ("CI", "PYTEST_ADDOPTS"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
@@ -59,21 +59,17 @@ def redraw(
     A process that dies, or takes longer than ``limit`` seconds over a drawing, counts as refused drawings.
     """
     for process in processes(count, _drivers(sketch, renderer)):
-        pictures = _drawn_by(process, sketch, shot, software, device, limit)
+        images = _images_of(process, sketch, Subject(sketch.file, shot, software, device), limit)
         for number, drawing in enumerate(process.drawings):
-            found = pictures[min(number, len(pictures) - 1)]  # after an error there is nothing more
+            found = images[min(number, len(images) - 1)]  # after an error there is nothing more
             if isinstance(found, str):
                 yield Redrawn(process, drawing, found, False)
                 continue
             judgement = judged(found, expected, renderer)[0]
             refused = "" if judgement.ok else judgement.sentence
             # The form of a kernel is part of what is drawn, and other drivers take other forms.
-            if (
-                not refused
-                and process.all_forms
-                and drawing.driver == "auto"
-                and found.drawn != expected.drawn
-            ):
+            same_forms = process.all_forms and drawing.driver == "auto"
+            if not refused and same_forms and found.drawn != expected.drawn:
                 refused = "the picture passes, but the hash of what was drawn has changed"
             yield Redrawn(process, drawing, refused, bool(np.array_equal(found.array, expected.array)))
 
@@ -81,7 +77,7 @@ def redraw(
 def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
     """Return the drivers whose pictures must be the same.
 
-    Other renderers than the processor's may round differently in the two; a fast variant may
+    Hardware renderers may round differently in the two; a fast variant may
     differ from the canonical form within the bound that it states.
     """
     if not renderer.software or any_variants(sketch.graph):
@@ -89,20 +85,19 @@ def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
     return ("auto", "fragment", "compute") if renderer.compute else ("auto", "fragment")
 
 
-def _drawn_by(
-    process: Process, sketch: Sketch, shot: Shot, software: bool, device: int | None, limit: float
-) -> list[RenderedShot | str]:
+def _images_of(process: Process, sketch: Sketch, subject: Subject, limit: float) -> list[RenderedShot | str]:
     """Return the image of each drawing, the last an error's text where one fails."""
     found: list[RenderedShot | str] = []
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
-        file = _moved(sketch, folder / "moved") if process.moved else sketch.file
+        if process.moved:
+            subject = replace(subject, sketch=_moved(sketch, folder / "moved"))
         environment = dict(process.environment)
         if process.cold:
             environment["MESA_SHADER_CACHE_DIR"] = str(folder / "cache")
         launch = Launch(
             handler="playground.shots.mutants.redraw_handler",
-            options=Subject(file, shot, software, device),
+            options=subject,
             limit_seconds=limit,
             environment=environment,
             folder=folder if process.elsewhere else None,
