@@ -63,11 +63,6 @@ GLSL_IN_PYTHON = {
     "flight/cutter.py",
     "flight/shaders.py",
     "gpu/wrap.py",
-    "workbench/inspect/blend.py",
-    "workbench/inspect/legend.py",
-    "workbench/inspect/surface_point.py",
-    "workbench/inspect/thumbnails.py",
-    "workbench/last_frame.py",
 }
 
 
