@@ -56,14 +56,7 @@ NAMED = {
 CIRCLES: tuple[set[str], ...] = ()
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()
-GLSL_IN_PYTHON = {
-    "engine/fill_between.py",
-    "engine/kernels.py",
-    "engine/standalone.py",
-    "flight/cutter.py",
-    "flight/shaders.py",
-    "gpu/wrap.py",
-}
+GLSL_IN_PYTHON = {}
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Break a sketch in every known way, and see whether the comparison of its pictures would tell."""
+"""Break a sketch in every known way, and see whether the comparison of its pictures detects it."""
 
 from __future__ import annotations
 
@@ -12,18 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import (
-    FAILED,
-    DeviceOption,
-    JsonOption,
-    Renderer,
-    SizeOption,
-    SketchArgument,
-    SoftwareOption,
-    help_text,
-    option,
-    read_pixels,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, help_text, read_pixels
+from playground.commands.options import value
 from playground.errors import DataError, counted
 from playground.paths import shown
 from playground.terminal import note, painted, print_json, print_table, progress
@@ -51,14 +42,13 @@ HELP = help_text(
 
 def mutants(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     shot: Annotated[
-        str, option("--shot", "NAME", "The shot to break; without it, of each mutant the one that shows it.")
+        str,
+        value("--shot NAME", "The shot to break; without it, of each mutant the one that shows it."),
     ] = "",
-    size: SizeOption = None,
-    only: Annotated[
-        list[str] | None, option("--mutant", "NAME", "Draw this one only; may be repeated.")
-    ] = None,
+    size: options.Size = None,
+    only: Annotated[list[str] | None, value("--mutant NAME", "Draw this one only; may be repeated.")] = None,
     count: Annotated[
         int,
         typer.Option(
@@ -66,11 +56,11 @@ def mutants(
         ),
     ] = 0,
     pictures: Annotated[
-        Path | None, option("--pictures", "DIR", "Write every mutant's picture into this folder.")
+        Path | None, value("--pictures DIR", "Write every mutant's picture into this folder.")
     ] = None,
-    as_json: JsonOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    as_json: options.Json = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
     from playground.shots.mutants.repeatability import redraw
@@ -119,7 +109,7 @@ def _print(results: Sequence[Result]) -> None:
     headings: tuple[str, ...] = ("mutant", *_NUMBERS, *TIERS, "broken")
     if sys.stdout.isatty() and shutil.get_terminal_size().columns < _WIDE:
         headings, rows = headings[:-1], [row[:-1] for row in rows]
-    print_table("Mutants, and what the comparison says of them", headings, rows)
+    print_table("Mutants, and what the comparison finds", headings, rows)
     for number, tier in enumerate(TIERS):
         caught, of = kill_rate(results, number)
         passed = survivors(results, number)
@@ -146,8 +136,8 @@ def _row(result: Result) -> tuple[str, ...]:
     numbers = ["", ""] if found.verdict in ("blank", "size") else [str(found.most), f"{result.share:.2%}"]
     perceived = result.perceived
     numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]
-    words = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
-    return (result.mutant.name, *numbers, *words, result.mutant.broke)
+    verdicts = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
+    return (result.mutant.name, *numbers, *verdicts, result.mutant.broke)
 
 
 def _print_again(redrawn: Sequence[Redrawn]) -> None:

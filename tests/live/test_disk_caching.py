@@ -23,6 +23,7 @@ from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .screen import ON_LINUX, Program, Screen
 
 SLOW = """// slow.glsl -- takes far longer than to read it from a disk
@@ -44,20 +45,11 @@ RAISED = """// raised.glsl -- what swallows a NaN
 uniform sampler2D low; //! input
 float kernel(ivec2 texel) { float h = texelFetch(low, texel, 0).r; return h >= 0.0 ? h : 0.25; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "low"
-use = "./height"
-[[pass]]
-name = "height"
-use = "./raised"
-inputs = { low = "low:height" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(low="./height", height=("./raised", 'inputs = { low = "low:height" }'))
+    + map_of("height", channel="red")
+)
 RUN = """
 import sys
 from playground.live.app import run

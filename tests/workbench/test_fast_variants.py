@@ -13,17 +13,10 @@ from playground.paths import GLSL
 from playground.sketch.variant_record import NAME
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
 from ..variants import trust
 
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./diamond_square"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./diamond_square")
 BEFORE, AFTER = "number * share * smoothing", "number * share * share * smoothing"
 SIZE = (64, 48)
 
@@ -121,7 +114,7 @@ def test_the_switch_runs_the_plain_form_and_outlives_a_save(session, folder):
     assert not runs_fast(session) and not session.notes
     change(folder / "sketch.toml", "size = 33", "size = 65")
     saved(session)
-    assert not runs_fast(session) and session.plan is not None and session.plan.land.size == (65, 65)
+    assert not runs_fast(session) and session.plan is not None and session.plan.terrain.size == (65, 65)
     session.drafts.run_plain(False)
     picture(session)
     assert runs_fast(session)

@@ -17,6 +17,8 @@ from playground.workbench.commands import rounded
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
+
 SIZE = (48, 32)
 KERNEL = """// land.glsl -- a slope
 #pragma kernel(output = "height:r32f")
@@ -24,18 +26,11 @@ uniform float level = 0.25; //! slider(0, 1)
 uniform float other = 0.0; //! slider(0, 1)
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + other; }
 """
-SKETCH = """format = 1  # ours
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0, "height.other" = 0.5 }
-"""
+SKETCH = (
+    "format = 1  # ours\nsize = 33\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
+)
 
 
 class Desk:
