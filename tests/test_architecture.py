@@ -56,7 +56,7 @@ NAMED = {
 CIRCLES: tuple[set[str], ...] = ()
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()
-GLSL_IN_PYTHON = {}
+GLSL_IN_PYTHON: set[str] = set()
 
 
 @cache
