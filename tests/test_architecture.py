@@ -57,13 +57,7 @@ NAMED = {
 CIRCLES: tuple[set[str], ...] = ()
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()
-GLSL_IN_PYTHON = {
-    "workbench/inspect/blend.py",
-    "workbench/inspect/legend.py",
-    "workbench/inspect/surface_point.py",
-    "workbench/inspect/thumbnails.py",
-    "workbench/last_frame.py",
-}
+GLSL_IN_PYTHON: set[str] = set()
 
 
 @cache

@@ -1,8 +1,8 @@
 """Open a sketch in a window and keep it there until it is closed.
 
-One turn: sleep until something happens, take in saved files, draw the panel, draw the
+One frame: sleep until something happens, take in saved files, draw the panel, draw the
 sketch if anything of it changed, put the panel over it. While nothing happens, nothing
-is drawn. Each part of a turn has a guard: one that fails is left out, and the window stays.
+is drawn. Each part of a frame has a guard: one that fails is left out, and the window stays.
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ if TYPE_CHECKING:
     import moderngl
 
 FRAME = 1 / 60  # [s] between pictures while time runs
-IDLE = 1.0  # [s] between turns while nothing happens
-_TRIAL = 0.004  # [s] between questions to the trial
-_SETTLES = 3  # turns that the panel takes to settle after something happened
+IDLE = 1.0  # [s] between frames while nothing happens
+_SANDBOX = 0.004  # [s] between questions to the sandbox
+_SETTLES = 3  # frames that the panel takes to settle after something happened
 _LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
 
 
@@ -90,12 +90,12 @@ def run(
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
-    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. What was set
-    by hand the last time is set again, unless ``fresh``. ``lesson`` opens one by name, in a
+    ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. The user's edits
+    of the last time are restored, unless ``fresh``. ``lesson`` opens one by name, in a
     ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
-    unless the reader has closed the lessons. Expensive land is kept on disk, in at most
+    unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
     ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``tell`` is told of each error, for the terminal.
+    ``tell`` receives each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -107,8 +107,8 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        trial = stack.enter_context(Sandbox(software=software))
-        trial.start()
+        sandbox = stack.enter_context(Sandbox(software=software))
+        sandbox.start()
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
@@ -120,7 +120,7 @@ def run(
             values=checked,
             start=found.start,
             plain=plain,
-            sandbox=trial,
+            sandbox=sandbox,
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
@@ -168,7 +168,7 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
 
 
 class Live:
-    """The window, the session and the watcher, turn by turn."""
+    """The window, the session and the watcher, frame by frame."""
 
     def __init__(
         self,
@@ -233,7 +233,7 @@ class Live:
             self._settling = _SETTLES  # an error grows to its size
 
     def _stays(self) -> bool:
-        """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""
+        """Return whether the window stays; the user decides where it is to close over unsaved texts."""
         if self.window.open:
             return True
         if not unsaved(self.bench.files.editing):
@@ -243,7 +243,7 @@ class Live:
         return True
 
     def release(self) -> None:
-        """Give back all that was made in the window's context."""
+        """Release all that was made in the window's context."""
         self.bench.inspection.release()
         self.lessons.release()
         self.painter.release()
@@ -268,7 +268,7 @@ class Live:
         if self._settling > 0:
             return 0.0
         if self.session.drafts.testing:
-            return _TRIAL
+            return _SANDBOX
         if self.warnings.waiting:
             return 0.0
         if self.session.is_preview:
@@ -349,7 +349,7 @@ class Live:
         self.terminal.take(bench.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
-        """Draw what stands over the picture, each with a guard of its own."""
+        """Draw what is over the picture, each with a guard of its own."""
         bench, session, look, draw = self.bench, self.session, self.window.theme, self.guard.draw
         taken = draw("the bar of time", lambda: height_of_timeline(session, bench.interface, look), 0.0)
         above = (*area[:3], area[3] - taken)
@@ -392,8 +392,8 @@ class Live:
         self.lessons.update(idle=rests and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:
-        stands = self.place.geometry()
-        self.rememberer.look((stands.width, stands.height), (stands.x, stands.y))
+        geometry = self.place.geometry()
+        self.rememberer.look((geometry.width, geometry.height), (geometry.x, geometry.y))
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""

@@ -64,7 +64,7 @@ def draw_code(
 
 
 def ask_to_close(editing: Editing, files: OpenFiles) -> None:
-    """Close an open file; one with changes that are not saved is asked about first."""
+    """Close an open file; one with changes that are not saved needs an answer first."""
     view = _view_of(editing)
     if view.changed and editing.text.kept:
         view.closing = True

@@ -31,5 +31,5 @@ def divider_at(sketch: Sketch, across: float, width: float) -> str:
 
 
 def moved(across: float, width: float) -> float:
-    """Return where a line stands when it is held at a place across the picture."""
+    """Return where a line is when it is held at a place across the picture."""
     return round(min(max(across / width, 0.0), 1.0), 4)

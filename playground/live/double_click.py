@@ -1,9 +1,9 @@
-"""Judge double clicks by when the buttons went down, not by the turns in which they are drawn.
+"""Judge double clicks by when the buttons went down, not by the frames in which they are drawn.
 
-imgui spreads the presses and releases of one moment over several turns and compares the times of the
-turns: where a picture takes 0.4 s, no two clicks are ever a double one. GLFW says that a button went
-down when it is asked, which is when the turn before has ended. So what is known of an event is that
-it came after the last time anybody asked; an event that comes while the window sleeps is told of at
+imgui spreads the presses and releases of one moment over several frames and compares the times of the
+frames: where a picture takes 0.4 s, no two clicks are ever a double one. GLFW says that a button went
+down when it is asked, which is when the frame before has ended. So what is known of an event is that
+it came after the last time anybody asked; an event that comes while the window sleeps is reported at
 once. Two clicks are a double click if they can have been one.
 """
 
@@ -15,7 +15,7 @@ from collections.abc import Callable
 
 APART = 0.3
 """[s] that the clicks of a double click are apart at most."""
-_AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is told of by then
+_AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is reported by then
 _NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time between the two
 
 
@@ -29,11 +29,11 @@ class Clicks:
         self._doubles: deque[bool] = deque()  # presses that imgui has not come to, oldest first
 
     def asks(self) -> None:
-        """Take note that GLFW is about to be asked for events."""
+        """Take note that GLFW is about to be polled for events."""
         self._asks = self._now()
 
     def asked(self) -> None:
-        """Take note that it has told of all that there was."""
+        """Take note that it has reported all events."""
         self._asked = self._now()
 
     def press(self) -> None:
@@ -45,7 +45,7 @@ class Clicks:
         self._pressed = now
 
     def longest(self) -> float:
-        """Return what imgui is to take in its next turn for the longest time between two clicks [s]."""
+        """Return what imgui is to take in its next frame for the longest time between two clicks [s]."""
         if not self._doubles:
             return APART
         return _ALWAYS if self._doubles[0] else _NEVER

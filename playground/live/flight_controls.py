@@ -1,4 +1,4 @@
-"""Turn what hands do on keys, a mouse or a gamepad into the controls of a craft."""
+"""Turn what the user does on keys, a mouse or a gamepad into the controls of a craft."""
 
 from __future__ import annotations
 
@@ -89,9 +89,9 @@ def by_gamepad(axes: Sequence[float]) -> Controls:
     return Controls(*(round(100 * n) for n in (throttle, down, across, turn))).within()
 
 
-def together(*hands: Controls) -> Controls:
+def together(*controls: Controls) -> Controls:
     """Return what several ask for at once."""
-    sums = (sum(axis) for axis in zip(*(h.values for h in hands), strict=True))
+    sums = (sum(axis) for axis in zip(*(h.values for h in controls), strict=True))
     return Controls(*sums).within()
 
 

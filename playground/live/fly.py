@@ -1,6 +1,6 @@
 """A window to fly in: hands in, steps of a sixtieth of a second, parts for some milliseconds, a picture.
 
-All parts in sight are made before the first step. From then on each picture leaves a little
+All parts visible are made before the first step. From then on each picture leaves a little
 time to make parts; what is not there yet is far away, in the haze.
 """
 
@@ -43,7 +43,7 @@ OPENING = 0.05  # [s] between pictures before the first step
 DRAWN = 640 * 360  # [pixels] that a processor draws in time; a larger window shows them larger
 MOST_STEPS = 6  # of one picture: on a slower machine time goes slower, and the hands keep up
 HOURS = 0.5  # that a key moves the time of day
-_IDLE = 0.1  # [s] between turns while it is paused
+_IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
 
 _K = imgui.Key
@@ -97,10 +97,10 @@ def run(
             )
         saves = None
         if replay is None:  # a recorded flight is over the terrain that it was recorded over
-            trial = stack.enter_context(Sandbox(software=software))
-            trial.start()
+            sandbox = stack.enter_context(Sandbox(software=software))
+            sandbox.start()
             path = Path(flight.sketch.file)
-            saves = stack.enter_context(SaveFollower(path, sketch, values or {}, trial, driver, wake))
+            saves = stack.enter_context(SaveFollower(path, sketch, values or {}, sandbox, driver, wake))
         live = Fly(window, flight, recorder, iter(replay) if replay else None, saves)
         stack.callback(live.painter.release)
         try:
@@ -111,7 +111,7 @@ def run(
 
 
 class Fly:
-    """The window and the flight, turn by turn."""
+    """The window and the flight, frame by frame."""
 
     def __init__(
         self,
@@ -136,7 +136,7 @@ class Fly:
         self._ready = False
         self._owed = 0.0  # [s] that have passed and were not flown yet
         self._last = time.perf_counter()
-        self._hour: float | None = None  # asked for, with the next step
+        self._hour: float | None = None  # to be set with the next step
         self._reset = False
         self._buttons: tuple[int, ...] = ()
         self._wheel = Wheel()
@@ -154,9 +154,9 @@ class Fly:
                 self.window.wait(_IDLE)
                 self._last = time.perf_counter()
                 continue
-            self._turn()
+            self._draw_frame()
 
-    def _turn(self) -> None:
+    def _draw_frame(self) -> None:
         window, flight = self.window, self.flight
         window.begin()
         self._take_keys()
@@ -188,7 +188,7 @@ class Fly:
         if saves is None:
             return
         try:
-            coming = saves.turn()
+            coming = saves.update()
             if coming is not None:
                 flight.change(coming)
             if flight.changing and self._ready and flight.tend_change(OPENING):
@@ -255,7 +255,7 @@ class Fly:
         return None
 
     def _take_keys(self) -> None:
-        """Do what was pressed since the last turn; each once."""
+        """Do what was pressed since the last frame; each once."""
         pressed = _pressed()
         pad = self._gamepad()
         if pad is not None:
@@ -296,7 +296,7 @@ class Fly:
         self.window.zoom = self.size.size
 
     def _leave(self) -> None:
-        """Put the help away; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
+        """Close the help; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
         if self.instruments.help:
             self.instruments.help = False
         else:
@@ -355,5 +355,5 @@ def _pressed() -> set[str]:
 
 
 def _typed() -> list[int]:
-    """Return the characters typed since the last turn: where ? stands depends on the keyboard."""
+    """Return the characters typed since the last frame: where ? stands depends on the keyboard."""
     return [int(c) for c in imgui.get_io().input_queue_characters]

@@ -1,4 +1,4 @@
-"""Keep the window alive: a part of its turn that fails becomes a notice, and the rest goes on.
+"""Keep the window alive: a part of a frame that fails becomes a notice, and the rest goes on.
 
 imgui's own checks raise an exception as well, in the middle of whatever was drawn. What was begun
 and not ended by then (windows, ids, colours, fonts) is ended here, so that the next part finds imgui
@@ -20,11 +20,11 @@ log = logging.getLogger("playground.live")
 
 
 class Guard:
-    """Runs the parts of each turn; ``say`` puts a sentence on the screen."""
+    """Runs the parts of each frame; ``say`` puts a sentence on the screen."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say
-        self._told: set[str] = set()  # what the terminal has been told already
+        self._reported: set[str] = set()  # what the terminal has reported already
 
     def draw(self, part: str, draw: Callable[[], Result], otherwise: Result) -> Result:
         """Draw a part of the interface, and leave imgui as it was; return ``otherwise`` where that fails."""
@@ -33,7 +33,7 @@ class Guard:
         try:
             return draw()
         except Exception as error:
-            self._tell(part, error)
+            self._report(part, error)
             return otherwise
         finally:
             with _without_complaint():
@@ -44,15 +44,15 @@ class Guard:
         try:
             return act()
         except Exception as error:
-            self._tell(part, error)
+            self._report(part, error)
             return otherwise
 
-    def _tell(self, part: str, error: Exception) -> None:
+    def _report(self, part: str, error: Exception) -> None:
         """Put a failure on the screen, and once, with its traceback, on the terminal."""
         sentence = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
         self._say(sentence)
-        if sentence not in self._told:
-            self._told.add(sentence)
+        if sentence not in self._reported:
+            self._reported.add(sentence)
             log.error(sentence, exc_info=error)
 
 

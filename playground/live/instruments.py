@@ -1,4 +1,4 @@
-"""What stands over the land in flight: speed, heights, heading, time of day; and the help."""
+"""What is drawn over the terrain in flight: speed, heights, heading, time of day; and the help."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ class Instruments:
         self.changing = False  # what was saved is being made
 
     def draw(self, flight: Flight, theme: Theme, *, ready: bool, paused: bool) -> None:
-        """Draw everything for this turn."""
+        """Draw everything for this frame."""
         room = imgui.get_main_viewport().size
         if not ready:
             there = len(flight.parts.wanted) - flight.parts.missing
-            text = f"making the land: {there} of {len(flight.parts.wanted)} parts"
+            text = f"making the terrain: {there} of {len(flight.parts.wanted)} parts"
             self._box(text, theme, room.x / 2, room.y / 2, centred=True)
             return
         self._box(self._reading(flight), theme, _MARGIN, room.y - _MARGIN, from_below=True)

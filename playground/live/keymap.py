@@ -29,7 +29,7 @@ _AROUND = 4
 
 
 def draw_keymap(interface: Interface, look: Theme) -> None:
-    """Draw the key map in the middle of the window, while it is asked for."""
+    """Draw the key map in the middle of the window, while it is open."""
     if not interface.keymap_shown:
         return
     room = imgui.get_main_viewport().size

@@ -1,4 +1,4 @@
-"""What the mouse does over the picture: it turns the land or the sun, moves a divider, or paints."""
+"""What the mouse does over the picture: it turns the terrain or the sun, moves a divider, or paints."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class PictureMouse:
         )
         if gesture.acts and session.orbits:
             by_hand = session.shown is not None and session.shown.edits.camera is not None
-            # Keyframes move the camera; a drag begins where it stood in the picture that is seen.
+            # Keyframes move the camera; a drag begins where it was in the picture that is shown.
             plan, sketch = session.plan, session.sketch
             camera = sketch.camera if by_hand else sketch.at(plan.time).camera
             session.drafts.set_camera(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
@@ -94,7 +94,7 @@ class PictureMouse:
         return self.strokes
 
     def _show_brush(self, place: tuple[float, float], area: Area) -> None:
-        """Draw the circle that the brush covers, as it lies on the land."""
+        """Draw the circle that the brush covers, as it lies on the terrain."""
         corners: list[ImVec2 | tuple[int | float, int | float] | list[int | float]] = [
             ImVec2(area[0] + x * area[2], area[1] + (1 - y) * area[3])
             for x, y in self.painting.outline(place, _ROUND)
@@ -105,7 +105,7 @@ class PictureMouse:
 
 
 def _dragged(button: int) -> bool:
-    """Say whether the mouse's way since the last turn was a drag.
+    """Say whether the mouse's way since the last frame was a drag.
 
     The way to where a button went down is none; the way to where it came up is one.
     """

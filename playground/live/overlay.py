@@ -32,7 +32,7 @@ def draw_checking(session: Session, look: Theme, area: Area) -> None:
 
 
 def checking_text(subject: str, seconds: float) -> str:
-    """Return "checking land.glsl … 3 s"."""
+    """Return "checking terrain.glsl … 3 s"."""
     return f"checking {subject} …" + (f" {int(seconds)} s" if seconds >= 1 else "")
 
 

@@ -100,7 +100,7 @@ def _map(session: Session, inspection: Inspection, look: Theme) -> None:
 
 
 def _footer_lines(orbits: bool) -> tuple[str, str]:
-    """Return what stands below: what the mouse does, and the keys used most."""
+    """Return the lines at the bottom: what the mouse does, and the keys used most."""
     mouse = "Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else ""
     return mouse, "   ".join(f"{key.name} {key.brief}" for key in KEYS if key.brief)
 

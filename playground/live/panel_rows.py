@@ -20,7 +20,7 @@ def row(
 ) -> Iterator[None]:
     """Write a label, and let the block draw what belongs to it over the width that is left.
 
-    ``note`` is what the label explains, or a function that says it when it is asked for.
+    ``note`` is what the label explains, or a function that says it when it is needed.
     ``edited`` colours the label. ``fixed`` is for rows above what scrolls: the scroll
     bar's room is left free there, so that the columns meet.
     """

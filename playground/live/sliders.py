@@ -124,7 +124,7 @@ def slide_whole(
 def _unseen_number(typed: bool) -> Iterator[bool]:
     """Have imgui draw a slider without its number, which it would write in its middle.
 
-    Gives False where the number is seen after all: while it may be that very number which is typed.
+    Gives False where the number is visible after all: while it may be that very number which is typed.
     """
     unseen = not (typed and imgui.get_io().want_text_input)
     if unseen:

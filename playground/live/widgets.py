@@ -1,4 +1,4 @@
-"""Draw a parameter as its annotation says, and give back what a hand made of it.
+"""Draw a parameter as its annotation says, and give back what the user makes of it.
 
 One function a widget, found by its name in ``CONTROLS``: a new widget is a new entry here
 and a row of ``sketch/widgets.py``. Each returns the new value, or None while nothing changed.

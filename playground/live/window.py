@@ -40,7 +40,7 @@ class Window:
     """An open window. Use it with ``with``, or call ``close()``."""
 
     def __init__(self, title: str, size: tuple[int, int]) -> None:
-        glfw.ERROR_REPORTING = "ignore"  # what failed is asked for below, and said in a sentence
+        glfw.ERROR_REPORTING = "ignore"  # what failed is read below, and reported in a sentence
         if not glfw.init():
             raise _refused("glfw.init failed")
         self._title = title
@@ -70,7 +70,7 @@ class Window:
 
     @property
     def open(self) -> bool:
-        """Whether nobody has asked it to close."""
+        """Whether nobody has closed it."""
         return not glfw.window_should_close(self._handle)
 
     @property
@@ -121,11 +121,11 @@ class Window:
             glfw.set_window_title(self._handle, title)
 
     def ask_to_close(self) -> None:
-        """Close it at the end of this turn."""
+        """Close it at the end of this frame."""
         glfw.set_window_should_close(self._handle, True)
 
     def stay(self) -> None:
-        """Take back that it was asked to close."""
+        """Take back that it was to close."""
         glfw.set_window_should_close(self._handle, False)
 
     def wait(self, seconds: float) -> None:
@@ -138,7 +138,7 @@ class Window:
         self._clicks.asked()
 
     def begin(self) -> None:
-        """Begin a turn of the interface."""
+        """Begin a frame of the interface."""
         self.theme.rescale(self.scale * self.zoom)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
@@ -243,7 +243,7 @@ def _create(title: str, size: tuple[int, int]) -> Any:
 
 
 def _reset_status(handle: Any) -> Callable[[], int] | None:
-    """Return OpenGL's function that tells of a reset, where the context was made to be told of one."""
+    """Return OpenGL's function that reports a reset, where the context was made to report one."""
     if glfw.get_window_attrib(handle, glfw.CONTEXT_ROBUSTNESS) != glfw.LOSE_CONTEXT_ON_RESET:
         return None
     for name in ("glGetGraphicsResetStatus", "glGetGraphicsResetStatusKHR", "glGetGraphicsResetStatusARB"):
@@ -271,5 +271,5 @@ def _refused(otherwise: str) -> ContextError:
 def _complaint() -> str:
     """Return what GLFW last complained of."""
     code, text = glfw.get_error()
-    said = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text or "")
-    return f"{said} (GLFW error {code:#x})" if code else ""
+    message = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text or "")
+    return f"{message} (GLFW error {code:#x})" if code else ""

@@ -32,7 +32,7 @@ class Place:
 
     def __init__(self, handle: Callable[[], Any]) -> None:
         self._handle = handle
-        self._before: Geometry | None = None  # while it fills the screen: where it stood
+        self._before: Geometry | None = None  # while it fills the screen: its place
         self._dropped: list[Path] = []
         self._listening: Any = None
 
@@ -42,7 +42,7 @@ class Place:
         return self._before is not None
 
     def geometry(self) -> Geometry:
-        """Return where it stands, or stood before it filled the screen."""
+        """Return its place, or that before it filled the screen."""
         if self._before is not None:
             return self._before
         handle = self._handle()
@@ -59,7 +59,7 @@ class Place:
         glfw.set_window_pos(handle, x + left, y + top)
 
     def toggle_full(self) -> None:
-        """Fill the screen that most of it is on, or go back to where it stood."""
+        """Fill the screen that most of it is on, or restore its place."""
         handle = self._handle()
         if self._before is not None:
             back, self._before = self._before, None
@@ -70,14 +70,14 @@ class Place:
             if back.maximised:
                 glfw.maximize_window(handle)
             return
-        stood = self.geometry()
+        place = self.geometry()
         monitors = glfw.get_monitors()
         if not monitors:
             return
-        shares = [_shared(stood, area) for area in screens()]
+        shares = [_shared(place, area) for area in screens()]
         monitor = monitors[shares.index(max(shares))]
         mode = glfw.get_video_mode(monitor)
-        self._before = stood
+        self._before = place
         glfw.set_window_monitor(handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
 
     def dropped(self) -> list[Path]:
@@ -110,8 +110,8 @@ def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
     It stays where they do, also across several; else it goes into the one that shows most of it.
     """
     x, y, width, height = window
-    stood = Geometry(x, y, width, height)
-    shares = [_shared(stood, area) for area in areas]
+    place = Geometry(x, y, width, height)
+    shares = [_shared(place, area) for area in areas]
     if not areas or sum(shares) >= width * height:
         return x, y
     left, top, wide, high = areas[shares.index(max(shares))]

@@ -2,7 +2,7 @@
 
 A change is written once half a second has passed without another, so that a slider
 costs one write and not a hundred; time that runs by itself is written every few
-seconds. Nothing here is needed to go on: where it cannot be written, one is told once.
+seconds. Nothing here is needed to go on: where it cannot be written, one gets one notice.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class Rememberer:
         self._memory = memory
         self._path = session.path
         self._now = now
-        self.compare = compare  # what is seen beside the session
+        self.compare = compare  # what is compared with the session
         self._written: Remembered | None = None
         self._seen: Remembered | None = None
         self._seen_at = 0.0
         self._written_at = now()
-        self._is_told = False
+        self._is_reported = False
         self._recalled = False  # what is shown was set in an earlier session
         self._in_file: tuple[Draft | None, tuple[tuple[str, FileValue], ...]] = (None, ())
         self._compared = Remembered().compared
@@ -70,7 +70,7 @@ class Rememberer:
         session = self.session
         session.open(sketch, start=found.start)
         session.notes.extend(filter(None, [complaint]))
-        self._path, self._seen, self._written, self._is_told = session.path, None, None, False
+        self._path, self._seen, self._written, self._is_reported = session.path, None, None, False
         self._recall(found)
 
     def look(self, window: tuple[int, int], at: tuple[int, int] | None = None) -> None:
@@ -83,10 +83,10 @@ class Rememberer:
             self.close()
             self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
             self._seen = self._written = None
-            self._is_told, self._compared = False, None
+            self._is_reported, self._compared = False, None
         if session.shown is None or session.drafts.opening:
             if self._recalled and isinstance(session.error, SandboxError):
-                session.notes.append("playground live --fresh opens it without what was set by hand")
+                session.notes.append("playground live --fresh opens it without your edits")
                 self._recalled = False
             return
         self._recalled = False
@@ -102,17 +102,17 @@ class Rememberer:
             self.write()
 
     def write(self) -> None:
-        """Write what was seen last, unless another window remembers this sketch."""
+        """Write what was shown last, unless another window remembers this sketch."""
         if self._seen is None or self._seen == self._written:
             return
         self._written_at = self._now()
         try:
             if not self._memory.claim():
-                self._tell("another window has this sketch open, and remembers it; this one does not")
+                self._report("another window has this sketch open, and remembers it; this one does not")
                 return
             self._memory.write(self._seen)
         except PlaygroundError as error:
-            self._tell(f"what is set by hand cannot be remembered: {error}")
+            self._report(f"your edits cannot be remembered: {error}")
             return
         self._written = self._seen
 
@@ -122,7 +122,7 @@ class Rememberer:
         self._memory.close()
 
     def _recall(self, found: Remembered) -> None:
-        """Have the session show what is remembered beside what was set by hand."""
+        """Have the session show what is remembered beside what was edited."""
         session, clock = self.session, self.session.clock
         self._compared = found.compared  # A of the last session, until it is there again
         self._recalled = not found.is_nothing
@@ -152,7 +152,7 @@ class Rememberer:
             self._compared or (self.compare.remembered() if self.compare is not None else None),
         )
 
-    def _tell(self, sentence: str) -> None:
-        if not self._is_told:
-            self._is_told = True
+    def _report(self, sentence: str) -> None:
+        if not self._is_reported:
+            self._is_reported = True
             self.session.notes.append(sentence)

@@ -30,9 +30,9 @@ def covered(
 ) -> tuple[slice, slice, NDArray[np.float32]]:
     """Return which rows and columns a stroke touches, and how much of each texel it covers, 0..1.
 
-    ``shape``: (ny, nx) of the mask; ``start`` and ``end`` in shares of the land's sides from
-    the south-west; ``extent`` of the land [m]. Texels are nodes, as everywhere: the first and
-    the last stand on the land's edges.
+    ``shape``: (ny, nx) of the mask; ``start`` and ``end`` in shares of the terrain's sides from
+    the south-west; ``extent`` of the terrain [m]. Texels are nodes, as everywhere: the first and
+    the last stand on the terrain's edges.
     """
     ny, nx = shape
     metres = np.array([extent[0] / max(nx - 1, 1), extent[1] / max(ny - 1, 1)])

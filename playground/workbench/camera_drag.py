@@ -8,7 +8,7 @@ from playground.sketch.model import Camera
 from playground.terrain.camera import Eye, orbit, pan, zoom
 
 HALF_TURN = 180.0
-"""[degrees] that a drag over the picture's whole height turns the land."""
+"""[degrees] that a drag over the picture's whole height turns the terrain."""
 NOTCH = 0.88
 """How much nearer one notch of the wheel brings the eye."""
 
@@ -20,7 +20,7 @@ class Gesture:
     height: float  # [pixels] of the picture
     across: float = 0.0  # [pixels] the mouse went to the right
     down: float = 0.0  # [pixels] … and downwards
-    wheel: float = 0.0  # [notches] away from the hand: nearer
+    wheel: float = 0.0  # [notches] forward: nearer
     orbiting: bool = False  # the left button is held
     panning: bool = False  # the right button is held, or the left one with Shift
 
@@ -32,9 +32,9 @@ class Gesture:
 
 
 def steered(camera: Camera, eye: Eye, gesture: Gesture) -> Camera:
-    """Return the camera after a gesture; the land follows the hand.
+    """Return the camera after a gesture; the terrain follows the mouse.
 
-    ``eye`` is where the camera stood in the picture that the gesture was made over.
+    ``eye`` is where the camera was in the picture that the gesture was made over.
     """
     if gesture.height <= 0:
         return camera

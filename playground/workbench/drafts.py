@@ -397,7 +397,7 @@ def _names_another_file(before: Draft, edited: Draft) -> bool:
 
 
 def _listed(files: Iterable[Path]) -> str:
-    """Return the names of files in a few words: "land.glsl", "land.glsl, wave.glsl and 2 more"."""
+    """Return the names of files in a few words: "terrain.glsl", "terrain.glsl, wave.glsl and 2 more"."""
     names = sorted({path.name for path in files})
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return ", ".join(names[:_NAMED]) + more

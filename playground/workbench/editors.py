@@ -1,6 +1,6 @@
-"""Open a file at a line in the editor that its user likes: which one, and how each is told the line.
+"""Open a file at a line in the editor that its user likes: which one, and how each takes the line.
 
-Asked in turn: ``$PLAYGROUND_EDITOR``, ``$VISUAL``, ``$EDITOR``, then the known editors that
+In this order: ``$PLAYGROUND_EDITOR``, ``$VISUAL``, ``$EDITOR``, then the known editors that
 are installed. ``builtin`` names the editor in the window itself, which is also what is left
 where there is no other. What runs is a list of words: no shell reads a file's name, not even
 one that these words start (`playground.workbench.shell_quoting`).
@@ -24,7 +24,7 @@ from playground.workbench.shell_quoting import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
-_LEAST = 4000  # bytes of what a failing editor said that are looked at
+_LEAST = 4000  # bytes of what a failing editor errors that are looked at
 
 _COLON = ("{file}:{line}:{column}",)
 _PLUS = ("+{line}", "{file}")
@@ -44,12 +44,12 @@ PLACES: dict[str, tuple[str, ...]] = {
     "mate": ("--line", "{line}:{column}", "{file}"),
     "xed": ("--line", "{line}", "{file}") if sys.platform == "darwin" else _PLUS,
 }
-"""How each editor, by its program's name, is told the place; any other is told the file alone."""
+"""How each editor, by its program's name, takes the place; any other gets the file alone."""
 
 IN_A_TERMINAL = frozenset(
     ("vim", "nvim", "vi", "nano", "hx", "helix", "kak", "micro", "joe", "mg", "ne", "ed")
 )
-"""Editors that need a terminal to run in; so does emacs when it is told ``-nw``."""
+"""Editors that need a terminal to run in; so does emacs when it gets ``-nw``."""
 
 TERMINALS: dict[str, tuple[str, ...]] = {
     "x-terminal-emulator": ("-e",),
@@ -77,7 +77,7 @@ Which = Callable[[str], str | None]
 class Editor:
     """An editor that can be started."""
 
-    words: tuple[str, ...]  # the program, and what it is always told
+    words: tuple[str, ...]  # the program, and its fixed arguments
     terminal: tuple[str, ...] = ()  # what it runs in, if it needs that
 
     @property
@@ -103,19 +103,19 @@ class Editor:
 def find_editor(
     environ: Mapping[str, str] | None = None, which: Which = shutil.which, platform: str = sys.platform
 ) -> tuple[Editor | None, str]:
-    """Return (the editor to use, a sentence on what was asked for and cannot be).
+    """Return (the editor to use, a sentence on what was requested and cannot be).
 
     None: the one in the window. The sentence is ``""`` where there is nothing to say.
     """
     environ = os.environ if environ is None else environ
     complaint = ""
     for variable in VARIABLES:
-        asked = environ.get(variable, "").strip()
-        if not asked:
+        wanted = environ.get(variable, "").strip()
+        if not wanted:
             continue
-        if asked == BUILT_IN:
+        if wanted == BUILT_IN:
             return None, complaint
-        found, why = _asked_for(asked, environ, which, platform)
+        found, why = _named_by(wanted, environ, which, platform)
         if found is not None:
             return found, complaint
         complaint = complaint or f"${variable} {why}"
@@ -140,26 +140,26 @@ def find_editor(
 def find_terminal(environ: Mapping[str, str], which: Which = shutil.which) -> tuple[str, ...]:
     """Return the words that run a command in a new terminal; none where there is no terminal."""
     try:
-        asked = shlex.split(environ.get("TERMINAL", ""))
+        wanted = shlex.split(environ.get("TERMINAL", ""))
     except ValueError:
-        asked = []
-    if asked and (path := which(asked[0])):
-        return (path, *asked[1:], *TERMINALS.get(_stem(asked[0]), ("-e",)))
+        wanted = []
+    if wanted and (path := which(wanted[0])):
+        return (path, *wanted[1:], *TERMINALS.get(_stem(wanted[0]), ("-e",)))
     for name, between in TERMINALS.items():
         if path := which(name):
             return (path, *between)
     return ()
 
 
-def _asked_for(
-    asked: str, environ: Mapping[str, str], which: Which, platform: str
+def _named_by(
+    wanted: str, environ: Mapping[str, str], which: Which, platform: str
 ) -> tuple[Editor | None, str]:
     """Return the editor that a variable names, or why it cannot be used."""
-    if path := which(asked):  # a path with blanks in it, as on Windows
+    if path := which(wanted):  # a path with blanks in it, as on Windows
         words = [path]
     else:
         try:
-            words = [word.strip('"') for word in shlex.split(asked, posix=platform != "win32")]
+            words = [word.strip('"') for word in shlex.split(wanted, posix=platform != "win32")]
         except ValueError as error:
             return None, f"is not a command: {error}"
         if not words:
@@ -199,18 +199,18 @@ class Opener:
         except ValueError as error:
             self.notes.append(f"{editor.name} was not started: {error}")
             return False
-        said = tempfile.TemporaryFile()
+        errors = tempfile.TemporaryFile()
         try:
             process = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
-                stderr=said,
+                stderr=errors,
                 cwd=file.absolute().parent if file.parent.is_dir() else None,
                 start_new_session=True,  # a Ctrl-C in our terminal is not the editor's
             )
         except (OSError, ValueError) as error:
-            said.close()
+            errors.close()
             reason = getattr(error, "strerror", None) or str(error)
             self.notes.append(f"{editor.name} could not be started: {reason}")
             return False
@@ -218,12 +218,12 @@ class Opener:
         def wait() -> None:
             status = process.wait()
             if status != 0:
-                said.seek(max(said.seek(0, os.SEEK_END) - _LEAST, 0))
-                text = said.read().decode("utf-8", "replace").strip()
+                errors.seek(max(errors.seek(0, os.SEEK_END) - _LEAST, 0))
+                text = errors.read().decode("utf-8", "replace").strip()
                 last = text.splitlines()[-1].strip()[:200] if text else "it gave no reason"
                 self.notes.append(f"{editor.name} ended with status {status}: {last}")
                 self._wake()
-            said.close()
+            errors.close()
 
         self.threads = [thread for thread in self.threads if thread.is_alive()]
         self.threads.append(threading.Thread(target=wait, daemon=True, name=f"waits for {editor.name}"))

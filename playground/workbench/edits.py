@@ -1,28 +1,27 @@
-"""What a person changed by hand, and how it survives when the files change under it.
+"""User edits, and how they survive when the files change under them.
 
-A draft is a sketch as its files say it, with the techniques chosen by hand in it and
-the values and the camera set by hand over it. All of it is frozen: an edit makes a new
-draft, so undoing is keeping the old one.
+A draft is a sketch as its files say it, with the techniques that the user chose and the values and
+the camera that the user set over it. All of it is frozen: an edit makes a new draft, so undoing is
+storing the old one.
 
-What is set by hand outlives a reload. In full, for a parameter that is set by hand:
+Edits survive a reload. In full, for an edited parameter:
 
-* it keeps its value while the files change elsewhere, and also where its declaration
-  changes: another default, label, step or wider range;
-* where the sketch's own ``set`` (or the land's size, extent, relief or base elevation)
-  now says another value than it said, the file is the newer word (see ``words``): it is
-  taken, and a notice says so, unless it is the very value that the hand had set;
-* where its range no longer holds the value, the nearest end of the range is taken, and
-  a notice says so;
-* where its type is another now, or its menu has lost the choice, it goes back to the
-  file's value, and a notice says so; a choice that stands elsewhere in its menu stays;
-* where it is gone, with its line, its pass or its technique, its value waits and is
-  there again when it returns, as long as that has the same type and a range that holds
-  it; so does a value that the technique of the moment does not take.
+* it keeps its value while the files change elsewhere, and also where its declaration changes:
+  another default, label, step or wider range;
+* where the sketch's own ``set`` (or the terrain's size, extent, relief or base elevation) now says
+  another value than it said, the file wins (see ``edit_merge``): its value is taken, and a notice
+  says so, unless it is the very value that the user had set;
+* where its range no longer holds the value, the nearest end of the range is taken, with a notice;
+* where its type is another now, or its menu has lost the choice, it goes back to the file's value,
+  with a notice; a choice that has moved in its menu stays;
+* where it is gone, with its line, its pass or its technique, its value waits and is there again when
+  it returns, as long as that has the same type and a range that holds it; so does a value that the
+  current technique does not take.
 
-A parameter that is not set by hand shows what the files say, new defaults included. A
-camera set by hand stays until the file moves the camera, and a technique chosen by
-hand until the file fills that pass with another. A locked parameter keeps its value,
-by hand or not, whatever the files say, as long as it can be kept at all.
+A parameter that is not edited shows what the files say, new defaults included. A camera set by the
+user stays until the file moves the camera, and a technique chosen by the user until the file fills
+that pass with another. A locked parameter keeps its value, edited or not, whatever the files say, as
+long as it fits at all.
 """
 
 from __future__ import annotations
@@ -40,14 +39,14 @@ from playground.workbench.edit_merge import file_values, newer_value, notice
 
 @dataclass(frozen=True, slots=True)
 class Edits:
-    """What was set by hand."""
+    """What the user has set."""
 
     values: tuple[
         tuple[str, Value], ...
     ] = ()  # parameter path → value; some may not fit the sketch of the moment
     techniques: tuple[tuple[str, str], ...] = ()  # pass → use
     camera: Camera | None = None  # None: the file's
-    locked: tuple[str, ...] = ()  # parameter paths that only a hand on their own row moves
+    locked: tuple[str, ...] = ()  # parameter paths that only their own row changes
 
     def with_value(self, path: str, value: Value) -> Edits:
         """Return them with a parameter set."""
@@ -63,21 +62,21 @@ class Edits:
         return replace(self, locked=(*others, path) if locked else others)
 
     def has(self, path: str) -> bool:
-        """Say whether a parameter is set by hand."""
+        """Say whether a parameter is edited."""
         return any(p == path for p, _ in self.values)
 
 
 @dataclass(frozen=True)
 class Draft:
-    """A sketch as its files say it, and what was changed by hand."""
+    """A sketch as its files say it, and what was edited."""
 
     file: Sketch  # as loaded
-    base: Sketch  # with the techniques chosen by hand
+    base: Sketch  # with the techniques chosen by the user
     edits: Edits = Edits()
 
     @cached_property
     def applied(self) -> dict[str, Value]:
-        """The values set by hand that fit the sketch of the moment, by path; the others wait."""
+        """The values edited that fit the sketch of the moment, by path; the others wait."""
         found = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
         return {path: value for path, value in found if value is not None}
 
@@ -88,7 +87,7 @@ class Draft:
         return sketch if self.edits.camera is None else sketch.with_camera(self.edits.camera)
 
     def with_edits(self, edits: Edits) -> Draft:
-        """Return the same files with other values or another camera set by hand."""
+        """Return the same files with other values or another camera edited."""
         return replace(self, edits=edits)
 
     def with_value(self, path: str, given: object) -> Draft:
@@ -119,7 +118,7 @@ class Draft:
         return self.with_techniques((*others, *chosen))
 
     def with_techniques(self, techniques: tuple[tuple[str, str], ...]) -> Draft:
-        """Return the draft with these techniques chosen by hand, and no others.
+        """Return the draft with these techniques chosen by the user, and no others.
 
         They are put into the file's own sketch, so that what a pass had comes back with
         its technique. Raises ``SketchError`` if one cannot be there.
@@ -156,7 +155,7 @@ def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
     edits, note = with_camera_of(old.edits, old.file.camera, loaded.camera)
     notes += filter(None, [note])
     base, techniques = _with_techniques(old.file, loaded, edits.techniques, notes)
-    values = tuple(_kept(old, base, notes))
+    values = tuple(_after_reload(old, base, notes))
     return Draft(loaded, base, replace(edits, techniques=techniques, values=values)), notes
 
 
@@ -188,36 +187,36 @@ def _with_techniques(
     return base, tuple(stay)
 
 
-def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
-    """Return the values by hand after a reload; add a sentence to the notes for each that gave way."""
+def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
+    """Return the edited values after a reload; add a sentence to the notes for each that gave way."""
     values = _with_locked(old, values_of(base))
     before, after = (file_values(sketch, [p for p, _ in values]) for sketch in (old.base, base))
-    kept: list[tuple[str, Value]] = []
+    left: list[tuple[str, Value]] = []
     for path, value in values:
         was, now = _parameter(old.base, path), _parameter(base, path)
         if path not in TERRAIN_KEYS and (now is None or taken(old.base, path, value) is None):
-            kept.append((path, value))  # it waits
+            left.append((path, value))  # it waits
             if now is None and was is not None:
-                notes.append(f"{path} is gone; what was set here is kept in case it returns")
+                notes.append(f"{path} is gone; what was set here waits in case it returns")
             continue
         newer = newer_value(path, before, after, old.edits.locked)
         if newer is not None:
             notes += filter(None, [notice(base, path, value, newer)])
             continue
         if path in TERRAIN_KEYS:
-            kept.append((path, value))
+            left.append((path, value))
             continue
         assert was is not None and now is not None
         stays, note = _moved(was, now, value, path, base)
         if stays is not None:
-            kept.append((path, stays))
+            left.append((path, stays))
         if note:
             notes.append(note)
-    return kept
+    return left
 
 
 def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]:
-    """Return the values by hand, and those of locked parameters that the files would now change."""
+    """Return the edited values, and those of locked parameters that the files would now change."""
     found = list(old.edits.values)
     if old.edits.locked:
         now = values_of(old.sketch)
@@ -261,7 +260,7 @@ def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Val
 
 
 def _leaves(sketch: Sketch, path: str) -> set[str]:
-    """Return the paths of the parameters that a path stands for; none where it is gone."""
+    """Return the paths of the parameters that a path represents; none where it is gone."""
     try:
         return {target.path for target in resolve(sketch.graph, path)}
     except ParameterError:

@@ -1,4 +1,4 @@
-"""Show the lines around a mistake with their numbers, cut so that they fit, the column in sight."""
+"""Show the lines around a mistake with their numbers, cut so that they fit, the column visible."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -
 
     ``lines`` are (number, text); ``wrong`` is a number, ``column`` counts from 1, 0 where it is
     unknown; rows have about ``room`` characters. What all lines are indented by goes, tabs become
-    four spaces, and long lines are moved to the left together until the column is in sight.
+    four spaces, and long lines are moved to the left together until the column is visible.
     """
     digits = len(str(lines[-1][0]))
     texts = {number: text.rstrip().expandtabs(4) for number, text in lines}

@@ -1,6 +1,6 @@
 """Follow saves in flight: read the sketch again, try it in a process of its own, hand over what is good.
 
-What is wrong is kept as ``error``, and the last good sketch is flown over until it is fixed.
+What is wrong is stored as ``error``, and the last good sketch is flown over until it is fixed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class SaveFollower:
         path: Path,
         shown: Sketch,
         values: Mapping[str, object],
-        trial: Sandbox,
+        sandbox: Sandbox,
         driver: str,
         wake: Callable[[], None],
     ) -> None:
@@ -40,9 +40,9 @@ class SaveFollower:
         self._path = path
         self._shown = shown
         self._values = dict(values)
-        self._trial = trial
+        self._sandbox = sandbox
         self._driver = driver
-        self._tried: Sketch | None = None  # waits for the trial's answer
+        self._checked: Sketch | None = None  # waits for the sandbox's answer
         self._watcher = Watcher(wake)
         self._places: Mapping[Path, Signature | None] = {}
         self._follow(time.time())
@@ -58,22 +58,22 @@ class SaveFollower:
 
     @property
     def waits(self) -> bool:
-        """Whether an answer of the trial is awaited."""
-        return self._tried is not None
+        """Whether an answer of the sandbox is awaited."""
+        return self._checked is not None
 
-    def turn(self) -> Sketch | None:
+    def update(self) -> Sketch | None:
         """Take in what was saved; return a sketch that has proved good and is another than the one shown."""
         if self._watcher.take():
             self._read()
-        if self._tried is None:
+        if self._checked is None:
             return None
-        report = self._trial.poll()
+        report = self._sandbox.poll()
         if report is None:
             return None
-        good, self._tried = self._tried, None
+        good, self._checked = self._checked, None
         # Without a context the child can try nothing; this one may well have what it takes.
         if not report.ok and not isinstance(report.error, ContextError):
-            self.error = report.error or PlaygroundError("the trial failed without saying why")
+            self.error = report.error or PlaygroundError("the sandbox failed without saying why")
             self._follow(time.time())
             return None
         self._shown, self.error = good, None
@@ -85,22 +85,22 @@ class SaveFollower:
 
     def _read(self) -> None:
         read_at = time.time()
-        self._tried = None
+        self._checked = None
         try:
             with noting_places() as self._places:
                 found = load(self._path).plainly(self._shown.plain).with_values(self._values)
         except Exception as error:
             self.error = explained(error, self._path)
         else:
-            # One that was refused is tried again: what it stands on may be another now.
+            # One that was refused is tried again: what it depends on may have changed.
             if found == self._shown and self.error is None:
                 return
-            self._tried = found
-            self._trial.submit(TrySketch(found, drivers=(self._driver,)))
+            self._checked = found
+            self._sandbox.submit(TrySketch(found, drivers=(self._driver,)))
         self._follow(read_at)
 
     def _follow(self, read_at: float) -> None:
-        sketches = [sketch for sketch in (self._shown, self._tried) if sketch is not None]
+        sketches = [sketch for sketch in (self._shown, self._checked) if sketch is not None]
         errors = [self.error] if self.error is not None else []
         files = watched(self._path, sketches, errors, self._places)
         self._watcher.follow(files, read_at=read_at, read=self._places)

@@ -2,7 +2,7 @@
 
 A camera's field of view is its vertical one. Beside the panels a picture is narrower than what
 the sketch was framed for, and would be cut at its sides: it is opened instead, so that more is
-seen above and below. Only the window does so; a render of a size is that of the sketch's camera.
+visible above and below. Only the window does so; a render of a size is that of the sketch's camera.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ Size = tuple[int, int]
 
 
 def framed(sketch: Sketch, time: float, wanted: Size, room: Size) -> Sketch:
-    """Return a sketch at a time as it is seen in a ``room``; the same object where nothing is opened.
+    """Return a sketch at a time as it is shown in a ``room``; the same object where nothing is opened.
 
-    ``wanted``: the size of the picture whose sides are kept. Sizes in pixels.
+    ``wanted``: the size of the picture whose sides stay visible. Sizes in pixels.
     """
     now = sketch.at(time)
     opened = field_for(now.camera.field_of_view, wanted, room)

@@ -1,7 +1,7 @@
 """Undo and redo: what each step changed, from what to what.
 
-Nobody has to tell it of an edit. It is shown the state at the end of every turn and
-keeps what differs from the turn before, so that whatever can be set can be undone. A
+Edits need not be reported to it. It gets the state at the end of every frame and
+keeps what differs from the frame before, so that whatever can be set can be undone. A
 step holds only the things that it changed: undoing it leaves all else alone, also
 after the files have been reloaded in between.
 
@@ -23,7 +23,7 @@ from playground.workbench.edits import Edits
 MOMENT = 0.7
 """[s] within which a change of the same things belongs to the step before."""
 MOST = 200
-"""Steps that are kept; the oldest go first."""
+"""Steps that are stored; the oldest go first."""
 
 KEYFRAMES = "keyframes"
 
@@ -45,7 +45,7 @@ class Step:
 
 
 def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
-    """Return everything that is set by hand."""
+    """Return everything that is edited."""
     found: dict[Key, object] = {("value", path): value for path, value in edits.values}
     found |= {("technique", name): use for name, use in edits.techniques}
     found |= {("lock", path): True for path in edits.locked}
@@ -79,8 +79,8 @@ class History:
         self._most = most
         self._seen: object = None  # the edits that were looked at last, to know at once that nothing moved
         self._state: dict[Key, object] | None = None
-        self._of: object = None  # the files that the state stands on
-        self._due: dict[Key, object] = {}  # what an undo has asked for and is not there yet
+        self._of: object = None  # the files that the state is of
+        self._due: dict[Key, object] = {}  # what an undo has requested and is not there yet
         self._open = False  # the last step goes on while the button is held
         self._name = ""
 
@@ -99,7 +99,7 @@ class History:
         self._name = name
 
     def look(self, edits: Edits, steps: Mapping[str, int], of: object, *, held: bool, now: float) -> None:
-        """Take in the state at the end of a turn.
+        """Take in the state at the end of a frame.
 
         ``of`` is the sketch as its files say it: another one is a reload. ``held``: a mouse
         button is down. ``now``: seconds of any clock.
@@ -127,20 +127,20 @@ class History:
         self._add({("time", ""): before}, {("time", ""): after}, held=held, now=now)
 
     def record(self, before: State, after: State, name: str, *, now: float) -> None:
-        """Take in a step that is more than what is set by hand; ``settle`` tells the state after it."""
+        """Take in a step that is more than what is edited; ``settle`` tells the state after it."""
         self._close()
         self._name = name
         self._add(before, after, held=False, now=now)
 
     def undo(self) -> State:
-        """Take a step back; return what has to be set, None for what is to be as the file says."""
+        """Undo a step; return what has to be set, None for what is to be as the file says."""
         if not self.can_undo:
             return {}
         self.done -= 1
         return self._asked(self.steps[self.done].before)
 
     def redo(self) -> State:
-        """Do a step again; return what has to be set."""
+        """Redo a step; return what has to be set."""
         if not self.can_redo:
             return {}
         self.done += 1

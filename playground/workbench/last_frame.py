@@ -1,4 +1,4 @@
-"""Keep the last good picture in a texture of its own, and put a texture on a screen.
+"""Store the last good picture in a texture of its own, and put a texture on a screen.
 
 The engine's textures live until its next frame, which may fail; this one stays.
 """
@@ -10,26 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.engine.frame import Frame
+from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer, make_texture
-from playground.gpu.triangle import TRIANGLE
+from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:
     import moderngl
-
-# Texels are fetched, not sampled, so that whatever sampler is bound changes nothing; a
-# picture kept from another size is stretched.
-_FRAGMENT = """#version 330
-uniform sampler2D picture;
-uniform ivec4 area;
-uniform bool grey;
-out vec4 colour;
-void main() {
-    vec2 share = (gl_FragCoord.xy - vec2(area.xy)) / vec2(area.zw);
-    ivec2 size = textureSize(picture, 0);
-    vec4 texel = texelFetch(picture, clamp(ivec2(share * vec2(size)), ivec2(0), size - 1), 0);
-    colour = vec4(grey ? texel.rrr : texel.rgb, 1.0);
-}
-"""
 
 
 class Painter:
@@ -37,32 +23,19 @@ class Painter:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
-        self._triangle = ctx.vertex_array(self._program, [])
+        self._shader = FullScreen(ctx, own_shader("show_image.frag"))
 
     def paint(
         self, texture: moderngl.Texture, target: moderngl.Framebuffer, area: tuple[int, int, int, int]
     ) -> None:
         """Fill ``area`` of the target (x, y from below, width, height [pixels]) with a texture."""
-        target.use()
-        target.viewport = area
-        self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
-        self.ctx.clear_samplers(0, 1)
         if texture.filter[0] not in (self.ctx.NEAREST, self.ctx.LINEAR):
             texture.filter = (self.ctx.NEAREST, self.ctx.NEAREST)
-        texture.use(0)
-        self._set("picture", 0)
-        self._set("area", area)
-        self._set("grey", texture.components == 1)
-        self._triangle.render(self.ctx.TRIANGLES, vertices=3)
+        self._shader.draw(target, {"picture": texture}, area=area, grey=texture.components == 1)
 
     def release(self) -> None:
-        """Give the program back."""
-        self._triangle.release()
-        self._program.release()
-
-    def _set(self, name: str, value: object) -> None:
-        self._program[name].value = value  # type: ignore[union-attr]
+        """Release the program."""
+        self._shader.release()
 
 
 class Picture:
@@ -81,7 +54,7 @@ class Picture:
             self.texture.filter = (self._painter.ctx.NEAREST, self._painter.ctx.NEAREST)
             self._surface = self._painter.ctx.framebuffer([self.texture])
         if (texture.components, texture.dtype, texture.samples) == (4, "f1", 0):
-            # Copied, not painted: where the processor draws that takes a tenth of the time.
+            # Copied, not painted: on a software renderer that takes a tenth of the time.
             source = make_framebuffer(self._painter.ctx, [texture])
             self._painter.ctx.copy_framebuffer(self._surface, source)
             source.release()
@@ -99,8 +72,8 @@ class Picture:
         return Frame(rows, sketch, time)
 
     def release(self) -> None:
-        """Give the texture back."""
-        for kept in (self._surface, self.texture):
-            if kept is not None:
-                kept.release()
+        """Release the texture."""
+        for made in (self._surface, self.texture):
+            if made is not None:
+                made.release()
         self.texture = self._surface = None

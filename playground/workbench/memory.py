@@ -1,4 +1,4 @@
-"""Remember of each sketch what was set by hand, in a file of its own in the user's state folder.
+"""Remember of each sketch what was edited, in a file of its own in the user's state folder.
 
 One file a sketch, JSON with a format number, written whole or not at all. Whoever holds
 the lock beside it may write: so two windows on one sketch do not take turns in undoing
@@ -25,7 +25,7 @@ from playground.workbench.edits import Edits
 from playground.workbench.resume import StoredEdits
 
 FORMAT = 1
-_LARGEST = 4 * 2**20  # [bytes] no session sets so much by hand
+_LARGEST = 4 * 2**20  # [bytes] no session sets so much by the user
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Remembered:
     """What is remembered of one sketch."""
 
     edits: Edits = field(default_factory=Edits)
-    in_file: tuple[tuple[str, FileValue], ...] = ()  # what the files said of each value set by hand
+    in_file: tuple[tuple[str, FileValue], ...] = ()  # what the files said of each value edited
     time: float = 0.0  # [s]
     playing: bool = True
     speed: float = 1.0
@@ -53,7 +53,7 @@ class Remembered:
     steps: tuple[tuple[str, int], ...] = ()
     window: tuple[int, int] = (0, 0)  # in the screen's units; (0, 0): as it opens
     at: tuple[int, int] | None = None  # where its upper left corner is; None: wherever the system puts it
-    camera_in_file: Camera | None = None  # the file's, where another was set by hand
+    camera_in_file: Camera | None = None  # the file's, where another was edited
     loop: tuple[float, float] | None = None  # [s] the times between which time goes round
     compared: Compared | None = None
 

@@ -1,4 +1,4 @@
-"""A mask that is painted on, and the image file that it is kept in.
+"""A mask that is painted on, and the image file that it is stored in.
 
 The picture shows the mask from memory, stroke by stroke (see ``engine.painted_images``); the file is
 written when a stroke has ended.
@@ -20,9 +20,9 @@ from playground.terrain.masks import resized, weights_of
 from playground.workbench.brush import Brush, stroke
 
 MOST_TEXELS = 4097
-"""Of a mask's longer side; a larger land's is resampled from it."""
+"""Of a mask's longer side; a larger terrain's is resampled from it."""
 MOST_BY_FILE = 1024
-"""Where the picture follows by the file only: a larger one takes longer to write than a hand to move."""
+"""Where the picture follows by the file only: a larger one takes longer to write than the mouse to move."""
 _MOST_UNDONE = 24
 _REMEMBERED = 256  # changes whose places are known
 
@@ -108,19 +108,19 @@ class Canvas:
     def paint(
         self, start: tuple[float, float], end: tuple[float, float], extent: tuple[float, float], brush: Brush
     ) -> None:
-        """Go on with a stroke, from one place of the land to another, in shares of its sides."""
+        """Go on with a stroke, from one place of the terrain to another, in shares of its sides."""
         part = stroke(self.mask, start, end, extent, brush)
         if self.mask[part].size:
             self.pixels[part] = _bytes(self.mask[part])
             self._change(part)
 
     def undo(self) -> None:
-        """Take the last stroke back, and save."""
+        """Undo the last stroke, and save."""
         self._settle()
         self._go(self._before, self._after)
 
     def redo(self) -> None:
-        """Paint the stroke again that was taken back last, and save."""
+        """Redo the stroke that was undone last, and save."""
         self._go(self._after, self._before)
 
     def clear(self) -> None:

@@ -1,4 +1,4 @@
-"""The brush over the picture: strokes on a mask of the sketch, kept in a file of their own.
+"""The brush over the picture: strokes on a mask of the sketch, stored in a file of their own.
 
 A mask is a file parameter that its kernel lets be painted on. The file that the sketch names is
 never written to: painting begins a new one in the current folder and puts it in its place.
@@ -28,7 +28,7 @@ from playground.workbench.painted_mask import MOST_BY_FILE, MOST_TEXELS, Canvas
 from playground.workbench.session import Session
 
 NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
-"""A brush's radius, in shares of the land's longer side."""
+"""A brush's radius, in shares of the terrain's longer side."""
 
 SAVES_EVERY = 0.1
 """[s] Where the picture can follow a stroke by its file only; any file is written when the stroke ends."""
@@ -42,7 +42,7 @@ class Painting:
         self.folder = folder  # where new masks go
         self.brush = Brush(radius=0.0)
         self._now = now
-        self._taken = False  # the brush is in the hand
+        self._taken = False  # painting is on
         self._canvases: dict[str, Canvas] = {}  # by the parameter's path
         self._found: tuple[Sketch | None, Shown | None] = (None, None)
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
@@ -51,7 +51,7 @@ class Painting:
 
     @property
     def on(self) -> bool:
-        """Whether the brush is in the hand, and there is something to paint on."""
+        """Whether painting is on, and there is something to paint on."""
         return self._taken and bool(self.target)
 
     @property
@@ -78,7 +78,7 @@ class Painting:
 
     @property
     def side(self) -> float:
-        """The land's longer side [m]."""
+        """The terrain's longer side [m]."""
         return max(self.session.plan.terrain.extent or (0.0,)) if self.session.plan else 0.0
 
     def toggle(self) -> None:
@@ -92,14 +92,14 @@ class Painting:
             self.brush = replace(self.brush, radius=USUAL * self.side)
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
-        """Return where on the land a place of the picture lies, both in shares; None in the sky."""
+        """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
         plan, heights = self.session.plan, self._land()
         if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
             return None
         return ground_under(plan.eye, place, heights, plan.terrain.extent, plan.terrain.relief)
 
     def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
-        """Return the brush's circle as it lies on the land, in shares of the picture; [] in the sky."""
+        """Return the brush's circle as it lies on the terrain, in shares of the picture; [] in the sky."""
         plan, heights, middle = self.session.plan, self._land(), self.ground(place)
         if middle is None or heights is None or plan is None:
             return []
@@ -147,12 +147,12 @@ class Painting:
             self._saved(self.canvas.save)
 
     def undo(self) -> None:
-        """Take the last stroke back."""
+        """Undo the last stroke."""
         if self.canvas is not None and not self._was_changed(self.canvas):
             self._saved(self.canvas.undo)
 
     def redo(self) -> None:
-        """Paint the stroke again that was taken back last."""
+        """Redo the stroke that was undone last."""
         if self.canvas is not None and not self._was_changed(self.canvas):
             self._saved(self.canvas.redo)
 

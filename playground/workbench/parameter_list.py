@@ -23,11 +23,11 @@ class Item:
 
     path: str  # as ``--set`` takes it
     parameter: Parameter
-    leaf: str  # the first parameter inside that it stands for
+    leaf: str  # the first parameter inside that it represents
     exported: bool  # by its pass's technique, or the pass is a single kernel
     words: str  # in lower case: what a search looks in
     label: str  # imgui's, unique in the panel
-    title: str  # what stands beside it
+    title: str  # its label
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Values:
 
 @dataclass
 class Listing:
-    """The sections of the sketch of the moment, and its values; each worked out when it is asked for."""
+    """The sections of the sketch of the moment, and its values; each worked out when it is needed."""
 
     _graph: Graph | None = None
     _sections: tuple[Section, ...] = ()
@@ -125,8 +125,8 @@ class Listing:
         changed = self.values(draft).changed
         key = (id(self.sections(draft)), wanted, changed)
         if self._found[0] != key:
-            kept = {s.name: _kept(s, wanted, changed) for s in self.sections(draft)}
-            self._found = key, {name: section for name, section in kept.items() if section.items}
+            left = {s.name: _thinned(s, wanted, changed) for s in self.sections(draft)}
+            self._found = key, {name: section for name, section in left.items() if section.items}
         return self._found[1]
 
 
@@ -213,7 +213,7 @@ def _groups(items: list[Item]) -> tuple[Group, ...]:
     return tuple(group for group in found if group.items)
 
 
-def _kept(section: Section, wanted: Filter, changed: frozenset[str]) -> Section:
+def _thinned(section: Section, wanted: Filter, changed: frozenset[str]) -> Section:
     def passes(item: Item) -> bool:
         if wanted.changed and item.path not in changed:
             return False

@@ -32,7 +32,7 @@ class Problems:
     open: bool = False
     at: int = -1  # which is looked at; -1: none yet
     heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
-    moved: bool = False  # it was moved to another, which must come into sight
+    moved: bool = False  # it was moved to another, which must come into view
     _error: PlaygroundError | None = None
     _also: tuple[Diagnostic, ...] = ()  # mistakes in files that were not come to
     _texts: dict[Path, tuple[object, list[str]]] = field(default_factory=dict)
@@ -50,13 +50,13 @@ class Problems:
     ) -> None:
         """Take in what is wrong now. A new error opens the list; mended, an open list closes.
 
-        ``sketch`` is the one that is shown: what else of its files cannot be read is told as well.
+        ``sketch`` is the one that is shown: what else of its files cannot be read is reported as well.
         """
         if error is not self._error:
             self._also = () if error is None else unreadable(sketch)
-        told = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
-        errors = tuple(d for d in told if d.severity == "error")
-        mild = [*(d for d in told if d.severity != "error"), *warnings]
+        found_now = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
+        errors = tuple(d for d in found_now if d.severity == "error")
+        mild = [*(d for d in found_now if d.severity != "error"), *warnings]
         known = {(d.file, d.line, d.message) for d in errors}
         before = self.errors, self.warnings
         self.warnings = tuple(
@@ -152,7 +152,7 @@ class Warnings:
     """
 
     def __init__(self, review: Callable[[Kernel], tuple[Diagnostic, ...]]) -> None:
-        self._review = review  # asks the driver
+        self._review = review  # compiles it for the driver's warnings
         self._of: Graph | None = None
         self._found: dict[str, tuple[Diagnostic, ...]] = {}  # by the kernel's text
         self._kernels: dict[str, Kernel] = {}

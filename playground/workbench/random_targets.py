@@ -1,4 +1,4 @@
-"""Choose which parameters random values are for: those of the terrain's shape, unless more is asked for.
+"""Choose which parameters random values are for: those of the terrain's shape, unless more is wanted.
 
 Sun, camera and exposure at random give pictures in which nothing can be compared, and the
 sizes of a raw file at random give no terrain at all.

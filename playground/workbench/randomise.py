@@ -1,4 +1,4 @@
-"""Values by chance, the same for the same seed: anywhere in their ranges, or near what they are.
+"""Random values, the same for the same seed: anywhere in their ranges, or near what they are.
 
 Each parameter draws from a sequence of its own, by its path, so that one more parameter in
 a sketch moves no other. What has no range, a file or a plain number, has nothing to be drawn
@@ -17,14 +17,14 @@ from playground.sketch.values import is_whole, tidied
 from playground.workbench.number_format import snapped
 
 HEIGHTS = (5.0, 85.0)
-"""[degrees] above the horizon that a direction by chance lies: at the ends there is little to see."""
+"""[degrees] above the horizon that a direction at random lies: at the ends there is little to see."""
 
 
 def at_random(parameters: Iterable[tuple[str, Parameter]], seed: int) -> dict[str, Value]:
     """Return a value anywhere in its range for each parameter that has one, by path.
 
     Evenly over the slider's own way: a logarithmic one by its logarithm, a menu by its
-    choices, a colour by what is seen.
+    choices, a colour by what is visible.
     """
     found = {path: _anywhere(parameter, Random(f"{seed} {path}")) for path, parameter in parameters}
     return {path: value for path, value in found.items() if value is not None}

@@ -1,4 +1,4 @@
-"""Keep a session and its files together: what is saved is read, and what it stands on is watched."""
+"""Keep a session and its files together: what is saved is read, and what it depends on is watched."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Follower:
         return True
 
     def follow(self) -> None:
-        """Watch the files that the session stands on now."""
+        """Watch the files that the session depends on now."""
         session = self.session
         now = (session.shown, session.drafts.coming, session.error, session.drafts.places)
         before = self._stands_on

@@ -46,7 +46,7 @@ def with_file(words: Sequence[str], file: str, stem: Callable[[str], str]) -> li
 
 
 def _is_script(words: Sequence[str], index: int, stem: Callable[[str], str]) -> bool:
-    """Say whether a word is what a shell is told by -c."""
+    """Say whether a word is the argument of a shell's -c."""
     if index < 2 or not _SCRIPT.fullmatch(words[index - 1]):
         return False
     program = next((word for word in reversed(words[: index - 1]) if not word.startswith("-")), "")

@@ -13,7 +13,7 @@ LOWEST = -10.0
 def suns_of(sketch: Sketch) -> dict[str, tuple[float, float]]:
     """Return azimuth and elevation [degrees] of every direction that a pass shows, by path.
 
-    Those of the view count only where no pass has one: they light a mesh, not the land.
+    Those of the view count only where no pass has one: they light a mesh, not the terrain.
     """
     found: dict[str, tuple[float, float]] = {}
     leaves = values_of(sketch)

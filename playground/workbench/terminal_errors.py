@@ -13,11 +13,11 @@ to_log = logging.getLogger("playground.live").error
 
 
 class TerminalErrors:
-    """What the terminal has been told of the errors that the window shows; ``tell`` prints there."""
+    """What the terminal has reported of the errors that the window shows; ``tell`` prints there."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
-        self._told: frozenset[Diagnostic] = frozenset()
+        self._reported: frozenset[Diagnostic] = frozenset()
 
     def take(self, errors: Iterable[Diagnostic]) -> None:
         """Tell of the errors that were not there the last time; one that was fixed may come again.
@@ -27,6 +27,6 @@ class TerminalErrors:
         now = dict.fromkeys(errors)
         with contextlib.suppress(OSError, ValueError):
             for diagnostic in now:
-                if diagnostic not in self._told:
+                if diagnostic not in self._reported:
                     self._tell(str(diagnostic))
-        self._told = frozenset(now)
+        self._reported = frozenset(now)

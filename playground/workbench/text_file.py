@@ -131,7 +131,7 @@ class TextView(Protocol):
         """Whether there is anything that is not saved."""
 
     def written(self) -> str:
-        """Return the text as it stands in the editor."""
+        """Return the text as it is in the editor."""
 
 
 class Editing:

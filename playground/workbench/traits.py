@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
+from playground.sketch.model import Graph, Kernel, Parameter, Sketch, kernels_of
 from playground.sketch.reserved_names import PLAIN_UNIFORMS
 
 _MOVING = frozenset(n for meaning in ("time", "frame", "delta", "date") for n in PLAIN_UNIFORMS[meaning])
@@ -38,27 +38,22 @@ def is_animated(sketch: Sketch) -> bool:
 @lru_cache(maxsize=64)
 def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
+    plain = {id(kernel) for _, kernel in kernels if kernel.kind.startswith("plain")}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
     return Traits(
-        moves=any(map(_moves, (kernel for _, kernel in kernels))) or _repeats_by_time(key.object),
+        moves=_repeats_by_time(key.object)
+        or any("time" in k.repeat or (id(k) not in plain and k.reads("time")) for _, k in kernels)
+        or any(k.reads(name) for _, k in kernels if id(k) in plain for name in _MOVING),
         camera=any(kernel.reads(name) for _, kernel in kernels for name in _CAMERA),
-        mouse=any(_is_plain(k) and any(map(k.reads, PLAIN_UNIFORMS["mouse"])) for _, k in kernels),
+        mouse=any(k.reads(name) for _, k in kernels if id(k) in plain for name in PLAIN_UNIFORMS["mouse"]),
         files=tuple(files),
         draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
         arcs=any(p.follows for _, k in kernels for p in k.parameters),
     )
 
 
-def _is_plain(kernel: Kernel) -> bool:
-    return kernel.kind.startswith("plain")
-
-
-def _moves(kernel: Kernel) -> bool:
-    names = _MOVING if _is_plain(kernel) else {"time"}
-    return "time" in kernel.repeat or any(kernel.reads(name) for name in names)
-
-
-def _repeats_by_time(technique: Technique) -> bool:
-    if not isinstance(technique, Graph):
-        return False
-    return any("time" in spec.repeat or _repeats_by_time(spec.technique) for spec in technique.passes)
+def _repeats_by_time(graph: Graph) -> bool:
+    return any(
+        "time" in spec.repeat or (isinstance(spec.technique, Graph) and _repeats_by_time(spec.technique))
+        for spec in graph.passes
+    )

@@ -19,7 +19,7 @@ from watchfiles import watch
 
 from playground.sketch.allowed_files import Signature, signature
 
-STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is told; longest batch
+STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is notify; longest batch
 LOOK_EVERY = 500  # [ms]
 _GRACE = 0.08  # [s] a deleted file may take to come back: editors delete and create
 _JUST = 0.05  # [s] how far a file's time of change may lag behind the clock
@@ -29,7 +29,7 @@ class Watcher:
     """Watches a set of files in a thread of its own, once started.
 
     ``wake`` is called from that thread whenever there is something to ``take``.
-    ``also`` are endings of files that are told of although nobody follows them, where
+    ``also`` are endings of files that are reported although nobody follows them, where
     they lie beside one that is followed.
     """
 
@@ -39,7 +39,7 @@ class Watcher:
         self._lock = threading.Lock()
         self._followed: dict[Path, tuple[Signature | None, bytes]] = {}  # signature and hash when last seen
         self._real: dict[Path, Path] = {}  # where what is followed lies, links followed: asking costs much
-        self._others: dict[Path, bytes] = {}  # hashes of what is not followed, once told of
+        self._others: dict[Path, bytes] = {}  # hashes of what is not followed, once reported
         self._changed: dict[Path, bytes | None] = {}  # with the hash last taken, where that is known
         self._stop = threading.Event()
         self._again = threading.Event()  # set to have the folders read anew
@@ -76,8 +76,8 @@ class Watcher:
         """Follow these files, and no others.
 
         ``read_at`` is when they were read [s since the epoch], and ``read`` says what was there
-        then. A file new to the set that changed after that is told of at once, and so is any
-        whose reader saw what was never told of: so no save falls in between.
+        then. A file new to the set that changed after that is reported at once, and so is any
+        whose reader saw what was never reported: so no save falls in between.
         """
         wanted = {Path(f) for f in files}
         read = read or {}
@@ -98,10 +98,10 @@ class Watcher:
                 self._followed[path] = (now, _hash(path))
                 if now != read[path] or (now is not None and now[1] / 1e9 > time.time() - _JUST):
                     self._changed[path] = None
-            told = bool(self._changed)
+            notify = bool(self._changed)
             if folders is not None and _folders(self._real) != folders:
                 self._again.set()
-        if told:
+        if notify:
             self._wake()
 
     def take(self) -> set[Path]:
@@ -164,7 +164,7 @@ class Watcher:
         if any(not path.exists() for path in paths if path in followed):
             self._stop.wait(_GRACE)
         seen = {path: (signature(path), _hash(path)) for path in paths if self._matters(path, followed)}
-        told = False
+        notify = False
         with self._lock:
             for path, (now, digest) in seen.items():
                 before = self._seen(path)
@@ -174,8 +174,8 @@ class Watcher:
                     self._others[path] = digest
                 if digest != before:
                     self._changed.setdefault(path, before)
-                    told = True
-        if told:
+                    notify = True
+        if notify:
             self._wake()
 
     def _matters(self, path: Path, followed: dict[Path, tuple[Signature | None, bytes]]) -> bool:

@@ -93,6 +93,9 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     app.wait(lambda now: now["hour"] == 10.5 and now["missing"] == 0)
     app.screen.do("key", "p")
     still = app.wait(lambda now: now["paused"])["steps"]
+    for key, zoom in (("ctrl+plus", 1.1), ("ctrl+minus", 1.0), ("ctrl+minus", 0.9), ("ctrl+0", 1.0)):
+        app.screen.do("key", key)
+        app.wait(lambda now, zoom=zoom: now["zoom"] == zoom)
     app.screen.do("key", "shift+slash")
     app.wait(lambda now: now["help"])
     time.sleep(0.3)

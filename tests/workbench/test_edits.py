@@ -136,7 +136,7 @@ def test_a_value_outlives_its_pass(folder: Path) -> None:
     text = (folder / "sketch.toml").read_text(encoding="utf-8")
     (folder / "sketch.toml").write_text(text.replace('"height"', '"ground"'), encoding="utf-8")
     gone, notes = reload_draft(old, load(folder))
-    assert len(notes) == 1 and "kept in case it returns" in notes[0]
+    assert len(notes) == 1 and "waits in case it returns" in notes[0]
     (folder / "sketch.toml").write_text(text, encoding="utf-8")
     again, notes = reload_draft(gone, load(folder))
     assert values_of(again.sketch)["height.level"] == 0.9 and notes == []

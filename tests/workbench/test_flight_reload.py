@@ -57,7 +57,7 @@ def until(saves: SaveFollower, what: str) -> Sketch | None:
     """Take turns until there is a sketch, or an error with these words."""
     end = time.monotonic() + 20.0
     while time.monotonic() < end:
-        sketch = saves.turn()
+        sketch = saves.update()
         if sketch is not None or (what and what in str(saves.error or "")):
             return sketch
         time.sleep(0.01)
@@ -71,7 +71,7 @@ def test_a_good_save_is_tried_and_handed_over_with_what_was_set(
     found = until(saves, "")
     assert found is not None and tried.asked == [found] and saves.error is None
     assert values_of(found)["height.level"] == 1.0
-    assert saves.turn() is None, "once"
+    assert saves.update() is None, "once"
 
 
 def test_a_wrong_one_is_said_and_the_next_good_one_clears_it(saves: SaveFollower, tmp_path: Path) -> None:

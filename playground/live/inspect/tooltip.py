@@ -1,4 +1,4 @@
-"""The box beside the mouse that shows what lies under it."""
+"""The box beside the mouse that shows what is under it."""
 
 from __future__ import annotations
 

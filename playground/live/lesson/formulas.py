@@ -1,6 +1,6 @@
 """Formulas as pictures: LaTeX set by MicroTeX with the Latin Modern font, both of which imgui_bundle brings.
 
-A formula is set once for each size and colour, and kept as a texture. One that MicroTeX
+A formula is set once for each size and colour, and cached as a texture. One that MicroTeX
 cannot read has none: it is written as its source then.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _PROBE = "a+b"  # what MicroTeX looks at through a locale
 _MOST = 300
-"""Textures that are kept; beyond, all are given back and made again where they are seen."""
+"""Textures that are cached; beyond, all are released and made again where they are visible."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Formulas:
         return self._known[key]
 
     def release(self) -> None:
-        """Give all textures back."""
+        """Release all textures."""
         known, self._known = self._known, {}
         for found in known.values():
             if found is not None:
@@ -103,7 +103,7 @@ def _cut(setting: Setting) -> Setting:
 
 @cache
 def can_set() -> bool:
-    """Say whether formulas can be set here; begins to, when it is asked first."""
+    """Say whether formulas can be set here; begins to, on the first call."""
     folder = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "latex"
     try:
         microtex.init(str(folder / "latinmodern-math.clm1"), str(folder / "latinmodern-math.otf"))

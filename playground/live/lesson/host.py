@@ -46,7 +46,7 @@ class Lessons:
         self.reading.update(idle=idle)
 
     def release(self) -> None:
-        """Give back what was made in the session's context; it is made again where it is needed."""
+        """Release what was made in the session's context; it is made again where it is needed."""
         self._panel.release()
 
     def _store_own(self) -> None:

@@ -116,7 +116,7 @@ def _fitting(run: Run, extent: Extent, width: float, ruler: Ruler) -> list[tuple
 
 
 def _joined(line: list[Placed], ruler: Ruler) -> Line:
-    """Return a line, what stands side by side in one style as one run."""
+    """Return a line, neighbours in one style as one run."""
     found: list[Placed] = []
     for placed in line:
         last = found[-1] if found else None

@@ -22,7 +22,7 @@ class Run:
     formula: bool = False  # ``text`` is LaTeX
     link: str = ""
     breaks: bool = False  # a line ends here
-    alone: bool = False  # it stands on lines of its own: code, a formula
+    alone: bool = False  # it is on lines of its own: code, a formula
 
 
 Runs = tuple[Run, ...]
@@ -33,7 +33,7 @@ INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a text that stands on lines of its own."""
+    """A part of a text that is on lines of its own."""
 
     kind: str  # paragraph | heading | formula | code | table | rule
     runs: Runs = ()

@@ -96,7 +96,7 @@ class LessonPanel:
         return float(width)
 
     def release(self) -> None:
-        """Give back what was made in the session's context; it is made again where it is needed."""
+        """Release what was made in the session's context; it is made again where it is needed."""
         if self._formulas is not None:
             self._formulas.release()
         self._formulas = None
@@ -180,7 +180,7 @@ def _page(page: Page) -> None:
         imgui.dummy(gap)
     for block in section.blocks:
         if isinstance(block, Prose) and block.kind == "heading" and block.level == 1:
-            continue  # the title stands above
+            continue  # the title is above
         DRAWN[type(block)](block, page)
         imgui.dummy(gap)
     if reading.index == _count(page) - 1:

@@ -53,7 +53,7 @@ class _Laid:
 
 @dataclass
 class Prose:
-    """Draws texts; ``follow`` is told the address of a link that is clicked on."""
+    """Draws texts; ``follow`` receives the address of a link that is clicked on."""
 
     formulas: Callable[[], Formulas]
     follow: Callable[[str], None]

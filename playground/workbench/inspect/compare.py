@@ -1,4 +1,4 @@
-"""Two states of a sketch side by side: A is kept as it was, B is what is worked on.
+"""Two states of a sketch side by side: A is stored as it was, B is what is worked on.
 
 A is a draft, with its texts in memory, and its picture. While nothing but B changes, that
 picture stays. When the camera, the time, the size or the texture that is shown moves on, A
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 Stamp = tuple[int, int]
 PERIOD = 0.5
-"""[s] that each of the two is seen while they flicker."""
+"""[s] that each of the two is shown while they flicker."""
 
 
 class Mode(Enum):
@@ -47,7 +47,7 @@ class Mode(Enum):
 
 
 @dataclass(frozen=True)
-class Kept:
+class Stored:
     """One state."""
 
     path: Path  # of the sketch's file
@@ -64,26 +64,26 @@ class Compare:
         self.mode = Mode.DIVIDER
         self.split = 0.5  # share of the picture's width where the two meet
         self.gain = 8.0  # of the difference
-        self.held = False  # the line between them is in the hand
+        self.held = False  # the line between them is held
         self.draws = 0  # pictures of A that were drawn
         self.blend: Blend | None = None  # who paints the two
-        self._kept: Kept | None = None
+        self._stored: Stored | None = None
         self._painter: Painter | None = None
         self._picture: Picture | None = None
         self._drawn: object = None  # what A's picture shows
-        self._hasty = False  # as of ``workbench.preview``
-        self._told = False  # that A cannot be drawn
+        self._is_preview = False  # as of ``workbench.preview``
+        self._reported = False  # that A cannot be drawn
         self._recalled: Draft | None = None  # A of an earlier session, while it is tried
 
     @property
     def on(self) -> bool:
         """Whether there is an A."""
-        return self._kept is not None
+        return self._stored is not None
 
     @property
-    def kept(self) -> Kept | None:
+    def stored(self) -> Stored | None:
         """A itself, to be taken up again later."""
-        return self._kept
+        return self._stored
 
     @property
     def picture(self) -> moderngl.Texture | None:
@@ -101,43 +101,43 @@ class Compare:
 
     def keep(self) -> None:
         """Take what is shown for A."""
-        self._kept, self._drawn, self._told = self._now(), None, False
+        self._set(self._now())
 
-    def take_up(self, kept: Kept) -> None:
-        """Compare with an A that was kept before; it is let go where another sketch is open by now."""
-        self._kept, self._drawn, self._told = kept, None, False
+    def resume(self, stored: Stored) -> None:
+        """Compare with an A that was stored before; it is let go where another sketch is open by now."""
+        self._set(stored)
 
-    def keep_other(self, draft: Draft, steps: Mapping[str, int]) -> None:
-        """Take another state of the sketch that is shown for A; it is drawn as B is seen."""
+    def keep_state(self, draft: Draft, steps: Mapping[str, int]) -> None:
+        """Take another state of the sketch that is shown for A; it is drawn as B is shown."""
         now = self._now()
         if now is not None:
-            self._kept, self._drawn, self._told = replace(now, draft=draft, steps=dict(steps)), None, False
+            self._set(replace(now, draft=draft, steps=dict(steps)))
 
     def end(self) -> None:
         """Let A go."""
-        self._kept = None
+        self._stored = None
         self.release()
 
     def back(self) -> None:
         """Go on from A, which stays."""
-        if self._kept is not None:
-            self._take(self._kept)
+        if self._stored is not None:
+            self._take(self._stored)
 
     def swap(self) -> None:
         """Go on from A, and take what was shown for A."""
-        now, before = self._now(), self._kept
+        now, before = self._now(), self._stored
         if before is not None and now is not None:
             self._take(before)
-            self._kept, self._drawn, self._told = now, None, False
+            self._set(now)
 
     # ── over a restart ───────────────────────────────────────────────────────
 
     def remembered(self) -> Compared | None:
         """Return what brings A back in a later session; None where there is none."""
-        if self._kept is None:
+        if self._stored is None:
             return None
-        steps = tuple(sorted(self._kept.steps.items()))
-        return Compared(self._kept.draft.edits, steps, self.mode.value, self.split, self.gain)
+        steps = tuple(sorted(self._stored.steps.items()))
+        return Compared(self._stored.draft.edits, steps, self.mode.value, self.split, self.gain)
 
     def recall(self, compared: Compared) -> bool:
         """Compare with A of an earlier session, over the files as they are now; say whether that is done.
@@ -163,39 +163,38 @@ class Compare:
             session.notes.append(f"A of the last session is left out: {error}")
             return True
         files = {path: _stamp(path) for path in _files_of(plan)}
-        self._kept, self._drawn, self._told = (
-            Kept(session.path, draft, dict(compared.steps), files),
-            None,
-            False,
-        )
+        self._set(Stored(session.path, draft, dict(compared.steps), files))
         self.split, self.gain = compared.split, compared.gain
         self.mode = next((mode for mode in Mode if mode.value == compared.mode), Mode.DIVIDER)
         return True
 
-    def _now(self) -> Kept | None:
+    def _set(self, stored: Stored | None) -> None:
+        self._stored, self._drawn, self._reported = stored, None, False
+
+    def _now(self) -> Stored | None:
         session = self.session
         if session.shown is None or session.plan is None:
             return None
         files = {path: _stamp(path) for path in _files_of(session.plan)}
-        return Kept(session.path, session.shown, dict(session.view.steps), files)
+        return Stored(session.path, session.shown, dict(session.view.steps), files)
 
-    def _take(self, kept: Kept) -> None:
+    def _take(self, stored: Stored) -> None:
         session = self.session
-        if session.shown is not None and kept.draft.file is not session.shown.file:
+        if session.shown is not None and stored.draft.file is not session.shown.file:
             session.notes.append("A is of the files as they were; the next save brings those of now")
-        session.drafts.shown = kept.draft
+        session.drafts.shown = stored.draft
         session.view.steps.clear()
-        session.view.steps.update(kept.steps)
+        session.view.steps.update(stored.steps)
         session.redraw()
 
     # ── A's picture ──────────────────────────────────────────────────────────
 
     def follow(self, picture: moderngl.Texture) -> None:
         """Bring A's picture to the size, camera and time of B's, which the session has just drawn."""
-        kept, session = self._kept, self.session
-        if kept is None or session.awaits_data:
+        stored, session = self._stored, self.session
+        if stored is None or session.awaits_data:
             return
-        if kept.path != session.path:
+        if stored.path != session.path:
             self.end()  # another sketch was opened
             return
         plan = session.plan
@@ -206,55 +205,55 @@ class Compare:
         if self._picture is None:
             self._painter = Painter(session.engine.ctx)
             self._picture = Picture(self._painter)
-        wanted = self._wanted(kept, plan)
-        if self._drawn is None and kept.draft is session.shown and kept.steps == session.view.steps:
+        wanted = self._wanted(stored, plan)
+        if self._drawn is None and stored.draft is session.shown and stored.steps == session.view.steps:
             with session.engine.borrowed():
                 self._picture.copy(picture)
-            self._drawn, self._hasty = wanted, session.is_preview
+            self._drawn, self._is_preview = wanted, session.is_preview
         elif wanted != self._drawn:
-            self._draw(kept, plan, hasty=session.engine.info.software)
+            self._draw(stored, plan, preview=session.engine.info.software)
             self._drawn = wanted
-        elif self._hasty and not session.is_preview:
-            self._draw(kept, plan, hasty=False)
+        elif self._is_preview and not session.is_preview:
+            self._draw(stored, plan, preview=False)
 
     def release(self) -> None:
-        """Give back what was made in the engine's context; it is drawn again where it is needed."""
+        """Release what was made in the engine's context; it is drawn again where it is needed."""
         for made in (self._picture, self._painter, self.blend):
             if made is not None:
                 made.release()
         self._picture = self._painter = self.blend = self._drawn = None
 
-    def _wanted(self, kept: Kept, plan: Plan) -> object:
+    def _wanted(self, stored: Stored, plan: Plan) -> object:
         shown = self.session.view.map
-        time = plan.time if is_animated(kept.draft.sketch) else 0.0
+        time = plan.time if is_animated(stored.draft.sketch) else 0.0
         seen = plan.frame_size, plan.sketch.camera, plan.interpolated
-        return kept.draft, seen, time, shown, self.session.engine
+        return stored.draft, seen, time, shown, self.session.engine
 
-    def _draw(self, kept: Kept, plan: Plan, *, hasty: bool) -> None:
+    def _draw(self, stored: Stored, plan: Plan, *, preview: bool) -> None:
         assert self._picture is not None
         session, engine = self.session, self.session.engine
-        sketch = self._seen_as(kept.draft.sketch, plan)
-        chosen = as_preview(sketch) if hasty else sketch
-        changed = [path for path, stamp in kept.files.items() if _stamp(path) != stamp]
+        sketch = self._seen_as(stored.draft.sketch, plan)
+        chosen = as_preview(sketch) if preview else sketch
+        changed = [path for path, stamp in stored.files.items() if _stamp(path) != stamp]
         try:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
             with as_before(engine, plan):
                 repeats = repeats_of(chosen, time=plan.time)
                 # A save may have left fewer steps than it stopped at.
-                steps = {path: step for path, step in kept.steps.items() if step < repeats.get(path, 0)}
+                steps = {path: step for path, step in stored.steps.items() if step < repeats.get(path, 0)}
                 texture = _drawn(engine, chosen, plan, steps)
                 self._picture.copy(texture)
         except Exception as error:
-            if not self._told:
+            if not self._reported:
                 session.notes.append(f"A stays as it was drawn last: {error}")
-            self._told, self._hasty = True, False
+            self._reported, self._is_preview = True, False
             return
         self.draws += 1
-        self._hasty = chosen is not sketch
+        self._is_preview = chosen is not sketch
 
     def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
-        """Return a sketch as B is seen: by its camera, and the same texture if one is shown."""
+        """Return a sketch as B is shown: by its camera, and the same texture if one is shown."""
         shown = self.session.view.map
         seen = sketch.with_camera(plan.sketch.camera)
         return shown.of(seen) if shown is not None else seen
@@ -268,7 +267,7 @@ def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     try:
         yield
     finally:
-        # All of it is kept, so that nothing runs; what was computed for the picture is current again.
+        # All of it is cached, so that nothing runs; what was computed for the picture is current again.
         try:
             _drawn(engine, plan.sketch, plan, plan.steps)
         finally:

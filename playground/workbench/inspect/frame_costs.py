@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 LENGTH = 240
-"""Pictures that are kept."""
+"""Pictures that are recorded."""
 
 
 class Ring:
     """The last numbers of a row that goes on; a number that is missing is 0."""
 
     def __init__(self, length: int = LENGTH) -> None:
-        self._kept: NDArray[np.float64] = np.zeros(
+        self._numbers: NDArray[np.float64] = np.zeros(
             2 * length
         )  # each number twice, so that any stretch is one piece
         self._length = length
@@ -24,15 +24,15 @@ class Ring:
     def add(self, number: float) -> None:
         """Take in a number; the oldest goes."""
         at = self.count % self._length
-        self._kept[at] = self._kept[at + self._length] = number
+        self._numbers[at] = self._numbers[at + self._length] = number
         self.count += 1
 
     @property
     def values(self) -> NDArray[np.float64]:
-        """What is kept, oldest first; a view that the next number changes."""
+        """The numbers, oldest first; a view that the next number changes."""
         held = min(self.count, self._length)
         start = (self.count - held) % self._length
-        return self._kept[start : start + held]
+        return self._numbers[start : start + held]
 
 
 class Record:

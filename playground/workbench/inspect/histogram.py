@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 BINS = 128
 PIECE = 2**17
-"""Texels that a turn reads, or counts, at most; but a row at least."""
+"""Texels that a frame reads, or counts, at most; but a row at least."""
 MOST = 2**22
 
 
@@ -153,7 +153,7 @@ def _binned(numbers: NDArray[np.float32], low: float, high: float) -> NDArray[np
 
 @dataclass
 class Counter:
-    """Keeps a histogram of the map's texture, a piece of the work a turn."""
+    """Computes a histogram of the map's texture, a piece of the work a frame."""
 
     session: Session
     piece: int = PIECE

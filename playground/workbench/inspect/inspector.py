@@ -1,4 +1,4 @@
-"""Say what lies under the mouse: every pass's number there, where on the land that is, how steep.
+"""Read what is under the mouse: every pass's number there, where on the terrain that is, how steep.
 
 It reads what the last picture was made from, a texel of each texture; it draws nothing of
 the sketch, and asks again only when the mouse or the picture has moved on.
@@ -38,11 +38,11 @@ class Reading:
 
 @dataclass(frozen=True)
 class Spot:
-    """A place of the land."""
+    """A place of the terrain."""
 
-    east: float  # [m] from the land's south-west corner
+    east: float  # [m] from the terrain's south-west corner
     north: float
-    height: float  # [m] above the land's height 0
+    height: float  # [m] above the terrain's height 0
     above_sea: float  # [m]
     normal: tuple[float, float, float]  # a unit vector: east, north, up
     slope: float  # [degrees] from level
@@ -54,7 +54,7 @@ class Found:
 
     pixel: Pixel
     picture: tuple[int, ...]  # the picture's own colour, 0..255, display-encoded
-    spot: Spot | None  # None: sky, or no land in the picture
+    spot: Spot | None  # None: sky, or no terrain in the picture
     readings: tuple[Reading, ...]
     shown: Reading | None = None  # in a map: the texture that it shows
     missing: tuple[str, ...] = ()  # passes that this picture was made without
@@ -67,9 +67,9 @@ class Inspector:
     session: Session
     on: bool = False
     inner: bool = False  # passes inside techniques as well
-    reads: int = 0  # how often anything was asked for
+    reads: int = 0  # how often anything was read
     _ground: Ground | None = None
-    _asked: object = None
+    _key: object = None
     _found: Found | None = field(default=None, repr=False)
 
     def toggle(self) -> None:
@@ -77,7 +77,7 @@ class Inspector:
         self.on = not self.on
 
     def at(self, pixel: Pixel, picture: moderngl.Texture) -> Found | None:
-        """Return what lies under a pixel of the picture; None outside it, and while new data is checked.
+        """Return what is under a pixel of the picture; None outside it, and while new data is checked.
 
         ``picture`` is what the session's last ``frame`` returned.
         """
@@ -86,19 +86,19 @@ class Inspector:
             return None
         if self.session.awaits_data:
             return None
-        asked = pixel, self.session.draws, self.inner, id(self.session.engine)
-        if asked != self._asked:
-            self._asked = asked
+        key = pixel, self.session.draws, self.inner, id(self.session.engine)
+        if key != self._key:
+            self._key = key
             with self.session.engine.borrowed():
                 self._found = self._look(pixel, picture)
             self.reads += 1
         return self._found
 
     def release(self) -> None:
-        """Give back what was made in the engine's context."""
+        """Release what was made in the engine's context."""
         if self._ground is not None:
             self._ground.release()
-        self._ground = self._asked = None
+        self._ground = self._key = None
 
     def _look(self, pixel: Pixel, picture: moderngl.Texture) -> Found:
         session, plan = self.session, self.session.plan
@@ -141,7 +141,7 @@ class Inspector:
     def _readings(
         self, plan: Plan, share: tuple[float, float]
     ) -> tuple[tuple[Reading, ...], tuple[str, ...]]:
-        """Return every pass's number at the node of its own that is nearest to a place of the land."""
+        """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
         found, missing = [], []
         for name in names_of(plan, inner=self.inner):
             texture = self._texture(plan, name)
@@ -166,7 +166,7 @@ class Inspector:
 
 
 def names_of(plan: Plan, *, inner: bool) -> list[str]:
-    """Return the textures of the sketch's own passes as "pass:output", those inside them too if asked for."""
+    """Return the textures of the sketch's own passes as "pass:output", those inside them too on request."""
     found = []
     for path, outputs in plan.flat.outputs.items():
         if path.partition(".")[0] != "view" and (inner or "." not in path):
@@ -189,7 +189,7 @@ def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) ->
 
 
 def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> Spot:
-    """Return the land's place there; ``hit``: shares east and north, and the height between the texels.
+    """Return the terrain's place there; ``hit``: shares east and north, and the height between the texels.
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
     """
@@ -219,6 +219,6 @@ def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, floa
 
 
 def _node(share: tuple[float, float], size: tuple[int, int]) -> tuple[int, int]:
-    """Return the node nearest to a place, in shares of the land's sides."""
+    """Return the node nearest to a place, in shares of the terrain's sides."""
     x, y = (min(max(round(s * (n - 1)), 0), n - 1) for s, n in zip(share, size, strict=True))
     return x, y

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer, make_texture
-from playground.gpu.triangle import TRIANGLE
 from playground.paths import GLSL
+from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:
     import moderngl
@@ -17,12 +18,6 @@ if TYPE_CHECKING:
     from playground.sketch.map_sketch import Map
 
 STEPS = 64
-_MAIN = """
-uniform int ramp;
-uniform float steps;
-out vec4 colour;
-void main() { colour = vec4(ramp_colour(ramp, (gl_FragCoord.x - 0.5) / (steps - 1.0)), 1.0); }
-"""
 Colour = tuple[float, float, float]
 
 
@@ -31,20 +26,15 @@ def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
 
     The context is the caller's to make current and to leave as it was; nothing stays in it.
     """
-    text = "#version 330\n" + (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8") + _MAIN
-    program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=text)
-    triangle = ctx.vertex_array(program, [])
+    ramp_functions = (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8")
+    shader = FullScreen(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}")
     texture = make_texture(ctx, (STEPS, 1), "rgba32f")
     framebuffer = make_framebuffer(ctx, [texture])
     try:
-        program["ramp"].value = ramp  # type: ignore[union-attr]
-        program["steps"].value = float(STEPS)  # type: ignore[union-attr]
-        framebuffer.use()
-        ctx.disable(ctx.BLEND | ctx.DEPTH_TEST | ctx.CULL_FACE)
-        triangle.render(ctx.TRIANGLES, vertices=3)
+        shader.draw(framebuffer, {}, ramp=ramp, steps=float(STEPS))
         values = np.frombuffer(texture.read(), np.float32).reshape(STEPS, 4)
     finally:
-        for made in (framebuffer, texture, triangle, program):
+        for made in (framebuffer, texture, shader):
             made.release()
     return tuple((float(r), float(g), float(b)) for r, g, b, _ in values)
 

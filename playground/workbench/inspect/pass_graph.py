@@ -1,6 +1,6 @@
-"""The passes of a sketch as a graph: who reads whom, and where each stands when it is drawn.
+"""The passes of a sketch as a graph: which reads which, and where each is drawn.
 
-A pass stands one column right of the last that it reads, as in Sugiyama, Tagawa and Toda
+A pass is one column right of the last that it reads, as in Sugiyama, Tagawa and Toda
 1981, "Methods for Visual Understanding of Hierarchical System Structures"; within a column
 passes are put in the order of the middle of those that they are joined to.
 """

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer, make_texture
-from playground.gpu.triangle import TRIANGLE
 from playground.sketch.colour import linear_to_srgb
+from playground.workbench.full_screen import FullScreen
 from playground.workbench.session import Session
 
 if TYPE_CHECKING:
@@ -21,15 +22,6 @@ SIDE = 64
 APART = 0.1
 """[s] from one that is drawn to the next."""
 _NO_NUMBER = (1.0, 0.0, 1.0)
-_FRAGMENT = """#version 330
-uniform sampler2D shown;
-uniform float side;
-out vec4 value;
-void main() {
-    ivec2 size = textureSize(shown, 0);
-    value = texelFetch(shown, min(ivec2(gl_FragCoord.xy / side * vec2(size)), size - 1), 0);
-}
-"""
 
 
 class Thumbnails:
@@ -38,28 +30,28 @@ class Thumbnails:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.made = 0  # how many were drawn so far
-        self._kept: dict[str, tuple[object, moderngl.Texture]] = {}  # what each is of, and the thumbnail
+        self._cached: dict[str, tuple[object, moderngl.Texture]] = {}  # what each is of, and the thumbnail
         self._shrink: _Shrink | None = None
         self._last = -APART
 
     def get(self, name: str) -> moderngl.Texture | None:
         """Return the thumbnail of "pass:output" as it was drawn last, ``SIDE`` texels a side; rgba8."""
-        kept = self._kept.get(name)
-        return kept[1] if kept is not None else None
+        cached = self._cached.get(name)
+        return cached[1] if cached is not None else None
 
     def is_current(self, name: str) -> bool:
         """Say whether the last picture was made from this very texture."""
-        found, kept = self._source(name), self._kept.get(name)
-        return found is not None and kept is not None and kept[0] == found[1]
+        found, cached = self._source(name), self._cached.get(name)
+        return found is not None and cached is not None and cached[0] == found[1]
 
     def refresh(self, names: Iterable[str], now: float) -> bool:
         """Draw the first that is stale, unless another was drawn a moment ago; say whether more are stale.
 
-        ``now``: seconds of any clock. What has another name is given back.
+        ``now``: seconds of any clock. What has another name is released.
         """
         wanted = list(names)
-        for name in [name for name in self._kept if name not in wanted]:
-            self._kept.pop(name)[1].release()
+        for name in [name for name in self._cached if name not in wanted]:
+            self._cached.pop(name)[1].release()
         stale = [n for n in wanted if self._source(n) is not None and not self.is_current(n)]
         if stale and now - self._last >= APART and not self.session.awaits_data:
             self._last = now
@@ -67,10 +59,10 @@ class Thumbnails:
         return bool(stale)
 
     def release(self) -> None:
-        """Give all of them back; they are drawn again where they are needed."""
-        kept, self._kept = self._kept, {}
+        """Release all of them; they are drawn again where they are needed."""
+        cached, self._cached = self._cached, {}
         shrink, self._shrink = self._shrink, None
-        for _, texture in kept.values():
+        for _, texture in cached.values():
             texture.release()
         if shrink is not None:
             shrink.release()
@@ -81,16 +73,16 @@ class Thumbnails:
         texture, of = found
         engine = self.session.engine
         if self._shrink is not None and self._shrink.ctx is not engine.ctx:
-            self._shrink, self._kept = None, {}  # they went with a context that was lost
+            self._shrink, self._cached = None, {}  # they went with a context that was lost
         with engine.borrowed():
             if self._shrink is None:
                 self._shrink = _Shrink(engine.ctx)
             values = self._shrink.values(texture)
-            kept = self._kept.get(name)
-            small = kept[1] if kept is not None else make_texture(engine.ctx, (SIDE, SIDE), "rgba8")
+            cached = self._cached.get(name)
+            small = cached[1] if cached is not None else make_texture(engine.ctx, (SIDE, SIDE), "rgba8")
             small.filter = (engine.ctx.LINEAR, engine.ctx.LINEAR)
             small.write(picture_of(values, texture.components, encoded=texture.dtype == "f1").tobytes())
-        self._kept[name] = of, small
+        self._cached[name] = of, small
         self.made += 1
 
     def _source(self, name: str) -> tuple[moderngl.Texture, object] | None:
@@ -137,21 +129,14 @@ class _Shrink:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._program = ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FRAGMENT)
-        self._triangle = ctx.vertex_array(self._program, [])
+        self._shader = FullScreen(ctx, own_shader("thumbnail.frag"))
         self._texture = make_texture(ctx, (SIDE, SIDE), "rgba32f")
         self._framebuffer = make_framebuffer(ctx, [self._texture])
 
     def values(self, texture: moderngl.Texture) -> NDArray[np.float32]:
-        self._framebuffer.use()
-        self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
-        self.ctx.clear_samplers(0, 1)
-        texture.use(0)
-        self._program["shown"].value = 0  # type: ignore[union-attr]
-        self._program["side"].value = float(SIDE)  # type: ignore[union-attr]
-        self._triangle.render(self.ctx.TRIANGLES, vertices=3)
+        self._shader.draw(self._framebuffer, {"shown": texture}, side=float(SIDE))
         return np.frombuffer(self._texture.read(), np.float32).reshape(SIDE, SIDE, 4)
 
     def release(self) -> None:
-        for made in (self._framebuffer, self._texture, self._triangle, self._program):
+        for made in (self._framebuffer, self._texture, self._shader):
             made.release()

@@ -7,7 +7,7 @@
     bugs.py           a reader's way with such a copy: broken, fixed, edited
     measurements.py   the lesson's numbers, computed while nothing else is to be done
     shelf.py          the lessons that there are
-    reader.py         a reader and the lessons: pages, figures, what was asked and answered
+    reader.py         a reader and the lessons: pages, figures, questions and answers
     links.py          where links and buttons lead from a page
 
 Each imports only those above it.

@@ -1,4 +1,4 @@
-"""A lesson's picture as what a hand could have set: edits, stopped repeats, a map."""
+"""A lesson's picture as user edits: edits, stopped repeats, a map."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def path_of(scene: Scene) -> Path:
 
 
 def edits_of(scene: Scene, file: Sketch) -> Edits:
-    """Return what has to be set by hand in a sketch, as its file says it, to see a picture."""
+    """Return what has to be edited in a sketch, as its file says it, to see a picture."""
     values: dict[str, Value] = {}
     parts = [_preset(file, scene.preset), dict(scene.values)]
     if scene.shot:
@@ -32,7 +32,7 @@ def edits_of(scene: Scene, file: Sketch) -> Edits:
 
 
 def steps_of(scene: Scene) -> dict[str, int]:
-    """Return after how many turns each repeated pass of a picture stops, by its whole path."""
+    """Return after how many steps each repeated pass of a picture stops, by its whole path."""
     return {repeated_in(scene.sketch, path): turn for path, turn in scene.steps}
 
 

@@ -20,7 +20,7 @@ from playground.sketch.model import DEFAULT_PICTURE
 from playground.workbench.clock import Clock
 from playground.workbench.edits import Edits
 from playground.workbench.history import History, changes_between
-from playground.workbench.inspect.compare import Compare, Kept, Mode
+from playground.workbench.inspect.compare import Compare, Mode, Stored
 from playground.workbench.lesson.figure_state import edits_of, map_of, path_of, steps_of
 from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.resume import StoredEdits
@@ -40,7 +40,7 @@ class Own:
     map: Map | None
     clock: Clock
     history: History
-    compared: Kept | None  # the A that it was compared with
+    compared: Stored | None  # the A that it was compared with
 
 
 class FigureView:
@@ -59,7 +59,7 @@ class FigureView:
         self._histories: dict[Path, tuple[History, Edits]] = {}
         self._waits = False
         self._first: Scene | None = None  # what the picture is to be compared with
-        self._compared: Kept | None = None  # the A that comes back with what was open
+        self._compared: Stored | None = None  # the A that comes back with what was open
 
     @property
     def busy(self) -> bool:
@@ -126,10 +126,10 @@ class FigureView:
             self._first = first
 
     def update(self) -> None:
-        """Take in what has become of the figure that was asked for; once a frame."""
+        """Take in what has become of the figure that was requested; once a frame."""
         session = self.session
         if self._compared is not None and not session.drafts.opening:
-            self.compared_with.take_up(self._compared)
+            self.compared_with.resume(self._compared)
             self._compared = None
         if self.own is not None and session.path != self._path:
             self.let_go()  # the reader opened a sketch
@@ -169,7 +169,7 @@ class FigureView:
         session = self.session
         self.undo.record()
         edits, (steps, shown) = session.drafts.stored, session.view.state
-        clock, compared = replace(session.clock), self._compared or self.compared_with.kept
+        clock, compared = replace(session.clock), self._compared or self.compared_with.stored
         self._compared = None
         self.own = Own(session.path, edits, steps, shown, clock, self.undo.history, compared)
         self._path = session.path
@@ -188,7 +188,7 @@ class FigureView:
         if first is not None and draft is not None:
             compare = self.compared_with
             compare.mode = Mode.DIVIDER
-            compare.keep_other(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
+            compare.keep_state(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
 
     def let_go(self) -> None:
         """Give up the figure: what is shown is the reader's own from here on."""

@@ -1,4 +1,4 @@
-"""A reader and the lessons: which page is open, which figure is shown, what was asked and answered.
+"""A reader and the lessons: which page is open, which figure is shown, questions and answers.
 
 Draws nothing; ``update`` is called once a frame.
 """
@@ -29,7 +29,7 @@ _STEP, _VALUE = 0.8, 0.5
 """[s] that a step, and a value of a sweep, is shown while it plays."""
 
 BOTH = -1
-"""The place of a comparison where two pictures are seen at once."""
+"""The place of a comparison where two pictures are shown at once."""
 
 Seen = Steps | Slider | Compare | Figure | Exercise
 
@@ -45,10 +45,10 @@ class Reading:
     play: Callable[[Path], None] | None = None  # opens a sketch as the reader's own
     lesson: Lesson | None = None
     at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
-    shown: set[tuple[str, str]] = field(default_factory=set)  # what was asked for: (block, "answer")
+    shown: set[tuple[str, str]] = field(default_factory=set)  # what was opened: (block, "answer")
     chosen: dict[str, int] = field(default_factory=dict)  # the answers given, by question
     playing: str = ""  # the series that plays
-    to_top: bool = False  # a page was turned: it is to be seen from its top
+    to_top: bool = False  # a page was turned: it is to be shown from its top
 
     def __post_init__(self) -> None:
         bench = self.bench

@@ -14,7 +14,7 @@ from playground.lessons.scenes import Sketches
 
 @dataclass
 class Shelf:
-    """One window's; ``say`` is told what is wrong."""
+    """One window's; ``say`` reports what is wrong."""
 
     say: Callable[[str], None]
     _sketches: Sketches = field(default_factory=Sketches)
