@@ -11,17 +11,9 @@ import pytest
 
 import playground
 
-SKETCH = """
-format = 1
-size = 65
-[[pass]]
-name = "height"
-use = "generation/diamond_square"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+from .sketch_texts import map_of_height
+
+SKETCH = "\nformat = 1\nsize = 65\n" + map_of_height("generation/diamond_square", channel="red")
 
 
 @pytest.fixture

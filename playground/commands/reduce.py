@@ -135,8 +135,8 @@ def reduce(
         "command": bool(command),
     }
     kind = _kind([name for name, given in kinds.items() if given], shot)
-    _check_options(kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or time or steps))
     moment = _moment(sketch, kind, shot, settings, steps, time)
+    _check_options(kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or time or steps))
     renderer: Renderer = ctx.obj.or_else(software, device)
     question = Question(
         sketch=moment.sketch,

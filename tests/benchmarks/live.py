@@ -2,7 +2,7 @@
 
 Save to new picture, by a watcher, a trial child and an engine as in the window, at 1025²:
 for a texturing kernel, an included library file and a value in the sketch. Each text is
-new to the driver. Blend the seconds on the wall stands the processor's time of both
+new to the driver. Beside the seconds on the wall stands the processor's time of both
 processes, which a busy machine stretches less.
 """
 

@@ -15,18 +15,9 @@ from playground.errors import ParameterError
 from playground.images.files import read_png
 from playground.sketch.load import load
 
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
-use = "view/terrain"
-set = { grid = 9 }
-"""
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+
+SKETCH = "format = 1\nsize = 33\n" + LIT_NOISE + SMALL_VIEW
 
 
 @pytest.fixture

@@ -23,6 +23,7 @@ from playground.workbench.captures import Captures, Wish, parts_of, sweep_text
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = """// land.glsl -- a slope that goes up
@@ -32,22 +33,17 @@ uniform int kind = 0; //! menu("one", "two")
 uniform vec3 tint = vec3(1.0); //! colour
 float kernel(ivec2 texel) { return level * float(texel.x + kind) / float(size.x) + fract(time); }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[keyframe]]
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + map_of_height(channel="red")
+    + """[[keyframe]]
 time = 0.0
 set = { "height.tint" = "#000000" }
 [[keyframe]]
 time = 0.5
 set = { "height.tint" = "#ffffff" }
 """
+)
 LIMIT = 90.0  # [s] for a job to end on a slow machine
 SIZE = (40, 30)
 
@@ -125,7 +121,7 @@ def test_a_process_that_dies_is_told(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
-    bench.captures.working._process._process.kill()
+    bench.captures.working._worker._process.kill()
     wait(bench)
     assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 

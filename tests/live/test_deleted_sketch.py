@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -34,13 +33,6 @@ def folder(tmp_path: Path) -> Path:
     for name, text in {"land.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
         (home / name).write_text(text, encoding="utf-8")
     return home
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
 
 
 def test_there_are_many_kinds_of_errors() -> None:

@@ -15,7 +15,7 @@ from playground.engine.disk_caching import REST as LAND_RESTS
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
-from playground.workbench import disk_caching as storing_module
+from playground.workbench import disk_caching as module
 from playground.workbench.bench import Bench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.inspect.thumbnails import Thumbnails
@@ -23,6 +23,7 @@ from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .screen import ON_LINUX, Program, Screen
 
 SLOW = """// slow.glsl -- takes far longer than to read it from a disk
@@ -44,20 +45,11 @@ RAISED = """// raised.glsl -- what swallows a NaN
 uniform sampler2D low; //! input
 float kernel(ivec2 texel) { float h = texelFetch(low, texel, 0).r; return h >= 0.0 ? h : 0.25; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "low"
-use = "./height"
-[[pass]]
-name = "height"
-use = "./raised"
-inputs = { low = "low:height" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(low="./height", height=("./raised", 'inputs = { low = "low:height" }'))
+    + map_of("height", channel="red")
+)
 RUN = """
 import sys
 from playground.live.app import run
@@ -124,7 +116,7 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
         return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(storing_module, "DiskCaching", keeping)
+    monkeypatch.setattr(module, "DiskCaching", keeping)
     made.open()
     yield made
     made.close()

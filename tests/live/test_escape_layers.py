@@ -12,6 +12,7 @@ from playground.engine.engine import Engine
 from playground.live.code_window import draw_code
 from playground.live.escape_layers import open_layers
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -20,18 +21,11 @@ uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform sampler2D mask; //! file() paint
 float kernel(ivec2 texel) { return level; }
 """
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0 }
-"""
+SKETCH = (
+    "format = 1\nsize = 17\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
+)
 
 
 @pytest.fixture

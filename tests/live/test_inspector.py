@@ -17,6 +17,7 @@ from playground.terrain.pick import ground_under
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.session import Session
 
+from ..sketch_texts import passes
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -32,24 +33,21 @@ HALF = """// half.glsl -- a texture of half the size
 uniform sampler2D height; //! input
 vec4 kernel(ivec2 texel) { return vec4(texelFetch(height, 2 * texel, 0).r / vec3(1.0, 3.0, -7.0), 1.0); }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 size = [65, 49]
 extent = [1600.0, 1200.0]
 relief = 300.0
 base_elevation = 120.0
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "light"
-use = "./half"
-size = ["size.x // 2", "size.y // 2"]
-[view]
+"""
+    + passes(height="./land", light=("./half", 'size = ["size.x // 2", "size.y // 2"]'))
+    + """[view]
 use = "view/terrain"
 [view.camera]
 azimuth = 200.0
 elevation = 35.0
 """
+)
 SIZE = 96, 64
 
 

@@ -16,22 +16,18 @@ from playground.workbench.bench import Bench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW
 from .desk import Bare
 
-SKETCH = """format = 1  # ours
+SKETCH = (
+    """format = 1  # ours
 size = 33
 extent = 1000.0
 relief = 200.0
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
-use = "view/terrain"
-set = { grid = 9 }
 """
+    + LIT_NOISE
+    + SMALL_VIEW
+)
 SIZE = (48, 32)
 
 

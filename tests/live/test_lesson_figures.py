@@ -26,17 +26,10 @@ from playground.workbench.lesson.links import play_on
 from playground.workbench.lesson.reader import BOTH
 from playground.workbench.resume import StoredEdits
 
+from ..sketch_texts import map_of_height
 from .lesson_desk import RAW, Desk, shelved
 
-OWN = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 FILE = (GLSL / RAW).resolve()
 
 

@@ -18,6 +18,7 @@ from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch, summary
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .desk import Bare
 
 FIRST = """// first.glsl -- with a hole
@@ -30,21 +31,11 @@ SECOND = """// second.glsl -- one more
 uniform sampler2D first; //! input
 float kernel(ivec2 texel) { return 1.0 + texelFetch(first, texel, 0).r; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "first"
-use = "./first"
-set = { root = -0.5 }
-[[pass]]
-name = "second"
-use = "./second"
-inputs = { first = "first" }
-[view]
-use = "view/map"
-inputs = { shown = "second" }
-set = { channel = "red" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(first=("./first", "set = { root = -0.5 }"), second=("./second", 'inputs = { first = "first" }'))
+    + map_of("second", channel="red")
+)
 
 
 class Desk:
@@ -204,18 +195,14 @@ SHOWN = """// shown.glsl -- what a screen takes
 uniform sampler2D picture; //! input
 vec4 kernel(ivec2 texel) { return clamp(texelFetch(picture, texel, 0), 0.0, 1.0); }
 """
-VIEW = """[[pass]]
-name = "lit"
-use = "./lit"
-[[pass]]
-name = "shown"
-use = "./shown"
-inputs = { picture = "lit" }
-[inputs]
+VIEW = (
+    passes(lit="./lit", shown=("./shown", 'inputs = { picture = "lit" }'))
+    + """[inputs]
 height = "lit.height"
 [parameters]
 root = "lit.root"
 """
+)
 IN_VIEW = """format = 1
 size = 33
 [[pass]]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from playground.live.theme import PANEL_WIDTH
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 
+from ..sketch_texts import map_of, passes
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -28,35 +28,22 @@ uniform int kind = 0; //! menu("round", "sharp") group("Shape") What they are li
 uniform float gone = 0.5; //! slider(0, 1) group("A group whose name is longer than there is room for") Gone
 float kernel(ivec2 texel) { return level; }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 title = "Hills, with a title that is longer than any panel has room for in one line"
 size = 33
-[[pass]]
-name = "height"
-use = "./land"
-set = { level = 0.6 }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
+"""
+    + passes(height=("./land", "set = { level = 0.6 }"))
+    + map_of("height")
+    + """[[preset]]
 name = "high"
 set = { "height.level" = 1.0, "height.count" = 5 }
 """
+)
 LEVEL, COUNT = "##height.level", "##height.count"
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
 
 
 def value(bare: Bare, name: str) -> object:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -42,18 +41,7 @@ set = { "height.level" = 1.0 }
 """
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH + KEYFRAMES, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH + KEYFRAMES}
 
 
 def test_a_loop_goes_round_and_keeps_what_is_over() -> None:

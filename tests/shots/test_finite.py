@@ -17,6 +17,7 @@ from playground.shots.suite import render_shot, shots_of
 from playground.sketch.load import load
 
 from ..cases import each
+from ..sketch_texts import map_of_height, passes
 
 NAN, INFINITY = "uintBitsToFloat(0x7fc00000u)", "uintBitsToFloat(0x7f800000u)"
 
@@ -57,23 +58,15 @@ vec4 kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 16
-[[pass]]
-name = "land"
-use = "./sound"
-[[pass]]
-name = "middle"
-use = "./ill"
-inputs = { height = "land" }
-[[pass]]
-name = "end"
-use = "./after"
-inputs = { shown = "middle" }
-[view]
-use = "./bytes"
-inputs = { shown = "end" }
-"""
+SKETCH = (
+    "format = 1\nsize = 16\n"
+    + passes(
+        land="./sound",
+        middle=("./ill", 'inputs = { height = "land" }'),
+        end=("./after", 'inputs = { shown = "middle" }'),
+    )
+    + '[view]\nuse = "./bytes"\ninputs = { shown = "end" }\n'
+)
 
 
 @pytest.fixture(params=["fragment", "compute"])
@@ -241,10 +234,7 @@ def test_turns_that_go_on_in_place_are_looked_at_again(ctx: moderngl.Context, tm
         f"    return iteration == 2 ? {INFINITY} : 0.5;\n"
         "}\n"
     )
-    (tmp_path / "chain.toml").write_text(
-        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./walk"\n[view]\nuse = "view/map"\n'
-        'inputs = { shown = "height" }\nset = { channel = "red" }\n'
-    )
+    (tmp_path / "chain.toml").write_text("format = 1\nsize = 16\n" + map_of_height("./walk", channel="red"))
     with Engine(ctx) as engine:
         for turns, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
             engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": turns})

@@ -39,6 +39,8 @@ from playground.shots.suite import ShotCase, render_shot
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..sketch_texts import map_of_height
+
 SIZE = (160, 90)
 SMALLER = {"size": (86, 101), "view.grid": 97}  # the file's is 344 × 403, the colour sixteen times that
 
@@ -49,21 +51,11 @@ float kernel(ivec2 texel) {
     return previous(texel) + rise * (0.3 + time) * fract(dot(vec2(texel), vec2(0.2, 0.3)));
 }
 """
-MINE = """format = 1
-title = "A slope"
-size = 33
-[[pass]]
-name = "height"
-use = "./slope"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[shot]]
-name = "dark"
-size = [66, 44]
-set = { "height.rise" = 0.25 }
-"""
+MINE = (
+    'format = 1\ntitle = "A slope"\nsize = 33\n'
+    + map_of_height("./slope", channel="red")
+    + '[[shot]]\nname = "dark"\nsize = [66, 44]\nset = { "height.rise" = 0.25 }\n'
+)
 
 
 def mutant(name: str) -> Rendering:

@@ -23,6 +23,8 @@ from playground.shots.renderer_process import RendererProcess
 from playground.shots.suite import ShotCase, render_shot, shots_of
 from playground.sketch.model import Graph, Shot, Sketch
 
+from ..sketch_texts import map_of_height
+
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"),
     reason="the reference renderer, Mesa's llvmpipe, is chosen by name on Linux",
@@ -39,16 +41,10 @@ float kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[preset]]
+SKETCH = (
+    "format = 1\nsize = 32\n"
+    + map_of_height(channel="red")
+    + """[[preset]]
 name = "dim"
 set = { "height.gain" = 0.1 }
 [[shot]]
@@ -71,6 +67,7 @@ name = "first"
 size = [32, 32]
 steps = { height = 1 }
 """
+)
 
 
 @pytest.fixture
@@ -305,21 +302,11 @@ def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProc
         assert lives.read() == b""  # waits until the child is gone
 
 
-ENDING = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[shot]]
-name = "crash"
-[[shot]]
-name = "hang"
-[[shot]]
-name = "next"
-"""
+ENDING = (
+    "format = 1\nsize = 32\n"
+    + map_of_height()
+    + '[[shot]]\nname = "crash"\n[[shot]]\nname = "hang"\n[[shot]]\nname = "next"\n'
+)
 
 
 def test_a_real_childs_ends_are_told_by_the_plugin(

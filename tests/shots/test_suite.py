@@ -20,6 +20,8 @@ from playground.shots.references import read_reference, reference_path, write_re
 from playground.shots.suite import Outcome, RenderedShot, ShotCase, check, images_of, render_shot, shots_of
 from playground.sketch.model import Graph, Shot, Sketch
 
+from ..sketch_texts import map_of_height
+
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 NEWER = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa", "4.5 Mesa 25.0.7", 4)
 CARD = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 NVIDIA 570.86", 32)
@@ -183,8 +185,7 @@ def slope(folder: Path) -> ShotCase:
         "float kernel(ivec2 texel) { return float(texel.x) / 16.0; }\n"
     )
     (folder / "slope.toml").write_text(
-        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./land"\n[view]\nuse = "view/map"\n'
-        'inputs = { shown = "height" }\n[[shot]]\nname = "one"\nsize = [16, 16]\n'
+        "format = 1\nsize = 16\n" + map_of_height() + '[[shot]]\nname = "one"\nsize = [16, 16]\n'
     )
     return shots_of([folder / "slope.toml"])[0]
 

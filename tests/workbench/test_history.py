@@ -13,9 +13,11 @@ from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.bench import Bench
-from playground.workbench.commands import rounded, save_a_copy, save_as_preset, save_values
+from playground.workbench.commands import rounded
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
+
+from ..sketch_texts import map_of_height
 
 SIZE = (48, 32)
 KERNEL = """// land.glsl -- a slope
@@ -24,18 +26,11 @@ uniform float level = 0.25; //! slider(0, 1)
 uniform float other = 0.0; //! slider(0, 1)
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + other; }
 """
-SKETCH = """format = 1  # ours
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0, "height.other" = 0.5 }
-"""
+SKETCH = (
+    "format = 1  # ours\nsize = 33\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
+)
 
 
 class Desk:
@@ -148,7 +143,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     desk.turn()
     desk.session.drafts.set_camera(Camera(azimuth=12.3456, elevation=30.0))
     before = desk.turn()
-    save_values(desk.bench)
+    desk.bench.commands.save_values()
     assert 'use = "./land"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
     assert desk.text.startswith("format = 1  # ours\n")
     np.testing.assert_array_equal(desk.turn(), before)
@@ -161,7 +156,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     assert desk.session.sketch.camera == Camera() and desk.value("level") == 0.5
     desk.bench.undo.undo()
     assert desk.value("level") == 0.25, "what the file said before"
-    save_values(desk.bench)
+    desk.bench.commands.save_values()
     desk.turn()
     assert "set = { level = 0.25 }" in desk.text and "azimuth = 200" in desk.text
     for _ in range(2):
@@ -173,7 +168,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
 def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
     desk.session.drafts.choose("height", "./other")
     desk.turn()
-    save_values(desk.bench)
+    desk.bench.commands.save_values()
     desk.turn()
     assert 'use = "./other"' in desk.text and desk.session.shown is not None
     assert desk.session.shown.edits.techniques == ()
@@ -184,10 +179,10 @@ def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
 
 
 def test_values_by_hand_become_a_preset(desk: Desk) -> None:
-    save_as_preset(desk.bench, "low")
+    desk.bench.commands.save_as_preset("low")
     assert "would be empty" in desk.said and "low" not in desk.text
     desk.session.drafts.set("height.level", 0.125)
-    save_as_preset(desk.bench, " low ")
+    desk.bench.commands.save_as_preset(" low ")
     desk.turn()
     assert desk.session.sketch is not None
     assert [p.name for p in desk.session.sketch.presets] == ["high", "low"]
@@ -200,7 +195,7 @@ def test_a_file_changed_meanwhile_is_said(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
     text = SKETCH.replace("size = 33", "size = 17")
     (desk.folder / "sketch.toml").write_text(text, encoding="utf-8")
-    save_values(desk.bench)
+    desk.bench.commands.save_values()
     assert "changed meanwhile" in desk.said and desk.text == text
 
 
@@ -209,9 +204,9 @@ def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engin
     before = (SKETCHES / "white_noise.toml").read_bytes()
     desk.session.drafts.set("height.seed", 4)
     picture = desk.turn()
-    save_values(desk.bench)
+    desk.bench.commands.save_values()
     assert desk.bench.file.offer == "This sketch belongs to the playground itself."
-    save_a_copy(desk.bench)
+    desk.bench.commands.save_a_copy()
     np.testing.assert_array_equal(desk.turn(), picture)
     assert desk.session.path == tmp_path / "white_noise" / "sketch.toml"
     assert desk.session.shown is not None and desk.session.shown.edits.values == ()
@@ -266,7 +261,7 @@ def test_with_the_brush_in_the_hand_strokes_are_undone_and_redone_and_no_values(
     desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     brush = Brush(1)
-    desk.bench.painting = brush  # type: ignore[assignment]
+    desk.bench.undo.painting = brush  # type: ignore[assignment]
     desk.bench.undo.undo()
     assert brush.strokes == 0 and desk.value("level") == 0.5
     assert "took the last stroke back; put the brush down (B) to undo values" in desk.said
