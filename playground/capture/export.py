@@ -27,7 +27,7 @@ from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
-from playground.engine.view_inputs import seen
+from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
@@ -136,8 +136,8 @@ def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> ExportJ
         kind = form.kind or kind_of(plan, texture)
         kind = NUMBERS if kind == HEIGHT else kind  # 0 to 1 may be seen; metres would be all white
     else:
-        texture = seen(plan, "colour")
-    light = seen(plan, "light") if form.light else ""
+        texture = view_input(plan, "colour")
+    light = view_input(plan, "light") if form.light else ""
     if form.light and not light:
         raise SketchError(f"sketch {sketch.name} has no light to bake in")
     return ExportJob(
@@ -157,7 +157,7 @@ def _read(engine: Engine, job: ExportJob, texture: str, kind: str) -> NDArray[np
     if kind == HEIGHT:
         if channels != 1:
             raise SketchError(f"texture '{texture}' has {channels} channels; heights have one")
-        relief, base = job.plan.land.relief, job.plan.land.base_elevation
+        relief, base = job.plan.terrain.relief, job.plan.terrain.base_elevation
         assert relief is not None and base is not None  # a plan's land is known
         metres: NDArray[np.float32] = (values.astype(np.float64) * relief + base).astype(np.float32)
         return metres
@@ -196,7 +196,7 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
 
 
 def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
-    extent = job.plan.land.extent
+    extent = job.plan.terrain.extent
     assert extent is not None  # a plan's land is known
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
@@ -206,7 +206,7 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
     size = grid_of((heights.shape[1], heights.shape[0]), wanted)
     baked, texels, warning = _texture(engine, job)
-    extent = job.plan.land.extent
+    extent = job.plan.terrain.extent
     assert extent is not None  # a plan's land is known
     try:
         mesh = land_mesh(sampled(heights, size), extent, texels or (2, 2))

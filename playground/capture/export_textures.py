@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from playground.capture.extensions import COLOUR, HEIGHT, NUMBERS
 from playground.engine.plan import Plan
-from playground.engine.view_inputs import height_seen
+from playground.engine.view_inputs import view_height
 from playground.errors import SketchError
 
 
 def height_of(plan: Plan) -> str:
     """Return the heights that the picture shows; raise ``SketchError`` where there are none."""
-    found = height_seen(plan)
+    found = view_height(plan)
     if not found:
         there = ", ".join(spec.name for spec in plan.sketch.graph.passes if spec.name != "view")
         hint = f"; its textures are {there}" if there else ""

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from playground.errors import ParameterError, nearest
-from playground.sketch.assign import LAND, check_value, resolve, value_of, values_of
+from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, value_of, values_of
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.values import coerce, expected, is_whole, length_of, write
 
@@ -71,7 +71,7 @@ def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
 
 def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
     """Return the parameter that a path names, and which of its numbers; raise ``ParameterError``."""
-    if path in LAND:
+    if path in TERRAIN_KEYS:
         return path, None, None
     around, _, last = path.rpartition(".")
     for whole in (path, around):

@@ -76,9 +76,9 @@ def check_display(renderer: Renderer) -> None:
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
     if not where_to_show(os.environ, sys.platform):
-        from playground.gpu.driver_advice import mend
+        from playground.gpu.driver_advice import advice
 
-        raise ContextError(mend("unable to open display", sys.platform, os.environ))
+        raise ContextError(advice("unable to open display", sys.platform, os.environ))
 
 
 def open_window(

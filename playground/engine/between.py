@@ -1,6 +1,6 @@
-"""Say how the terrain so far is joined up where a run is stopped early.
+"""Return how the terrain so far is joined up where a run is stopped early.
 
-A kernel with a ``stride`` sets, turn by turn, the nodes of an ever closer lattice; all else is
+A kernel with a ``stride`` sets, iteration by iteration, the nodes of an ever closer lattice; all else is
 still 0, and would stand around its nodes like a plain around nails. Its header says how the
 nodes are joined (``between``). Only pictures are filled so: values that are read stay as they
 are, and a run that goes on goes on from those. ``fill`` does it.
@@ -28,9 +28,9 @@ class Between(NamedTuple):
 
 
 def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number]) -> Between | None:
-    """Return how the texels known after ``repeat`` turns of ``whole`` are joined; None where nothing is.
+    """Return how the texels known after ``repeat`` iterations of ``whole`` are joined; None where nothing is.
 
-    A stride that stays for two turns is that of a lattice of which the first turn sets the
+    A stride that stays for two iterations is that of a lattice of which the first iteration sets the
     squares' centres and the second the rest. Raises ``ShaderError`` at a stride that is none.
     """
     kernel = leaf.kernel
@@ -52,5 +52,5 @@ def _stride(kernel: Kernel, names: Mapping[str, Number], turn: int) -> int:
 
 
 def _begins_with_something(leaf: Leaf) -> bool:
-    """Say whether a kernel begins with other textures: then texels off its lattice count as well."""
+    """Return whether a kernel begins with other textures: then texels off its lattice count as well."""
     return any(source is not None for name, source in leaf.inputs if name in initial_names(leaf.kernel))

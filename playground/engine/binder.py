@@ -1,7 +1,7 @@
 """Hand a program what it reads: given names, parameters, textures with their samplers.
 
 Image files become textures here, and are kept; so are samplers and the single texels that
-stand in for what is not wired.
+replace what is not wired.
 """
 
 from __future__ import annotations
@@ -32,9 +32,7 @@ if TYPE_CHECKING:
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
-_ANISOTROPY = (
-    8.0  # of what is filtered with mipmaps; where the processor draws it costs a hundred times as much
-)
+_ANISOTROPY = 8.0  # of what is filtered with mipmaps; on a software renderer it costs a hundred times as much
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
@@ -68,7 +66,7 @@ class Binder:
     def bind(
         self, program: Program, step: Step, given: Mapping[str, Any], inputs: Mapping[str, Wired]
     ) -> int:
-        """Set what stays over the turns of a step; return the next free texture unit."""
+        """Set what stays over the iterations of a step; return the next free texture unit."""
         kernel, unit = step.kernel, 0
         for name, value in given.items():
             program.set(name, value)
@@ -102,7 +100,7 @@ class Binder:
     def previous(
         self, program: Program, kernel: Kernel, state: Mapping[str, moderngl.Texture], unit: int
     ) -> None:
-        """Bind the textures of the turn before; zeros where there is none."""
+        """Bind the textures of the iteration before; zeros where there is none."""
         for output in kernel.outputs:
             name = f"k_previous_{output.name}"
             if name in program:
@@ -187,6 +185,6 @@ class Binder:
 
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
-    """Say whether nothing is wired to some input that may stay so."""
+    """Return whether nothing is wired to some input that may stay so."""
     fallbacks = [i.name for i in kernel.inputs if i.fallback]
     return None in [inputs.get(name, NOT_WIRED).texture for name in fallbacks]

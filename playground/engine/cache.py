@@ -13,11 +13,11 @@ MOST = 512
 
 
 @dataclass(eq=False)
-class Kept:
-    """The results of one pass, or of all passes of a loop after some turn."""
+class Cached:
+    """The results of one pass, or of all passes of a loop after some iteration."""
 
     results: dict[str, Result]  # by the pass's path
-    turn: int = 0  # turns done, of a loop
+    turn: int = 0  # iterations done, of a loop
 
     @property
     def bytes(self) -> int:
@@ -37,7 +37,7 @@ class Cache:
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
         self._pool = pool
-        self._kept: OrderedDict[str, Kept] = OrderedDict()
+        self._kept: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
         self._may_grow: set[str] = set()  # used since they were weighed
         self._sizes: dict[str, int] = {}  # [bytes] of what is kept, as it was when last looked at
@@ -57,7 +57,7 @@ class Cache:
         return key in self._kept
 
     def holds(self, key: str, turn: int) -> bool:
-        """Say whether a loop is kept after that turn."""
+        """Return whether a loop is cached after that iteration."""
         kept = self._kept.get(key)
         return kept is not None and kept.turn == turn
 
@@ -71,7 +71,7 @@ class Cache:
         self._weigh_used()
         self.trim()
 
-    def get(self, key: str) -> Kept | None:
+    def get(self, key: str) -> Cached | None:
         """Return what is kept and mark it as used; None if there is nothing."""
         kept = self._kept.get(key)
         if kept is None:
@@ -80,11 +80,11 @@ class Cache:
         self._use(key)
         return kept
 
-    def peek(self, key: str) -> Kept | None:
+    def peek(self, key: str) -> Cached | None:
         """Return what is kept, as if nobody had looked."""
         return self._kept.get(key)
 
-    def put(self, key: str, kept: Kept) -> None:
+    def put(self, key: str, kept: Cached) -> None:
         """Keep something, used by the current frame; what is over the bound goes."""
         self.drop(key)
         self._kept[key] = kept
@@ -101,7 +101,7 @@ class Cache:
         self._latest[path] = (unfinished, key, turn)
 
     def take_earlier(self, path: str, unfinished: str, turn: int) -> Result | None:
-        """Hand over the same pass after fewer turns, unless this frame uses it; the caller now owns it."""
+        """Hand over the same pass after fewer iterations to the caller, if this frame does not use it."""
         known, key, before = self._latest.get(path, ("", "", 0))
         if known != unfinished or before >= turn or key in self._in_use or key not in self._kept:
             return None

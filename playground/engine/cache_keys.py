@@ -1,10 +1,10 @@
 """Work out what each pass's textures depend on, before anything runs.
 
 A pass is stale when its key changes. The key holds its text without comments, the values
-and given names that the text uses, its size and count of turns, its driver, its files by
+and given names that the text uses, its size and count of iterations, its driver, its files by
 their contents, and the keys of what it reads. Inside a loop, what is fed back has a name
-in place of a key: a loop's key is the same at every turn, so a loop can go on from the
-turn that is kept.
+in place of a key: a loop's key is the same at every iteration, so a loop can go on from the
+iteration that is kept.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from playground.engine.files import content_hash
-from playground.engine.plan import Plan, PlanNode, Step, Turns, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
@@ -34,14 +34,14 @@ class Keys:
 
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
     raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
-    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the count of turns
-    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, whatever the count of turns
+    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the number of steps
+    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
     step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
     loop_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a loop
 
     def changes(self, node: PlanNode) -> frozenset[str]:
         """Return the paths of the loops around a node whose turns change it."""
-        return self.loop_loops[node.path] if isinstance(node, Turns) else self.step_loops[node.path]
+        return self.loop_loops[node.path] if isinstance(node, LoopStep) else self.step_loops[node.path]
 
 
 class KeyMaker:
@@ -173,7 +173,7 @@ class _Made:
         self, node: PlanNode, loop: str, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
     ) -> None:
         """Add a node; ``loop`` is the innermost loop around it, ``fed`` names what loops feed back."""
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             self._loop(node, fed, varying)
             return
         kernel, path = node.kernel, node.path
@@ -215,7 +215,7 @@ class _Made:
             shown = _digest([raw, *step.between])
         return _Known(step, written, _digest([step.path, parts]), raw, shown)
 
-    def _loop(self, loop: Turns, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
+    def _loop(self, loop: LoopStep, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
         own = _loops_in(loop)
         outer: frozenset[str] = frozenset()
@@ -236,7 +236,7 @@ class _Made:
         key = self.keys.loops[loop.path] = _digest(parts)
         self.keys.loop_loops[loop.path] = outer
         for path in inside:
-            if loop.path in self.varies[path]:  # what reads it from here on sees the last turn
+            if loop.path in self.varies[path]:  # what reads it from here on sees the last iteration
                 self.keys.steps[path] = _digest([key, path, loop.repeat])
                 self.varies[path] -= {loop.path}
 
@@ -251,10 +251,10 @@ class _Made:
         return fed[source] if isinstance(source, Fed) else f"{self.keys.steps[source.path]}:{source.output}"
 
 
-def _loops_in(loop: Turns) -> set[str]:
+def _loops_in(loop: LoopStep) -> set[str]:
     found = {loop.path}
     for node in loop.body:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             found |= _loops_in(node)
     return found
 

@@ -1,12 +1,12 @@
 """Check files: compile every kernel by both drivers, load every sketch, draw one small frame of each.
 
-A kernel is drawn on a stage of its own: stand-in textures for its inputs, a stand-in
+A kernel is drawn on a stage of its own: placeholder textures for its inputs, a placeholder
 picture for files that nothing names, and a view that only copies, so that a mistake
 elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox,
 where it can crash or hang.
 
 Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
-texture holds nothing else, for stand-ins may be what it has no answer to.
+texture holds nothing else, for placeholders may be what it has no answer to.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from playground.engine.error_place import told_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
-from playground.engine.standalone import free_name, stage, with_pictures
+from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
@@ -137,7 +137,7 @@ class _Check:
         self.sandbox = sandbox
         self.path = path
         self.root = GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root
-        self.scratch = scratch  # where the stand-in picture is written
+        self.scratch = scratch  # where the placeholder picture is written
         self.skipped: dict[str, None] = {}
         self.errors: dict[Diagnostic, None] = {}
         self.warnings: dict[Diagnostic, None] = {}
@@ -224,7 +224,7 @@ class _Check:
 
     def on_stage(self, technique: Technique) -> None:
         """Try a technique: what it says by both drivers, then its fast variants, verified or not."""
-        self.notes = () if self.plain else left_out(self.stage(technique))
+        self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
         self.attempt(self.request(without_variants(technique), BOTH))
         if any_variants(technique) and not self.plain and not self.errors:
             self.attempt(self.request(trusted(technique), (COMPUTE,)))
@@ -250,17 +250,17 @@ class _Check:
         return read_technique(f"./{path.stem}", path.parent, self.root)
 
     def request(self, technique: Technique, drivers: tuple[str, ...]) -> TrySketch:
-        return TrySketch(self.stage(technique), _FRAME, drivers=drivers, refuses="all")
+        return TrySketch(self.standalone_sketch(technique), _FRAME, drivers=drivers, refuses="all")
 
-    def stage(self, technique: Technique) -> Sketch:
-        """Return a sketch that shows a technique, its inputs wired to stand-ins."""
+    def standalone_sketch(self, technique: Technique) -> Sketch:
+        """Return a sketch that shows a technique, its inputs wired to placeholders."""
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
-        found = stage(technique, free_name(subject, technique), self.root, self.picture)
+        found = standalone_sketch(technique, free_name(subject, technique), self.root, self.picture)
         return replace(found, name=self.path.stem, file=str(self.path))
 
     @property
     def picture(self) -> Path:
-        """The file that stands in for those that nothing names."""
+        """The file that replaces those that nothing names."""
         return self.scratch / "stand-in.png"
 
 
@@ -284,7 +284,7 @@ def _is_ours(path: Path) -> bool:
 
 
 def _names_files(sketch: Sketch) -> bool:
-    """Say whether any parameter names an image or an elevation file."""
+    """Return whether any parameter names an image or an elevation file."""
     values = values_of(sketch)
     return any(
         parameter.widget.kind == "file" and values[f"{path}.{parameter.name}"]

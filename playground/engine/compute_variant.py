@@ -2,7 +2,7 @@
 
 What one writes begins as zeros, but for what its header says it overwrites. Buffers
 are kept for the next run: fresh memory of such a size costs more than filling it. A buffer
-that bears an output's name is that output, and is copied to its texture after the last turn:
+that bears an output's name is that output, and is copied to its texture after the last iteration:
 llvmpipe takes five times as long to store texels in an image one by one.
 """
 
@@ -73,9 +73,9 @@ class ComputeVariants:
         return result
 
     def _program(self, job: Job, iteration: int, bound: Program | None) -> Program:
-        """Return the program of a turn with all that it reads, if it is not the one that is ``bound``.
+        """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
 
-        Where the processor draws, there is one for each stage: what the others do would
+        On a software renderer, there is one for each stage: what the others do would
         be gone through as well, and thrown away.
         """
         step, stages = job.step, job.step.kernel.stages

@@ -6,7 +6,7 @@ version of the playground, down to its own Python files. So nothing here is ever
 nobody asks for any more goes when the bound in bytes is reached, least recently used first.
 
 A file is written beside its place and then given its name, so that another process sees all of it
-or nothing. One that is damaged, cut short or not ours is dropped, and the land is computed. Which
+or nothing. One that is damaged, cut short or not ours is dropped, and the terrain is computed. Which
 passes are worth it, ``store_choice`` says; who reads and writes textures is ``store_keeping``.
 """
 
@@ -53,7 +53,7 @@ _LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python has a
 
 
 @dataclass(frozen=True)
-class Kept:
+class CachedTextures:
     """What one pass made, and where it came from."""
 
     size: tuple[int, int]  # texels
@@ -75,7 +75,7 @@ class Listed:
     path: Path
     bytes: int  # of the file
     used: float  # [s since the epoch] when it was read or written last
-    kept: Kept | None  # None: it cannot be read
+    kept: CachedTextures | None  # None: it cannot be read
 
 
 def place() -> Path:
@@ -99,7 +99,7 @@ def limit_in(environment: Mapping[str, str] = os.environ) -> int:
     return int(number * _UNITS[unit])
 
 
-class Store:
+class DiskCache:
     """The files, for one build of a renderer; its own thread writes them."""
 
     def __init__(self, folder: Path, *, limit: int = LIMIT, made_by: str = "") -> None:
@@ -107,13 +107,13 @@ class Store:
         self.limit = limit  # [bytes]
         self.trouble = ""  # why files can no longer be written, in a sentence
         self._made_by = made_by
-        self._waiting: queue.SimpleQueue[tuple[str, Kept] | None] = queue.SimpleQueue()
+        self._waiting: queue.SimpleQueue[tuple[str, CachedTextures] | None] = queue.SimpleQueue()
         self._thread: threading.Thread | None = None
 
     def __contains__(self, key: str) -> bool:
         return self._path(key).exists()
 
-    def read(self, key: str) -> Kept | None:
+    def read(self, key: str) -> CachedTextures | None:
         """Return what is kept under a key, whole and checked; None if there is nothing. It is now used."""
         path = self._path(key)
         try:
@@ -129,10 +129,10 @@ class Store:
         return kept
 
     def fits(self, size: int) -> bool:
-        """Say whether so many bytes of texels may be kept."""
+        """Return whether so many bytes of texels may be kept."""
         return not self.trouble and size <= self.limit // SHARE
 
-    def keep(self, key: str, kept: Kept) -> None:
+    def keep(self, key: str, kept: CachedTextures) -> None:
         """Have something written, in its own time; what cannot be is told in ``trouble``."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._write_all, name="store", daemon=True)
@@ -168,9 +168,9 @@ class Store:
             trim(self.folder, self.limit)
 
 
-def store_for(renderer: ContextInfo, limit: int, folder: Path | None = None) -> Store:
+def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None) -> DiskCache:
     """Return the store of a renderer's build, in the user's cache unless a folder is named."""
-    return Store(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
+    return DiskCache(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
 
 
 @lru_cache(maxsize=1)
@@ -254,7 +254,7 @@ def _drop(path: Path) -> bool:
     return True
 
 
-def _written(key: str, kept: Kept) -> Iterator[bytes | memoryview]:
+def _written(key: str, kept: CachedTextures) -> Iterator[bytes | memoryview]:
     header = json.dumps(
         {
             "key": key,
@@ -272,7 +272,7 @@ def _written(key: str, kept: Kept) -> Iterator[bytes | memoryview]:
     yield struct.pack("<I", checksum)
 
 
-def _head(file: IO[bytes]) -> tuple[bytes, Kept, str]:
+def _head(file: IO[bytes]) -> tuple[bytes, CachedTextures, str]:
     """Return a file's first bytes, what they say, and the key; raise ``ValueError`` if it is not ours."""
     start = file.read(len(_MAGIC) + 4)
     if len(start) < len(_MAGIC) + 4 or not start.startswith(_MAGIC):
@@ -285,7 +285,7 @@ def _head(file: IO[bytes]) -> tuple[bytes, Kept, str]:
         table: dict[str, Any] = read_json(header)
         width, height = (int(side) for side in table["size"])
         outputs = tuple((str(name), str(form)) for name, form in table["outputs"])
-        kept = Kept((width, height), outputs, float(table["cost"]), str(table["made_for"]))
+        kept = CachedTextures((width, height), outputs, float(table["cost"]), str(table["made_for"]))
         if min(width, height) < 1 or kept.bytes < 1:
             raise ValueError("no texels")
         return start + header, kept, str(table["key"])
@@ -293,7 +293,7 @@ def _head(file: IO[bytes]) -> tuple[bytes, Kept, str]:
         raise ValueError(f"not a header: {error}") from None
 
 
-def _read(file: IO[bytes], key: str) -> Kept | None:
+def _read(file: IO[bytes], key: str) -> CachedTextures | None:
     """Return what a file holds; None if it is not whole, or not what was asked for."""
     try:
         head, kept, named = _head(file)
@@ -311,4 +311,4 @@ def _read(file: IO[bytes], key: str) -> Kept | None:
         length = bytes_of(kept.size, form)
         parts.append(body[start : start + length])
         start += length
-    return Kept(kept.size, kept.outputs, kept.cost, kept.made_for, tuple(parts))
+    return CachedTextures(kept.size, kept.outputs, kept.cost, kept.made_for, tuple(parts))

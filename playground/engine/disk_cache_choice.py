@@ -1,7 +1,7 @@
 """Choose what a frame takes from the store, and what is worth keeping there.
 
 The camera, the window's size and the time change a sketch's last passes all the time; what
-they read of the land stays. Where that meets is the frontier: of the passes that stay, those
+they read of the terrain stays. Where that meets is the frontier: of the passes that stay, those
 that are read by one that does not. A reopened sketch takes the frontier from the disk, and
 the passes behind it are not run at all.
 
@@ -15,13 +15,13 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.engine.cache import Kept
+from playground.engine.cache import Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import (
+    LoopStep,
     Plan,
     PlanNode,
     Step,
-    Turns,
     continued,
     every_node,
     needed,
@@ -40,7 +40,7 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     """Return the paths of the steps and loops of a plan that are never kept.
 
     What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
-    stopped before its last turn or gone on from by a later draw, or reads a file that is
+    stopped before its last iteration or gone on from by a later draw, or reads a file that is
     ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
     """
     found: set[str] = set()
@@ -48,7 +48,7 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     for node in plan.nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
-        loops = [loop for loop in every_node((node,)) if isinstance(loop, Turns)]
+        loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
         own = any(_passes(step, plan, goes_on) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
@@ -60,7 +60,7 @@ def _reads_one(step: Step, files: Collection[Path]) -> bool:
     return bool(files) and any(Path(str(value)) in files for value in named)
 
 
-def _stops(loop: Turns) -> bool:
+def _stops(loop: LoopStep) -> bool:
     by_time = "time" in loop.spec.repeat and "time" in names_in(loop.spec.repeat)
     return by_time or loop.repeat != loop.whole
 
@@ -89,7 +89,7 @@ def choose(
     keys: Keys,
     nodes: Iterable[PlanNode],
     ref: Ref,
-    held: Callable[[str], Kept | None],
+    held: Callable[[str], Cached | None],
     read: Callable[[Step], bool],
     *,
     skips: bool,
@@ -121,7 +121,7 @@ def choose(
     return Chosen(run[::-1], taken, frozenset(skipped))
 
 
-def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Kept | None]) -> dict[str, Result] | None:
+def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None]) -> dict[str, Result] | None:
     """Return what memory keeps of a node, by the step's path; None where it has to be run, or read."""
     if isinstance(node, Step):
         found = _alone(held(keys.steps[node.path]))
@@ -136,7 +136,7 @@ def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Kept | None]) -
     return together
 
 
-def _alone(kept: Kept | None) -> Result | None:
+def _alone(kept: Cached | None) -> Result | None:
     return None if kept is None else next(iter(kept.results.values()), None)
 
 
@@ -177,7 +177,7 @@ def worth_keeping(
     wholes: list[dict[str, float]] = []  # what was run for a node, nothing read, each with its time
     is_read: list[bool] = []
     for number, node in enumerate(nodes):
-        key = keys.loops[node.path] if isinstance(node, Turns) else keys.steps[node.path]
+        key = keys.loops[node.path] if isinstance(node, LoopStep) else keys.steps[node.path]
         way, whole = {(True, key): costs.get(key, 0.0)}, {key: costs.get(key, 0.0)}
         for path in sources[number]:
             before = home[path]

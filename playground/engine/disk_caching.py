@@ -1,7 +1,7 @@
 """Keep an engine's expensive textures in a store, and take them from there.
 
-What passes cost is measured as they run. Once the land has rested for a moment, the textures
-that are worth it are read back a piece a turn, and the store's own thread writes them: no
+What passes cost is measured as they run. Once the terrain has rested for a moment, the textures
+that are worth it are read back a piece at a time, and the store's own thread writes them: no
 frame waits for either. The next time, an engine with this store reads them and does not run
 the passes at all; a pass in between that is wanted after all, runs then.
 """
@@ -15,10 +15,9 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.cache import Cache
-from playground.engine.cache import Kept as InMemory
+from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
-from playground.engine.disk_cache import Kept, Store
+from playground.engine.disk_cache import CachedTextures, DiskCache
 from playground.engine.disk_cache_choice import choose, passing, worth_keeping
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
@@ -32,8 +31,8 @@ if TYPE_CHECKING:
 
 FLOOR = 20.0  # [ms] that reading must save: less is not seen
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
-REST = 1.0  # [s] without another piece of land before one is kept
-PIECE = 4 * 2**20  # [bytes] read back in one turn
+REST = 1.0  # [s] without another piece of terrain before one is kept
+PIECE = 4 * 2**20  # [bytes] read back at once
 _MOST_COSTS = 4096
 
 
@@ -47,7 +46,7 @@ class DiskCaching:
 
     def __init__(
         self,
-        store: Store,
+        store: DiskCache,
         *,
         floor: float = FLOOR,
         rest: float = REST,
@@ -118,7 +117,7 @@ class DiskCaching:
         result = execution.runner.pool.take(step.size, outputs)
         for output, data in zip(outputs, kept.data, strict=True):
             result.textures[output.name].write(data, alignment=1)
-        execution.cache.put(key, InMemory({step.path: result}))
+        execution.cache.put(key, Cached({step.path: result}))
         self._note(key, kept.cost)
         self.reads += 1
         return True
@@ -194,7 +193,9 @@ class DiskCaching:
                 parts.append(memoryview(whole).toreadonly())
             outputs = tuple((o.name, o.format) for o in result.outputs)
             made_for = f"{plan.sketch.name}: {worth.path}"
-            self.store.keep(worth.key, Kept(result.size, outputs, worth.cost, made_for, tuple(parts)))
+            self.store.keep(
+                worth.key, CachedTextures(result.size, outputs, worth.cost, made_for, tuple(parts))
+            )
 
 
 def _read_rows(ctx: moderngl.Context, result: Result, output: str, south: int, north: int) -> bytes:

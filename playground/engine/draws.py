@@ -153,7 +153,7 @@ class Draws:
         if wired.texture is None:
             return
         if wired.result is not None and _is_alike(wired.result, surface):
-            # The same bits, where the processor draws in a tenth of the time.
+            # The same bits, on a software renderer in a tenth of the time.
             self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
         else:
             self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
@@ -216,7 +216,7 @@ def _clear(framebuffer: moderngl.Framebuffer, *, colour: bool) -> None:
 
 
 def _is_alike(result: Result, surface: Surface) -> bool:
-    """Say whether a result is one texture of the same size and format as a surface of single samples."""
+    """Return whether a result is one texture of the same size and format as a surface of single samples."""
     formats = [output.format for output in result.outputs]
     return surface.samples == 1 and result.size == surface.size and formats == [surface.format]
 

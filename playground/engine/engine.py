@@ -1,7 +1,7 @@
 """Run a sketch on a context, and only what is stale.
 
-A pass runs again when its key changes (see ``keys``): so moving the sun lights the land
-anew and leaves the land alone. ``execution`` runs the passes in order, ``runner`` each of
+A pass runs again when its key changes (see ``keys``): so moving the sun lights the terrain
+anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
 them; here is what a program calls.
 """
 
@@ -160,7 +160,7 @@ class Engine(Recorded):
         """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
-        many turns, by path. What a stopped pass has not reached yet is interpolated where its
+        many iterations, by path. What a stopped pass has not reached yet is interpolated where its
         header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
@@ -278,7 +278,7 @@ class Engine(Recorded):
         size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
     ) -> Iterator[tuple[int, NDArray[np.float32]]]:
-        """Yield (turns done, values) of a repeated pass, from before its first turn to after its last.
+        """Yield (iterations done, values) of a repeated pass, from before its first to after its last.
 
         ``path`` may be a technique's in which one pass repeats: it is that one.
         """

@@ -1,6 +1,6 @@
-"""Run the passes of one plan in order: what is kept is taken, what is stale is made, loops go turn by turn.
+"""Run the passes of one plan in order: what is cached is taken, what is stale is made, loops iterate.
 
-What a turn of a loop makes belongs to the loop until its next turn is done; all else
+What an iteration of a loop makes belongs to the loop until its next iteration is done; all else
 belongs to the cache. A pass inside a loop that does not change with it runs once.
 """
 
@@ -9,19 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 
-from playground.engine.cache import Cache, Kept
+from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
-from playground.engine.plan import Plan, PlanNode, Step, Turns, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
 from playground.sketch.expressions import names_in
 from playground.sketch.flat import Fed, Ref, Source
 
 Turn = tuple[int, int]
-"""A turn of a loop, and its turns in all."""
+"""An iteration of a loop, and its iterations in all."""
 
 Make = Callable[[Step, Mapping[str, Wired], Turn | None, Result | None], Result]
-"""Runs a step: its inputs, the turn of the loop around it, the same step after fewer turns to go on from."""
+"""Runs a step: its inputs, the iteration of the loop around it, the same step after fewer to go on from."""
 
 
 Timed = Callable[[str, str], AbstractContextManager[None]]
@@ -49,11 +49,11 @@ class Execution:
         self._settled: set[int] = set()  # identities of nodes that change with no loop, and have run
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
-        """Run nodes in order: those that change with no loop, and loops from their first turn on."""
+        """Run nodes in order: those that change with no loop, and loops from their first iteration on."""
         for node in nodes:
             if not self.keys.changes(node):
                 self._run(node, {}, None, {})
-            elif isinstance(node, Turns):
+            elif isinstance(node, LoopStep):
                 self.run(node.body)
 
     def _run(
@@ -65,9 +65,9 @@ class Execution:
             if id(node) in self._settled:
                 return
             self._settled.add(id(node))
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             if passing:
-                state = Kept({})
+                state = Cached({})
                 self._loop(node, state, fed, owned)
                 owned |= state.results
             else:
@@ -96,7 +96,7 @@ class Execution:
         kept = self.cache.get(key)
         if kept is None:
             raw = self._raw(step, self.keys.raw[step.path])
-            kept = Kept({step.path: self.runner.filled(raw, step.between)})
+            kept = Cached({step.path: self.runner.filled(raw, step.between)})
             self.cache.put(key, kept)
         return next(iter(kept.results.values()))
 
@@ -108,7 +108,7 @@ class Execution:
             goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)
             earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
             with self.timed(step.path, key):
-                kept = Kept({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
+                kept = Cached({step.path: self.make(step, self._inputs(step, {}), None, earlier)})
             self.cache.put(key, kept)
             if goes_on:
                 self.cache.note_turn(step.path, unfinished, key, step.repeat)
@@ -127,20 +127,22 @@ class Execution:
 
     # ── loops ────────────────────────────────────────────────────────────────
 
-    def _kept_loop(self, loop: Turns) -> None:
-        """Run a loop from the turn that is kept, or from the start where that lies further on."""
+    def _kept_loop(self, loop: LoopStep) -> None:
+        """Run a loop from the iteration that is kept, or from the start where that lies further on."""
         key = self.keys.loops[loop.path]
         state = self.cache.get(key)
         if state is None or state.turn > loop.repeat:
-            state = Kept({})
+            state = Cached({})
             self.cache.put(key, state)
         with self.timed(loop.path, key) if state.turn < loop.repeat else nullcontext():
             self._loop(loop, state, {}, {})
         self.cache.grew(key)
         self.cache.grew(key)
 
-    def _loop(self, loop: Turns, state: Kept, around: Mapping[Fed, Wired], owned: dict[str, Result]) -> None:
-        """Run a loop's turns after ``state``, which each replaces; what stays over the turns is ``owned``."""
+    def _loop(
+        self, loop: LoopStep, state: Cached, around: Mapping[Fed, Wired], owned: dict[str, Result]
+    ) -> None:
+        """Run a loop's iterations after ``state``, which each replaces; what stays over them is ``owned``."""
         self.run(loop.body)
         fed = dict(around)
         for name, first, _ in loop.feedback:
@@ -163,14 +165,16 @@ class Execution:
                 for node in changing:
                     self._run(node, fed, (turn, loop.whole), made)
             except BaseException:
-                Kept(made).let_go(self.runner.pool)
+                Cached(made).let_go(self.runner.pool)
                 raise
-            Kept(state.results).let_go(self.runner.pool)
+            Cached(state.results).let_go(self.runner.pool)
             state.results, state.turn = made, turn + 1
             self.results |= made
 
-    def _unturned(self, loop: Turns, changing: list[PlanNode], fed: Mapping[Fed, Wired]) -> dict[str, Result]:
-        """Return what a loop gives before its first turn: what its first turn would read, else zeros."""
+    def _unturned(
+        self, loop: LoopStep, changing: list[PlanNode], fed: Mapping[Fed, Wired]
+    ) -> dict[str, Result]:
+        """Return what a loop gives before its first iteration: what that would read, else zeros."""
         found = {step.path: self.runner.empty(step) for step in walk(tuple(changing))}
         for name, _, ref in loop.feedback:
             texture = fed[Fed(loop.path, name)].texture
@@ -185,7 +189,7 @@ def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -
     steps = {step.path: step for step in plan.walk()}
     found: list[str] = []
     for node in wanted:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             if not cache.holds(keys.loops[node.path], node.repeat):
                 found += [step.path for step in walk((node,))]
         elif keys.steps[node.path] not in cache and not _draws_nothing(node, steps):
@@ -194,7 +198,7 @@ def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -
 
 
 def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
-    """Say whether an earlier draw will stand for a step: see ``Execution``."""
+    """Return whether an earlier draw will stand for a step: see ``Execution``."""
     start = dict(step.inputs).get("initial")
     earlier = steps.get(start.path) if isinstance(start, Ref) else None
     if step.kernel.kind != "draw" or step.repeat or earlier is None:

@@ -75,10 +75,10 @@ class EyeHeight:
     def _over(self, plan: Plan, place: tuple[float, float], height: float) -> Camera | None:
         """Return a camera over a height that is known at a place; None where the plan's own eye may stay."""
         self.raised_by = 0.0
-        if plan.land.relief is None or _place_of(plan) != place:
+        if plan.terrain.relief is None or _place_of(plan) != place:
             return None
         x, y, z = plan.eye.position
-        lowest = height * plan.land.relief + CLEARANCE * plan.eye.distance
+        lowest = height * plan.terrain.relief + CLEARANCE * plan.eye.distance
         if not z < lowest:  # or no number
             return None
         self.raised_by = lowest - z
@@ -87,9 +87,9 @@ class EyeHeight:
 
 def _place_of(plan: Plan) -> tuple[float, float] | None:
     """Return where the eye stands over the terrain, in shares of its sides; None beside it."""
-    if plan.land.extent is None or plan.land.relief is None:
+    if plan.terrain.extent is None or plan.terrain.relief is None:
         return None
-    x, y = (at / side for at, side in zip(plan.eye.position, plan.land.extent, strict=False))
+    x, y = (at / side for at, side in zip(plan.eye.position, plan.terrain.extent, strict=False))
     return (x, y) if 0 <= x <= 1 and 0 <= y <= 1 else None
 
 

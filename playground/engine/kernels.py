@@ -42,13 +42,13 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    turn: tuple[int, int] | None = None  # of the loop around it, and its turns in all
-    start: Result | None = None  # the same step after fewer turns, to go on from; it is used up
+    turn: tuple[int, int] | None = None  # of the loop around it, and its iterations in all
+    start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
     def count(self, program: Program, iteration: int, repeat: str, whole: int, turns: int = 1) -> None:
-        """Tell a kernel its turn: its own where it repeats, else that of the loop around it."""
+        """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
         now, total = (iteration, whole) if repeat != "1" or self.turn is None else self.turn
         program.set("iteration", now)
         program.set("iterations", total)
@@ -68,7 +68,7 @@ class Kernels:
         self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
     ) -> None:
         self.ctx = ctx
-        self.software = software  # whether the processor draws
+        self.software = software  # whether it is a software renderer
         self.programs = programs
         self.binder = binder
         self.pool = pool
@@ -88,7 +88,7 @@ class Kernels:
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
 
-        Where the processor draws there is one for each choice of menus, and of what is wired.
+        On a software renderer there is one for each choice of menus, and of what is wired.
         ``more`` are whole numbers to compile in as well.
         """
         kernel, values = job.step.kernel, job.step.values
@@ -205,7 +205,7 @@ class Kernels:
         return before
 
     def _shift(self, job: Job, iteration: int) -> int:
-        """Return the power of two that texels known after a turn lie apart."""
+        """Return the power of two that texels known after an iteration lie apart."""
         kernel = job.step.kernel
         stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
         if stride < 1 or stride & (stride - 1):
@@ -271,7 +271,7 @@ class Kernels:
         return result
 
     def _initial(self, job: Job) -> dict[str, moderngl.Texture]:
-        """Return the state before the first turn to run, by output; what is missing is zero."""
+        """Return the state before the first iteration to run, by output; what is missing is zero."""
         if job.start is not None:
             return dict(job.start.textures)
         step = job.step
@@ -289,7 +289,7 @@ class Kernels:
         return found
 
     def _untouched(self, step: Step, state: Mapping[str, moderngl.Texture]) -> Result:
-        """Return the state before the first turn, in textures of its own."""
+        """Return the state before the first iteration, in textures of its own."""
         result = self.empty(step)
         for output in step.kernel.outputs:
             if output.name in state:

@@ -6,11 +6,11 @@ point that the last frame went through is looked at, in the order in which the p
 
 Passes that write bytes themselves (nearly every view does, and weights of textures) hide
 theirs: such a pass is run once more into textures of floating point, and what it writes there
-is looked at. It need be done only for one that has run anew; of land that stays, and is lit
+is looked at. It need be done only for one that has run anew; of terrain that stays, and is lit
 anew, only the light is looked at again. Left as they are: passes inside a loop, kernels that
 repeat, compute variants (whose kernels give the same), and draws that go on from another one's samples.
 
-A hole in the land counts too: no shipped source leaves one (`no_data` refuses or fills them),
+A hole in the terrain counts too: no shipped source leaves one (`no_data` refuses or fills them),
 and the kernels that bear with one do so to show it, not to want it.
 """
 
@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.frame_record import FrameSource
-from playground.engine.plan import Plan, Step, Turns, every_node
+from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
 from playground.gpu.textures import read_raw, split_format
 from playground.gpu.wrap import FRAGMENT
@@ -57,7 +57,7 @@ class NotFinite:
         return f"{where} from the south-west corner; {self.count} of {whole} texels are not finite"
 
     def everywhere(self) -> str:
-        """Say it of a texture in which no texel is finite."""
+        """Describe it of a texture in which no texel is finite."""
         where = f"pass '{self.path}', output '{self.output}'"
         return (
             f"{where}: none of its {self.size[0] * self.size[1]} texels is finite; the first is {self.value}"
@@ -70,7 +70,7 @@ class FiniteCheck:
     def __init__(self, source: FrameSource) -> None:
         self.source = source
         self.looked_at = 0  # textures read for the last frame
-        # What was found of each result, and after how many turns: some go on in place.
+        # What was found of each result, and after how many iterations: some go on in place.
         self._seen: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
         self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
 
@@ -186,7 +186,7 @@ def _steps(plan: Plan | None) -> Iterator[tuple[Step, bool]]:
         return
     inside: set[int] = set()
     for node in every_node(plan.nodes):
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             inside |= {id(step) for step in every_node(node.body)}
         else:
             yield node, id(node) in inside

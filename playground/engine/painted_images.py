@@ -38,7 +38,7 @@ class Painted(Protocol):
         """How often it was changed."""
 
     def holds(self) -> bool:
-        """Say whether it is what its file holds, or newer; not where others have written the file."""
+        """Return whether it is what its file holds, or newer; not where others have written the file."""
 
     def changed_since(self, version: int) -> tuple[slice, slice]:
         """Return the rows and columns of all that was changed since then."""

@@ -1,4 +1,4 @@
-"""Say in one hash what a picture is drawn from, the same on every machine and in every year.
+"""Return in one hash what a picture is drawn from, the same on every machine and in every year.
 
 It is a pass's key (see ``keys``) with two things smoothed out. A text counts by its tokens, as
 the compiler takes it, so that comments, line ends and spaces say nothing. What the engine works

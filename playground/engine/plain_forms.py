@@ -1,4 +1,4 @@
-"""Say where a technique runs in its plain form, though there is a fast variant: once for each."""
+"""Return where a technique runs in its plain form, though there is a fast variant: once for each."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class PlainForms:
         self._told: set[str] = set()
 
     def tell(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
-        """Tell what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
+        """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
         for sentence in (*left_out(sketch, self.kinds), *lacking):
             if sentence not in self._told:
                 self._told.add(sentence)

@@ -9,7 +9,7 @@ from playground.engine.between import Between
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
-from playground.terrain.sources import Land
+from playground.terrain.sources import Terrain
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +30,8 @@ class Step:
     values: Mapping[str, Value]  # files as absolute paths
     inputs: tuple[tuple[str, Source | None], ...]
     size: tuple[int, int]
-    repeat: int  # turns to run
-    whole: int  # turns in all; more than ``repeat`` where it is stopped early
+    repeat: int  # iterations to run
+    whole: int  # iterations in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
     between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
@@ -43,18 +43,18 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Turns:
+class LoopStep:
     """A loop made concrete."""
 
     path: str
-    repeat: int  # turns to run
-    whole: int  # turns in all
-    body: tuple[Step | Turns, ...]
+    repeat: int  # iterations to run
+    whole: int  # iterations in all
+    body: tuple[Step | LoopStep, ...]
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec
 
 
-PlanNode = Step | Turns
+PlanNode = Step | LoopStep
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Plan:
     sketch: Sketch
     nodes: tuple[PlanNode, ...]
     flat: Flat
-    land: Land  # every field known
+    terrain: Terrain  # every field known
     eye: Eye
     frame_size: tuple[int, int]
     time: float
@@ -89,7 +89,7 @@ def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
     """Return every step of some nodes, those inside loops included."""
     found: list[Step] = []
     for node in nodes:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             found += walk(node.body)
         else:
             found.append(node)
@@ -101,7 +101,7 @@ def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
     found: list[PlanNode] = []
     for node in nodes:
         found.append(node)
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             found += every_node(node.body)
     return found
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 
 from playground.errors import ParameterError
-from playground.terrain.sources import Land
+from playground.terrain.sources import Terrain
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class PlanRequest:
     fills: bool
     compute: bool
     varies: bool  # keyframes set parameters, and so perhaps counts of steps
-    terrain: Land  # what the sketch says of it
+    terrain: Terrain  # what the sketch says of it
 
 
 def checked_pixels(size: object, largest: int) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""Tell what a plan's texts and files leave to be known, though they can be drawn: each warning once."""
+"""Report what a plan's texts and files leave to be known, though they can be drawn: each warning once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PlanWarnings:
         self._graph: Graph | None = None  # whose kernels were looked at last
 
     def look(self, plan: Plan) -> None:
-        """Tell the warnings of a plan that were not told yet."""
+        """Report the warnings of a plan that were not told yet."""
         if self.tell is None:
             return
         found = list(source_warnings(plan))
@@ -34,7 +34,7 @@ class PlanWarnings:
             self.once(warning, warning.message)
 
     def once(self, warning: Diagnostic, about: str) -> None:
-        """Tell a warning, unless one of its file was told that is about the same."""
+        """Report a warning, unless one of its file was told that is about the same."""
         if self.tell is not None and (about, warning.file) not in self._told:
             self._told.add((about, warning.file))
             self.tell(warning)

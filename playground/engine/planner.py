@@ -16,7 +16,7 @@ from pathlib import Path
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
-from playground.engine.plan import Plan, PlanNode, Step, Turns, every_node
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
 from playground.engine.plan_request import PlanRequest, checked_pixels, checked_seconds, checked_steps
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
@@ -25,13 +25,13 @@ from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
 from playground.sketch.flatten import flatten
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Land, source_kind
+from playground.terrain.sources import Terrain, source_kind
 
 DEFAULT_LAND = (513, 513)
 DEFAULT_EXTENT = 10_240.0
@@ -78,9 +78,9 @@ class Planner:
             repeated_in(sketch, path): checked_steps(path, count) for path, count in (steps or {}).items()
         }
         fills = not wanted if interpolated is None else interpolated
-        terrain = Land(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
+        terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
         request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
-        place = (Same(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
+        place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
         known = self._plans.pop(place, None)
 
         def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
@@ -160,16 +160,16 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
-    """Return the turns in all of every repeated kernel and loop, by path; what draws is left out."""
+    """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
     found: dict[str, int] = {}
     for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
-        if isinstance(node, Turns) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
+        if isinstance(node, LoopStep) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
 
 
 def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest land of ``least`` texels a side or more that every kernel of the land takes."""
+    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
     flat = flatten(sketch)
     return _accepted_by(flat, (least, least))
 
@@ -217,12 +217,16 @@ class _Planning:
                 now = self._with_files(leaf)  # another file may have come to stand before the one known
                 values = values if values == now else now
             self._values[leaf.path] = values
-        self.land = self._land()
+        self.terrain = self._described()
 
     def renewed(self) -> _Known | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
         known = self.known
-        if known is None or known.plan.land != self.land or (known.by_time and known.plan.time != self.time):
+        if (
+            known is None
+            or known.plan.terrain != self.terrain
+            or (known.by_time and known.plan.time != self.time)
+        ):
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
         if [path for path in known.named if now[path] is not before[path]]:
@@ -233,7 +237,7 @@ class _Planning:
         return replace(known, plan=plan, values=self._values)
 
     def _renewed(self, node: PlanNode) -> PlanNode:
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             body = tuple([self._renewed(inside) for inside in node.body])
             same = all([now is before for now, before in zip(body, node.body, strict=True)])
             return node if same else replace(node, body=body)
@@ -256,7 +260,7 @@ class _Planning:
             sketch=self.sketch,
             nodes=nodes,
             flat=self.flat,
-            land=self.land,
+            terrain=self.terrain,
             eye=self._eye(),
             frame_size=self.request.frame_size,
             time=self.time,
@@ -281,7 +285,7 @@ class _Planning:
         return found
 
     def _eye(self) -> Eye:
-        extent, relief = self.land.extent, self.land.relief
+        extent, relief = self.terrain.extent, self.terrain.relief
         assert extent is not None and relief is not None
         return look(self.sketch.camera, extent, relief, self.request.frame_size)
 
@@ -291,7 +295,9 @@ class _Planning:
             whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
             count = self._stopped(node.path, whole, node.repeat)
             body = tuple(self._node(inside) for inside in node.body)
-            return Turns(node.path, count, whole, body, node.feedback, node.spec)
+            return LoopStep(
+                path=node.path, repeat=count, whole=whole, body=body, feedback=node.feedback, spec=node.spec
+            )
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
@@ -332,7 +338,7 @@ class _Planning:
     def _count(
         self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
     ) -> int:
-        """Return how many turns; ``owner`` is what says so, and where a mistake is."""
+        """Return how many iterations; ``owner`` is what says so, and where a mistake is."""
         if text == "1":
             return 1
         try:
@@ -356,8 +362,8 @@ class _Planning:
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )
 
-    def _land(self) -> Land:
-        known = Land()
+    def _described(self) -> Terrain:
+        known = Terrain()
         for leaf in self.flat.leaves:
             if leaf.kernel.kind == "source":
                 self._check_source(leaf)
@@ -365,7 +371,7 @@ class _Planning:
                     known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
                 except DataError as error:
                     raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if known != Land():
+                if known != Terrain():
                     break
         size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
         extent = self.sketch.extent or known.extent
@@ -375,7 +381,7 @@ class _Planning:
             extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
         relief = self.sketch.relief if self.sketch.relief is not None else known.relief
         base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
-        return Land(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
+        return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
 
     def _check_source(self, leaf: Leaf) -> None:
         try:
@@ -441,8 +447,8 @@ class _Planning:
     def _base(self, path: str, prefix: str) -> tuple[int, int]:
         if prefix:
             return self.size_of(prefix)
-        assert self.land.size is not None
-        return self.request.frame_size if path == "view" else self.land.size
+        assert self.terrain.size is not None
+        return self.request.frame_size if path == "view" else self.terrain.size
 
     def _names(self, prefix: str, spec: PassSpec) -> Names:
         return Names(self, prefix, spec)

@@ -47,7 +47,7 @@ class Result:
     size: tuple[int, int]
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
-    turn: int = 0  # turns done, of a pass that repeats
+    turn: int = 0  # iterations done, of a pass that repeats
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made

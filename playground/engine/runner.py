@@ -65,14 +65,14 @@ class Runner:
         self.programs.begin()
 
     def look_at(self, plan: Plan) -> None:
-        """Take land, time and camera from a plan."""
+        """Take terrain, time and camera from a plan."""
         self._plan = plan
         eye = plan.eye
         self._given = {
             "time": plan.time,
-            "extent": plan.land.extent,
-            "relief": plan.land.relief,
-            "base_elevation": plan.land.base_elevation,
+            "extent": plan.terrain.extent,
+            "relief": plan.terrain.relief,
+            "base_elevation": plan.terrain.base_elevation,
             "clip_from_world": tuple(eye.clip_from_world.T.ravel().tolist()),
             "world_from_clip": tuple(eye.world_from_clip.T.ravel().tolist()),
             "eye": eye.position,
@@ -91,7 +91,7 @@ class Runner:
         self.programs.release()
 
     def given_for(self, step: Step) -> dict[str, Any]:
-        """Return what the engine gives beside the parameters and the turn, where the text names it."""
+        """Return what the engine gives beside the parameters and the iteration, where the text names it."""
         kernel = step.kernel
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
@@ -138,7 +138,7 @@ class Runner:
     ) -> Result:
         """Run a step and return its textures, which are the caller's.
 
-        ``turn`` is that of the loop around it; ``start`` the same step after fewer turns, which
+        ``turn`` is that of the loop around it; ``start`` the same step after fewer iterations, which
         is used up; ``keeps_surface`` says that a later draw goes on from this one.
         """
         assert self._plan is not None, "begin() comes first"

@@ -1,4 +1,4 @@
-"""A stage: a sketch of one technique alone, on stand-ins for what it reads.
+"""A stage: a sketch of one technique alone, on placeholders for what it reads.
 
 Nothing else is on it, so that a mistake elsewhere cannot pass for one of the technique's own.
 """
@@ -27,17 +27,19 @@ from playground.sketch.model import (
 from playground.sketch.source import Line, SourceText
 
 SEED = "seed"
-"""The stand-ins' parameter: which terrain."""
+"""The placeholders' parameter: which terrain."""
 
 
-def stage(technique: Technique, subject: str, folder: Path, picture: Path, *, seed: int = 0) -> Sketch:
-    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to stand-ins.
+def standalone_sketch(
+    technique: Technique, subject: str, folder: Path, picture: Path, *, seed: int = 0
+) -> Sketch:
+    """Return a sketch that shows a technique, its pass named ``subject``, its inputs wired to placeholders.
 
     ``folder`` is where its files are; ``picture`` is the file of parameters that name none.
     """
     wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
-    passes = [PassSpec(name, "a stand-in", _TERRAIN, values=((SEED, seed),)) for name in wanted]
+    passes = [PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),)) for name in wanted]
     passes.append(PassSpec(subject, subject, technique, file=shown(technique.path), line=line))
     passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
     graph = Graph(subject, technique.path, tuple(passes))
@@ -77,16 +79,16 @@ def _text(code: str) -> SourceText:
 
 
 _TERRAIN = Kernel(
-    "a stand-in",
-    "kernel",
-    _text(own_shader("stand_in_terrain.glsl")),
-    (Output("value", "rgba32f"),),
-    (Parameter(SEED, "uint", 0),),
+    name="a placeholder",
+    kind="kernel",
+    source=_text(own_shader("placeholder_terrain.glsl")),
+    outputs=(Output("value", "rgba32f"),),
+    parameters=(Parameter(SEED, "uint", 0),),
 )
 _COPY = Kernel(
-    "a copy",
-    "kernel",
-    _text(own_shader("stand_in_view.glsl")),
-    (Output("frame", "rgba16f"),),
+    name="a copy",
+    kind="kernel",
+    source=_text(own_shader("placeholder_view.glsl")),
+    outputs=(Output("frame", "rgba16f"),),
     inputs=(Input("shown"),),
 )

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.standalone import free_name, stage
+from playground.engine.standalone import free_name, standalone_sketch
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, shown
 from playground.sketch import expressions
@@ -169,14 +169,14 @@ def _subject(technique: Technique) -> str:
 
 def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
-    made = stage(technique, _subject(technique), folder, picture, seed=seed)
+    made = standalone_sketch(technique, _subject(technique), folder, picture, seed=seed)
     starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
     passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
     return replace(made, graph=replace(made.graph, passes=passes))
 
 
 def _starts(technique: Technique, name: str) -> bool:
-    """Say whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
+    """Return whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
     if isinstance(technique, Kernel):
         return technique.kind == "kernel" and name in initial_names(technique)
     targets = [t.rpartition(".") for e in technique.inputs if e.name == name for t in e.targets]
@@ -283,7 +283,7 @@ def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: 
 
 
 def _has_run(engine: Engine, place: Place) -> bool:
-    """Say whether the fast variant was what gave the last texture: where more is wired, it steps back."""
+    """Return whether the fast variant was what gave the last texture: where more is wired, it steps back."""
     files = {kernel.path for _, kernel in kernels_of(place.variant.technique)}
     steps = engine.plan.walk() if engine.plan is not None else ()
     return any(step.path.startswith(place.path) and step.kernel.path in files for step in steps)

@@ -1,4 +1,4 @@
-"""Tell which textures the picture shows: the view's height, its colour, its light."""
+"""Report which textures the picture shows: the view's height, its colour, its light."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from playground.sketch.flat import Ref, leaves_of
 from playground.sketch.wiring import input_names
 
 
-def seen(plan: Plan, name: str) -> str:
+def view_input(plan: Plan, name: str) -> str:
     """Return the texture that the view takes as its input ``name``; "" if there is none.
 
     It is what the view is wired to, else what an unwired input of that name would take. A view
@@ -35,8 +35,8 @@ def seen(plan: Plan, name: str) -> str:
     return next((f"{path}:{name}" for path in passes if name in flat.outputs[path]), "")
 
 
-def height_seen(plan: Plan) -> str:
-    """Return the land's heights: those that the view shows, else the latest there are; "" without any."""
-    found = seen(plan, "height")
+def view_height(plan: Plan) -> str:
+    """Return the terrain's heights: those that the view shows, else the latest there are; "" without any."""
+    found = view_input(plan, "height")
     passes = [spec.name for spec in reversed(plan.sketch.graph.passes) if spec.name != "view"]
     return found or next((f"{path}:height" for path in passes if "height" in plan.flat.outputs[path]), "")

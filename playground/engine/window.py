@@ -2,7 +2,7 @@
 
 A picture may be larger than any texture. Its passes that have a texel for each pixel then
 run for a window of it at a time: they are told the size of the whole and where the window
-lies, and everything else, the land, its light, is made once and stays. The camera is that
+lies, and everything else, the terrain, its light, is made once and stays. The camera is that
 of the whole picture, and so are a draw's clip space and its viewport, of which the window
 is all that is kept.
 
@@ -19,10 +19,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 
-from playground.engine.plan import Plan, PlanNode, Turns, Window, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Window, sources_of, walk
 from playground.errors import SketchError
 from playground.sketch.flat import Ref
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.sketch.source import SourceText
@@ -51,7 +51,7 @@ def windowed(plan: Plan, other: Plan, window: Window) -> Plan:
 
 def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
     inside = [step.path for step in walk((node,)) if step.path in of_pixels]
-    if isinstance(node, Turns):
+    if isinstance(node, LoopStep):
         if inside or _read(node, of_pixels):
             raise _refused(node, "it repeats")
         return node
@@ -63,7 +63,7 @@ def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
     if node.kernel.kind in ("source", "compute", "plain_compute"):
         raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
     names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
-    kernel = _changed(Same(node.kernel), names)
+    kernel = _changed(Identity(node.kernel), names)
     if isinstance(kernel, str):
         raise _refused(node, kernel)
     return replace(node, kernel=kernel, size=window.size, window=window)
@@ -78,7 +78,7 @@ def _refused(node: PlanNode, why: str) -> SketchError:
 
 
 @lru_cache(maxsize=64)
-def _changed(key: Same[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
+def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
     """Return a kernel that knows its window, or why there can be none."""
     kernel = key.object
     code = kernel.source.code
@@ -100,7 +100,7 @@ def _previous(kernel: Kernel) -> list[str]:
 
 
 def _names(code: str, *names: str) -> bool:
-    """Say whether a text names something besides declaring a sampler of that name."""
+    """Return whether a text names something besides declaring a sampler of that name."""
     return any(re.search(rf"(?<!sampler2D )\b{name}\b", code) for name in names)
 
 

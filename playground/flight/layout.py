@@ -94,7 +94,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
     aprons = [f"{name}.{_APRON}" for name in names]
     others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
     sketch = sketch.with_values(dict.fromkeys(others, apron))
-    ground = engine.plan_for(sketch, (1, 1)).land
+    ground = engine.plan_for(sketch, (1, 1)).terrain
     extent, relief = ground.extent, ground.relief
     assert extent is not None and relief is not None
     sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}

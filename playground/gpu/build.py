@@ -1,6 +1,6 @@
-"""Say which build of a renderer draws: two that agree in all of it make the same bits of the same texts.
+"""Return which build of a renderer draws: two that agree in all of it make the same bits of the same texts.
 
-Of a renderer that draws on the processor, the processor is part of the build: reciprocal square
+Of a software renderer, the processor is part of the build: reciprocal square
 roots are estimated, and the estimates of Intel and AMD differ; with `fma` a product and a sum
 are rounded once, not twice; with `f16c` half floats are rounded by the processor.
 """

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
-from playground.gpu.driver_advice import mend
+from playground.gpu.driver_advice import advice
 
 if TYPE_CHECKING:
     import moderngl
@@ -51,7 +51,7 @@ class ContextInfo:
 
     @property
     def software(self) -> bool:
-        """Whether the processor draws, so that timer queries mean nothing."""
+        """Whether it is a software renderer, so that timer queries mean nothing."""
         return bool(_SOFTWARE.search(self.renderer))
 
     @property
@@ -78,8 +78,8 @@ def context_info(ctx: moderngl.Context) -> ContextInfo:
 def open_context(*, software: bool = False, device: int | None = None) -> moderngl.Context:
     """Open a context with no window.
 
-    ``software`` asks for the processor's renderer (Mesa llvmpipe); ``device`` picks the
-    EGL device by its number. Raises ``ContextError`` with the known failure's mend.
+    ``software`` asks for the software renderer (Mesa llvmpipe); ``device`` picks the
+    EGL device by its number. Raises ``ContextError`` with the known advice for the failure.
     """
     if software:
         return _open_software(device)
@@ -115,11 +115,11 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         rest = "the only one is 0" if count == 1 else f"there are {count}, from 0"
         raise ContextError(f"--device {device}: there is no such EGL device; {rest}")
     theirs = os.environ if environment is None else environment
-    raise ContextError(f"{mend(cause, sys.platform, theirs)} ({cause})")
+    raise ContextError(f"{advice(cause, sys.platform, theirs)} ({cause})")
 
 
 def _open_software(device: int | None) -> moderngl.Context:
-    """Open a context on the processor's renderer, wherever among the devices it is.
+    """Open a context on the software renderer, wherever among the devices it is.
 
     Mesa does not let its software switch override a device that was chosen by number, and
     where there is a GPU the default device is that; its own software device comes last.
@@ -198,7 +198,7 @@ class _Functions:
 
 
 def prefer_software() -> None:
-    """Ask Mesa for the processor's renderer, for contexts opened from now on here and in child processes."""
+    """Ask Mesa for the software renderer, for contexts opened from now on here and in child processes."""
     os.environ["LIBGL_ALWAYS_SOFTWARE"] = "1"
     os.environ.setdefault("GALLIUM_DRIVER", "llvmpipe")
     if _MESA_VENDOR.is_file():

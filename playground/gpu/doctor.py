@@ -1,6 +1,6 @@
-"""Say what this machine offers: an OpenGL context, its limits, a display, the packages.
+"""Report what this machine offers: an OpenGL context, its limits, a display, the packages.
 
-It opens a context and gives it back; what cannot be had is said in a sentence, with its mend.
+It opens a context and gives it back; what cannot be had is said in a sentence, with the advice for it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _SSH = ("SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY")
 class Health:
     """What a machine offers."""
 
-    trouble: str  # why there is no context, and the mend; "" where there is one
+    trouble: str  # why there is no context, and the advice; "" where there is one
     context: ContextInfo | None
     limits: dict[str, int] = field(default_factory=dict)
     display: str = ""  # where a window would open; "": nowhere

@@ -1,7 +1,7 @@
-"""Say how to mend what OpenGL, EGL or the window system complains of.
+"""Return how to fix what OpenGL, EGL or the window system complains of.
 
 Drivers answer with a code or half a sentence (``eglInitialize failed
-(0x3001)``). `mend` finds the complaint in one table, and gives back what it
+(0x3001)``). `advice` finds the complaint in one table, and gives back what it
 means and what to do, on this platform, in one line. The environment is handed
 in, since some complaints have another cause inside a container, under WSL or
 with an override set.
@@ -79,7 +79,7 @@ class Complaint:
     win32: str = ""
 
     def matches(self, message: str) -> bool:
-        """Tell whether the message is this complaint."""
+        """Report whether the message is this complaint."""
         return any(re.search(pattern, message, re.IGNORECASE) for pattern in self.says)
 
 
@@ -369,7 +369,7 @@ def complaint(message: str) -> Complaint | None:
     return next((known for known in COMPLAINTS if known.matches(message)), None)
 
 
-def mend(message: str, platform: str, environ: Mapping[str, str]) -> str:
+def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
     """Return, in one line, what a failure means and what to do about it.
 
     ``message`` is what the exception says, with what the driver printed before

@@ -196,7 +196,7 @@ def _recognise(line: str) -> _Draft | None:
 
 
 def _continues(last: _Draft, draft: _Draft, line: str) -> bool:
-    """Say whether a recognised line only goes on with the one before it."""
+    """Return whether a recognised line only goes on with the one before it."""
     if (last.line, last.column, last.severity) != (draft.line, draft.column, draft.severity):
         return False
     # Mesa lists candidate functions, and NVIDIA a second remedy, as if they were errors.
@@ -420,7 +420,7 @@ _BASES = {"f": "float", "d": "float", "v": "float", "m": "float", "i": "int", "u
 
 
 def hint(message: str) -> str:
-    """Say in one sentence what a message usually means, or "" where nothing useful is known."""
+    """Return in one sentence what a message usually means, or "" where nothing useful is known."""
     head = message.split("\n", 1)[0][:600]
     for pattern, sentence in _HINTS:
         found = pattern.search(head)

@@ -42,7 +42,7 @@ ELSEWHERE = {
 
 
 def guess(message: str, source: SourceText, line: Line | None) -> str:
-    """Say in one sentence what an unknown name was meant to be; "" where that is not sure.
+    """Return in one sentence what an unknown name was meant to be; "" where that is not sure.
 
     ``message`` is a driver's, of any maker; ``line`` is where it points, None where it points nowhere.
     """
@@ -74,7 +74,7 @@ def guess(message: str, source: SourceText, line: Line | None) -> str:
 
 
 def _unread(source: SourceText, line: Line) -> str:
-    """Say what a line that GLSL cannot read has of other languages, or which word of it is misspelt."""
+    """Report what a line that GLSL cannot read has of other languages, or which word of it is misspelt."""
     if cast := _CAST.search(line.code):
         return f"GLSL has no casts like ({cast[1]}): write {cast[1]}(...)."
     functions, variables = _declared(source)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
 from playground.gpu.name_suggestions import guess
-from playground.gpu.wrap import COMPUTE, FRAGMENT, Stage, Wrapped, version_line, wrap_library
+from playground.gpu.wrap import COMPUTE, FRAGMENT, ShaderStage, Wrapped, version_line, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import FETCHES
@@ -64,7 +64,7 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
     return ShaderError(diagnostics=found.values())
 
 
-def diagnostic_of(entry: LogEntry, stage: Stage, wrapped: Wrapped) -> Diagnostic:
+def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diagnostic:
     """Return one complaint of a driver in the kernel's own files, with its hint."""
     for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))

@@ -95,7 +95,7 @@ def drain(ctx: moderngl.Context) -> None:
 
 
 def is_lost(ctx: moderngl.Context) -> bool:
-    """Say whether a context answers everything with an error, as one does after its driver was reset."""
+    """Return whether a context answers everything with an error, as one does after its driver was reset."""
     drain(ctx)
     return bool(ctx.error != "GL_NO_ERROR")
 

@@ -33,7 +33,7 @@ _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 
 
 @dataclass(frozen=True)
-class Stage:
+class ShaderStage:
     """The text of one shader stage."""
 
     text: str
@@ -53,7 +53,7 @@ class Wrapped:
 
     kernel: Kernel
     driver: str  # fragment | compute | draw
-    stages: dict[str, Stage]  # vertex and fragment, or compute
+    stages: dict[str, ShaderStage]  # vertex and fragment, or compute
 
 
 def wrap(kernel: Kernel, driver: str) -> Wrapped:
@@ -78,7 +78,7 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
 def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
     """Write checkboxes and menus into a wrapped text as constants, lines and columns kept.
 
-    A processor that draws goes both ways of every ``if``: what was not chosen costs as much
+    A software renderer goes both ways of every ``if``: what was not chosen costs as much
     as what was, unless the compiler can see that it never happens.
     """
     stages = {}
@@ -116,11 +116,11 @@ def signature(kernel: Kernel) -> str:
 
 
 def previous_name(kernel: Kernel, output: Output) -> str:
-    """Return the name of the function that reads an output's texel of the turn before."""
+    """Return the name of the function that reads an output's texel of the iteration before."""
     return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
 
 
-def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
+def _quad(kernel: Kernel, version: str = "#version 330") -> ShaderStage:
     """Return the vertex shader that covers the picture, in the version of the fragment shader.
 
     Versions differ in their words, and those of OpenGL ES link with their own kind only.
@@ -128,15 +128,15 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Stage:
     number = _NUMBER.match(version)
     is_old = number is not None and int(number.group(1)) < 130
     text = own_part("triangle_from_buffer.vert", corner=CORNER) if is_old else TRIANGLE
-    return Stage(text.replace("#version 330", version), 0, kernel.source, "")
+    return ShaderStage(text.replace("#version 330", version), 0, kernel.source, "")
 
 
-def _whole(kernel: Kernel) -> Stage:
+def _whole(kernel: Kernel) -> ShaderStage:
     """Return a plain shader as it is, but // for blank lines above #version: Mesa does not count those."""
     lines = [line.code for line in kernel.source.lines]
     above = next((i for i, code in enumerate(lines) if code.strip()), 0)
     text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"
-    return Stage(text, 1, kernel.source, "void main()")
+    return ShaderStage(text, 1, kernel.source, "void main()")
 
 
 def version_line(source: SourceText) -> Line | None:
@@ -151,17 +151,17 @@ def _version(kernel: Kernel) -> str:
 
 
 def reads_unwired(kernel: Kernel) -> bool:
-    """Say whether a kernel fetches texels while some input of it may stay unwired."""
+    """Return whether a kernel fetches texels while some input of it may stay unwired."""
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
-def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> Stage:
+def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> ShaderStage:
     if reads_unwired(kernel):
         fetch, offset = FETCHES.values()
         before = [*before, own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)]
         code = _FETCH.sub(lambda match: FETCHES[match.group()], code)
     head = "\n".join(before) + "\n"
-    return Stage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
+    return ShaderStage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
 
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
@@ -341,7 +341,7 @@ def _argument(text: str) -> tuple[str, str, str]:
 
 
 def _check_previous(kernel: Kernel) -> None:
-    """Refuse what reads a turn before where there is none, or by a name that no output has."""
+    """Refuse what reads an iteration before where there is none, or by a name that no output has."""
     names = [previous_name(kernel, output) for output in kernel.outputs]
     for number, line in enumerate(kernel.source.lines):
         if "previous" not in line.code:

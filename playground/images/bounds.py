@@ -1,6 +1,6 @@
-"""Say how large a file may become in memory, judged by its header, before any memory is taken.
+"""Return how large a file may become in memory, judged by its header, before any memory is taken.
 
-A packed file of a megabyte can hold a gigabyte of zeros. Pictures and land that people have stay far
+A packed file of a megabyte can hold a gigabyte of zeros. Pictures and terrain that people have stay far
 below ``MOST_RATIO``; what is flat, as a mask with nothing painted on it, stays below ``ALWAYS_FINE``.
 """
 

@@ -167,7 +167,7 @@ def checked_file(path: str | Path) -> Path:
 
 
 def reason(error: BaseException) -> str:
-    """Say in a few words of one line what an error of a library means."""
+    """Return in a few words of one line what an error of a library means."""
     text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(text.split()).rstrip(".") or type(error).__name__
 
@@ -326,7 +326,7 @@ def encode_samples(
     rows, cols, channels = samples.shape
     depth = 8 * samples.dtype.itemsize
     stored = samples.astype(samples.dtype.newbyteorder(">")).reshape(rows, -1).view(np.uint8)
-    # Filter 2, "Up": each byte less the one above it; smooth land packs well that way.
+    # Filter 2, "Up": each byte less the one above it; smooth terrain packs well that way.
     lines = np.empty((rows, stored.shape[1] + 1), dtype=np.uint8)
     lines[:, 0] = 2
     lines[0, 1:] = stored[0]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan, Step, Turns, every_node, needed
+from playground.engine.plan import LoopStep, Plan, Step, every_node, needed
 from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
@@ -110,7 +110,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
     return float(sum(_texels(node) for node in nodes))
 
 
-def _texels(node: Step | Turns) -> int:
+def _texels(node: Step | LoopStep) -> int:
     if isinstance(node, Step):
         return node.size[0] * node.size[1] * node.repeat if node.kernel.kind == "kernel" else 0
     return node.repeat * sum(_texels(inner) for inner in node.body)
@@ -127,6 +127,6 @@ def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any])
 
 def _grid(plan: Plan | None, shape: tuple[int, ...]) -> Grid:
     assert plan is not None
-    east, north = plan.land.extent or (1.0, 1.0)
+    east, north = plan.terrain.extent or (1.0, 1.0)
     spacing = (east / max(shape[1] - 1, 1), north / max(shape[0] - 1, 1))
-    return Grid(spacing, plan.land.relief or 1.0)
+    return Grid(spacing, plan.terrain.relief or 1.0)

@@ -22,7 +22,7 @@ import glfw
 
 from playground.errors import ContextError
 from playground.gpu.context import abandon, adopt_context
-from playground.gpu.driver_advice import mend
+from playground.gpu.driver_advice import advice
 from playground.live.double_click import Clicks
 from playground.live.theme import Theme
 
@@ -239,7 +239,7 @@ def _create(title: str, size: tuple[int, int]) -> Any:
         if handle:
             return handle
         complaints.append(_complaint() or f"no window with OpenGL {major}.{minor}")
-    raise ContextError(mend(complaints[0], sys.platform, os.environ))
+    raise ContextError(advice(complaints[0], sys.platform, os.environ))
 
 
 def _reset_status(handle: Any) -> Callable[[], int] | None:
@@ -257,7 +257,7 @@ def _adopt() -> moderngl.Context:
     try:
         return adopt_context(_address_of)
     except Exception as error:  # moderngl raises bare Exception and ValueError
-        raise ContextError(mend(str(error), sys.platform, os.environ)) from None
+        raise ContextError(advice(str(error), sys.platform, os.environ)) from None
 
 
 def _address_of(name: str) -> int | None:
@@ -265,7 +265,7 @@ def _address_of(name: str) -> int | None:
 
 
 def _refused(otherwise: str) -> ContextError:
-    return ContextError(mend(_complaint() or otherwise, sys.platform, os.environ))
+    return ContextError(advice(_complaint() or otherwise, sys.platform, os.environ))
 
 
 def _complaint() -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from playground.engine.plan import Plan, PlanNode, Step, Turns
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step
 from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
@@ -36,7 +36,7 @@ def inline_sketch(
         return _plain(leaves[0], plan)
     inliner = _Inliner(plan, leaves[-1].path)
     passes = tuple(inliner.one(node) for node in plan.nodes)
-    land = plan.land
+    land = plan.terrain
     assert land.size is not None and land.extent is not None
     return Case(
         passes=passes,
@@ -79,9 +79,9 @@ class _Inliner:
         feedback: tuple[tuple[str, str], ...] = ()
         step = node
         initial: dict[str, Source | None] = {}
-        if isinstance(node, Turns):
+        if isinstance(node, LoopStep):
             inside = node.body[0]
-            if len(node.body) != 1 or isinstance(inside, Turns):
+            if len(node.body) != 1 or isinstance(inside, LoopStep):
                 raise SketchError(
                     f"pass '{node.path}' is a loop of several passes, which cannot be inlined;"
                     " reduce one of its kernels alone"
@@ -108,7 +108,7 @@ class _Inliner:
             values=tuple(
                 (name, self._value(step.kernel, name, value)) for name, value in step.values.items()
             ),
-            size=None if step.size == self.plan.land.size else step.size,
+            size=None if step.size == self.plan.terrain.size else step.size,
             repeat=repeat,
             feedback=feedback,
         )

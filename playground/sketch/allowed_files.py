@@ -1,4 +1,4 @@
-"""Say which files a sketch may read: those in its own folder and in ``glsl/``, wherever links lead.
+"""Return which files a sketch may read: those in its own folder and in ``glsl/``, wherever links lead.
 
 A stranger's sketch is data; nothing it names may come from elsewhere on the disk. Paths
 that the user types are the user's own affair and are not judged here.
@@ -116,7 +116,7 @@ def real(path: Path) -> Path | None:
 
 
 def is_file(path: Path) -> bool:
-    """Say whether a file is there, also for names that no file can have."""
+    """Return whether a file is there, also for names that no file can have."""
     note(path)
     try:
         return path.is_file()
@@ -125,7 +125,7 @@ def is_file(path: Path) -> bool:
 
 
 def exists(path: Path) -> bool:
-    """Say whether anything is there, a file or not, also for names that nothing can have."""
+    """Return whether anything is there, a file or not, also for names that nothing can have."""
     try:
         return path.exists()
     except (OSError, ValueError):
@@ -133,7 +133,7 @@ def exists(path: Path) -> bool:
 
 
 def is_variant(path: Path) -> bool:
-    """Say whether a file is a fast variant by its name; a ``.comp`` with its own ``#version`` is none."""
+    """Return whether a file is a fast variant by its name; a ``.comp`` with its own ``#version`` is none."""
     return path.name.endswith(FAST)
 
 
@@ -156,13 +156,13 @@ def root_of(path: Path) -> Path:
 
 
 def is_inside(path: Path, roots: Iterable[Path]) -> bool:
-    """Say whether a path, its links followed, lies in one of some folders."""
+    """Return whether a path, its links followed, lies in one of some folders."""
     found = real(path)
     return found is not None and any(found.is_relative_to(root) for root in map(real, roots) if root)
 
 
 def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
-    """Say whether a data file that a sketch names lies outside its ``folder`` and ``glsl/``.
+    """Return whether a data file that a sketch names lies outside its ``folder`` and ``glsl/``.
 
     ``declared_in`` is the kernel that has the parameter: files are also looked for beside it.
     Names of files that are not there are judged by where they would be.
@@ -177,7 +177,7 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
 
 
 def is_absolute(text: str) -> bool:
-    """Say whether a path is absolute on any system, so that a sketch means the same on all of them."""
+    """Return whether a path is absolute on any system, so that a sketch means the same on all of them."""
     windows = PureWindowsPath(text)
     return PurePosixPath(text).is_absolute() or bool(windows.drive or windows.root) or text.startswith("~")
 

@@ -12,12 +12,12 @@ from functools import lru_cache
 from typing import Protocol
 
 from playground.errors import ParameterError, nearest
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.parameter import LARGEST_SIDE, Parameter, Value
 from playground.sketch.technique import Graph, Kernel, Technique
 from playground.sketch.values import coerce, spell
 
-LAND = ("size", "extent", "relief", "base_elevation")
+TERRAIN_KEYS = ("size", "extent", "relief", "base_elevation")
 """What belongs to the sketch itself, and may be set like a parameter."""
 
 
@@ -118,13 +118,13 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
 
 
 def check_value(sketch: Settable, path: str, given: object) -> Value:
-    """Return a value as the parameter, or the part of the land, takes it; raise ``ParameterError``."""
-    if path in LAND:
+    """Return a value as the parameter, or the part of the terrain, takes it; raise ``ParameterError``."""
+    if path in TERRAIN_KEYS:
         return _land_value(path, given)
     try:
         target = resolve(sketch.graph, path)[0]
     except ParameterError:
-        valid = [*LAND, *all_paths(sketch.graph)]
+        valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
         raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}") from None
     return coerce(target.parameter, given, path)
 
@@ -135,11 +135,11 @@ def effective_values(technique: Technique) -> dict[str, Value]:
     A pass's own ``set`` wins over what its technique sets inside, and that over the
     kernels' defaults; the targets of one export share the first target's value.
     """
-    return dict(_effective(Same(technique)))
+    return dict(_effective(Identity(technique)))
 
 
 @lru_cache(maxsize=128)
-def _effective(key: Same[Technique]) -> Mapping[str, Value]:
+def _effective(key: Identity[Technique]) -> Mapping[str, Value]:
     technique = key.object
     if isinstance(technique, Kernel):
         return {p.name: p.default for p in technique.parameters}

@@ -1,4 +1,4 @@
-"""Say in one hash what a technique's text says, so that two readings of it can be compared.
+"""Return in one hash what a technique's text says, so that two readings of it can be compared.
 
 The text of a kernel counts as the compiler takes it: with its includes, without comments,
 whatever its white space. Of a technique of several passes each pass counts, and how they are
@@ -13,7 +13,7 @@ import re
 from functools import lru_cache
 from typing import Any
 
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Technique
 
 _TOKEN = re.compile(
@@ -26,11 +26,11 @@ _TOKEN = re.compile(
 
 def content_of(technique: Technique) -> str:
     """Return the hash of a technique's canonical text; worked out once for each object."""
-    return _content_of(Same(technique))
+    return _content_of(Identity(technique))
 
 
 @lru_cache(maxsize=2048)
-def _content_of(key: Same[Technique]) -> str:
+def _content_of(key: Identity[Technique]) -> str:
     technique = key.object
     parts = _of_graph(technique) if isinstance(technique, Graph) else _of_kernel(technique)
     return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()

@@ -1,4 +1,4 @@
-"""Say what there is to choose from: sketches, techniques, and the parameters of each.
+"""Report what there is to choose from: sketches, techniques, and the parameters of each.
 
 Reads text only. A file that is wrong has its place here too, with what is wrong with it,
 so that one mistake does not hide the rest.
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.assign import LAND, Shown, shown_parameters, value_of, values_of
+from playground.sketch.assign import TERRAIN_KEYS, Shown, shown_parameters, value_of, values_of
 from playground.sketch.find import is_part, shipped_names, shipped_sketches
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
@@ -151,7 +151,7 @@ def one(name: str) -> list[Entry]:
 
 def settable(sketch: Sketch) -> list[str]:
     """List every path that ``--set`` shows for a sketch."""
-    return [*(shown.path for shown in shown_parameters(sketch)), *LAND]
+    return [*(shown.path for shown in shown_parameters(sketch)), *TERRAIN_KEYS]
 
 
 def _of_sketch(name: str, sketch: Sketch) -> Entry:

@@ -126,7 +126,7 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
 
 
 def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
-    """Say whether a size is one of those that ``accepts`` allows."""
+    """Return whether a size is one of those that ``accepts`` allows."""
     xs, ys = accepted_sizes(accepts)
     if len(_parts(accepts)) == 1 and size[0] != size[1]:
         return False

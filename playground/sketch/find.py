@@ -58,5 +58,5 @@ def shipped_names() -> list[str]:
 
 
 def is_part(name: str) -> bool:
-    """Say whether a name in ``glsl/`` is a part of a technique: it lies in a folder named after one."""
+    """Return whether a name in ``glsl/`` is a part of a technique: it lies in a folder named after one."""
     return any(is_file(GLSL / folder.with_suffix(".toml")) for folder in Path(name).parents if folder.name)

@@ -23,7 +23,7 @@ class Ref:
 
 @dataclass(frozen=True, slots=True)
 class Fed:
-    """A texture that a loop feeds back: its own output of the turn before."""
+    """A texture that a loop feeds back: its own output of the step before."""
 
     loop: str  # path of the loop
     name: str  # of the fed input
@@ -46,12 +46,12 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Loop:
-    """Passes that run over and over, some inputs fed by outputs of the turn before."""
+    """Passes that run over and over, some inputs fed by outputs of the step before."""
 
     path: str
     repeat: str
     body: tuple[Leaf | Loop, ...]
-    feedback: tuple[tuple[str, Source | None, Ref], ...]  # input, what the first turn reads, output
+    feedback: tuple[tuple[str, Source | None, Ref], ...]  # input, what the first step reads, output
     spec: PassSpec
 
 

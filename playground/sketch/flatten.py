@@ -6,7 +6,7 @@ caller wires through ``[inputs]``, else the latest earlier pass of its name, els
 latest earlier pass with an output of its name. What is wired to a path inside a technique
 wins over what is wired to the export that stands for it.
 
-Where a fast variant stands in for a technique (see ``variants``), its own kernel or passes are
+Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
 in the result; those of a ``.fast.toml`` are at ``pass.fast.inner``, which no path may name.
 
 The shape of the result depends on the graph alone, so it is worked out once for each; a
@@ -25,7 +25,7 @@ from playground.paths import shown
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import standing
@@ -50,7 +50,7 @@ def flatten(
 ) -> Flat:
     """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
 
-    A variant gives its technique's outputs only, and after the last step: it does not stand in for
+    A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, nor for one that is itself among
     the ``stopped`` or the ``refused``, or that starts from something wired.
@@ -61,7 +61,7 @@ def flatten(
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
     inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
     asked = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
-    shape = _shape(Same(graph), kinds, *asked)
+    shape = _shape(Identity(graph), kinds, *asked)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -91,7 +91,7 @@ def flatten(
 
 @lru_cache(maxsize=32)
 def _shape(
-    key: Same[Graph],
+    key: Identity[Graph],
     kinds: frozenset[str],
     opened: tuple[str, ...],
     stopped: tuple[str, ...],
@@ -143,7 +143,14 @@ class _Filler:
             return replace(node, body=tuple([self.node(inside) for inside in node.body]))
         values = self.values
         own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
-        return Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec)
+        return Leaf(
+            path=node.path,
+            kernel=node.kernel,
+            values=own,
+            inputs=node.inputs,
+            folder=self.folder,
+            spec=node.spec,
+        )
 
     def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
         """Return nodes that had values, with those of now in the ``stale`` leaves."""
@@ -162,7 +169,7 @@ class _Filler:
 
 
 def _is_exported(graph: Graph, path: str) -> bool:
-    """Say whether a technique shows a parameter inside, and nothing else, by a name of its own."""
+    """Return whether a technique shows a parameter inside, and nothing else, by a name of its own."""
     try:
         wanted = {target.path for target in resolve(graph, path)}
         return any({t.path for t in resolve(graph, e.name)} == wanted for e in graph.parameters)
@@ -231,7 +238,7 @@ class _Flattener:
         self._open_set(spec.technique, here, rest)
 
     def _standing(self, technique: Technique, path: str) -> Variant | None:
-        """Return the fast variant that may stand in for a technique, if any may."""
+        """Return the fast variant that may replace a technique, if any may."""
         return standing(technique, self.kinds) if self.kinds and path not in self.opened else None
 
     def real(self, source: Source | None) -> Any:
@@ -320,7 +327,8 @@ class _Flattener:
         else:
             return self.expand(technique, path, wires)
         wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
-        return [Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in wanted), "", spec)]
+        inputs = tuple((name, wires.get(name)) for name in wanted)
+        return [Leaf(path=path, kernel=kernel, values=(), inputs=inputs, folder="", spec=spec)]
 
     def _passes(
         self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]
@@ -350,7 +358,7 @@ class _Flattener:
         return replace(node, inputs=tuple((name, self.real(source)) for name, source in node.inputs))
 
     def _know(self, graph: Graph, prefix: str) -> None:
-        """Know the passes that a fast variant stands in for: their sizes are still asked for."""
+        """Know the passes that a fast variant replaces: their sizes are still asked for."""
         self.graphs[prefix] = graph
         for spec in graph.passes:
             self.specs[_join(prefix, spec.name)] = spec
@@ -399,7 +407,7 @@ class _Flattener:
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
-    """Say whether all that an exported input stands for is wired by paths inside."""
+    """Return whether all that an exported input stands for is wired by paths inside."""
     if isinstance(technique, Kernel):
         return False
     return all(
@@ -425,7 +433,7 @@ def _reads(node: Node) -> set[str]:
 
 
 def _starts(loop: Loop) -> set[str]:
-    """Return what the first turns of a loop, and of the loops in it, read."""
+    """Return what the first steps of a loop, and of the loops in it, read."""
     found = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
     inside = [_starts(node) for node in loop.body if isinstance(node, Loop)]
     return found | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})

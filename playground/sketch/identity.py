@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 T = TypeVar("T")
 
 
-class Same(Generic[T]):
+class Identity(Generic[T]):
     """A key that equals only a key of the same object, which it keeps alive."""
 
     __slots__ = ("object",)
@@ -23,4 +23,4 @@ class Same(Generic[T]):
         return id(self.object)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.object is self.object
+        return isinstance(other, Identity) and other.object is self.object

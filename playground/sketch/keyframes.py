@@ -1,4 +1,4 @@
-"""Say which camera and values a sketch with keyframes has at a time: a pure function of both.
+"""Return which camera and values a sketch with keyframes has at a time: a pure function of both.
 
 Each thing that keyframes set, a parameter or one number of the camera, has a track of its
 own: the keyframes that name it. Before its first and after its last it stays. What goes on
@@ -23,7 +23,7 @@ from functools import lru_cache
 from typing import Any
 
 from playground.sketch.assign import resolve
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.parameter import Parameter, Value
 from playground.sketch.technique import Graph
 from playground.sketch.values import is_whole
@@ -109,7 +109,7 @@ def at(
     keyframes: tuple[Keyframe, ...], graph: Graph, time: float
 ) -> tuple[dict[str, Any], tuple[tuple[str, Value], ...]]:
     """Return what keyframes say of the camera's fields and of a graph's parameters at a time in seconds."""
-    cameras, tracks = _tracks(keyframes, Same(graph))
+    cameras, tracks = _tracks(keyframes, Identity(graph))
     return {name: track.at(time) for name, track in cameras}, tuple(
         (path, track.at(time)) for path, track in tracks
     )
@@ -117,7 +117,7 @@ def at(
 
 @lru_cache(maxsize=64)
 def _tracks(
-    keyframes: tuple[Keyframe, ...], graph: Same[Graph]
+    keyframes: tuple[Keyframe, ...], graph: Identity[Graph]
 ) -> tuple[tuple[tuple[str, Track], ...], tuple[tuple[str, Track], ...]]:
     """Return the tracks of the camera and of the parameters, by name and path."""
     cameras = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)

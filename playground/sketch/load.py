@@ -73,7 +73,7 @@ def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
 
 
 def is_technique(path: Path) -> bool:
-    """Say whether a TOML file is a technique of several passes, not a sketch."""
+    """Return whether a TOML file is a technique of several passes, not a sketch."""
     try:
         return _holds_technique(TomlFile(path, path.parent))
     except SketchError:

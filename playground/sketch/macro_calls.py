@@ -49,7 +49,7 @@ def _join(codes: list[str], index: int, macros: set[str]) -> None:
 
 
 def _is_open(code: str, pattern: re.Pattern[str]) -> str:
-    """Say whether a macro's call is unfinished at a line's end: "no", "yes", or "maybe": the name ends it."""
+    """Return whether a macro's call is open at a line's end: "no", "yes", "maybe" (the name ends it)."""
     position = 0
     while match := pattern.search(code, position):
         position = match.end()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
-from playground.sketch.assign import LAND, check_value
+from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.technique import (
@@ -67,12 +67,12 @@ DRIVERS = ("auto", "fragment", "compute")
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """An eye that orbits a point of the land."""
+    """An eye that orbits a point of the terrain."""
 
     azimuth: float = 200.0  # [degrees] clockwise from north: where the eye stands, seen from the target
     elevation: float = 32.0  # [degrees] of the eye above the target's horizon, -89..89
-    distance: float = 0.0  # [m] from the target; 0: as far as shows the whole land
-    target: tuple[float, float, float] | None = None  # [m] of the land; None: its middle, at half its relief
+    distance: float = 0.0  # [m] from the target; 0: as far as shows the whole terrain
+    target: tuple[float, float, float] | None = None  # [m]; None: the terrain's middle, at half its relief
     field_of_view: float = 35.0  # [degrees] vertical, 5..120
 
 
@@ -109,7 +109,7 @@ class Sketch:
     folder: str  # absolute path; its own files stay inside
     graph: Graph  # the passes; the view is the last of them, named "view"
     title: str = ""
-    size: tuple[int, int] | None = None  # texels, x and y; None: from the land's file
+    size: tuple[int, int] | None = None  # texels, x and y; None: from the terrain's file
     extent: tuple[float, float] | None = None  # [m]
     relief: float | None = None  # [m]
     base_elevation: float | None = None  # [m] above sea level at height 0
@@ -118,7 +118,7 @@ class Sketch:
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
-    keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by hand stands over them
+    keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by the user stands over them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
 
@@ -145,7 +145,7 @@ class Sketch:
         overrides, terrain = dict(self.overrides), dict[str, Any]()
         for path, given in values.items():
             found = check_value(self, path, given)
-            if path in LAND:
+            if path in TERRAIN_KEYS:
                 terrain[path] = found
             else:
                 overrides.pop(path, None)  # what is set last comes last, and wins

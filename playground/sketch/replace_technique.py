@@ -1,7 +1,7 @@
 """Fill a pass of a sketch with another technique.
 
 A technique fits a pass if its outputs have the same names as those of the technique
-it replaces, and if each of its inputs can be wired. Whether the land's size suits it is
+it replaces, and if each of its inputs can be wired. Whether the terrain's size suits it is
 found out by drawing.
 """
 

@@ -1,4 +1,4 @@
-"""Know which names a kernel may not take: GLSL's own, and those the engine gives it.
+"""List which names a kernel may not take: GLSL's own, and those the engine gives it.
 
 Source: The OpenGL Shading Language 4.60.8, chapter 3.6 (keywords, reserved
 words) and chapter 8 (built-in functions). A parameter named after one of them

@@ -1,4 +1,4 @@
-"""Write what was set by hand back into a sketch's own TOML, and touch nothing else in it.
+"""Write what was set by the user back into a sketch's own TOML, and touch nothing else in it.
 
 Values go to the ``set`` of their pass, the camera to ``[view]``, a technique to ``use``. A
 value that stands there already is written over in its place; what its file does not hold
@@ -21,7 +21,7 @@ from pathlib import Path
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError
 from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import leads_outside
-from playground.sketch.assign import LAND, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
 from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
@@ -39,7 +39,7 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
 
     ``wanted`` is ``file`` with other values over it, another camera, other techniques.
     """
-    for key in LAND:
+    for key in TERRAIN_KEYS:
         value = getattr(wanted, key)
         if value is not None and value != getattr(file, key):
             text = put(text, (), key, written_land(value))
@@ -241,7 +241,7 @@ def write_over(
 
 
 def _same_text(a: Sketch, b: Sketch) -> bool:
-    """Say whether two sketches were read from the same words, whatever their kernels say."""
+    """Return whether two sketches were read from the same words, whatever their kernels say."""
 
     def words(sketch: Sketch) -> object:
         parts = [
@@ -259,7 +259,7 @@ def says_same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
         files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
         values = {path: shortest(value) for path, value in values_of(sketch).items() if path not in files}
         uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
-        return values, uses, sketch.camera, [getattr(sketch, key) for key in LAND]
+        return values, uses, sketch.camera, [getattr(sketch, key) for key in TERRAIN_KEYS]
 
     return lambda found: said(found) == said(wanted)
 

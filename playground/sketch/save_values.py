@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.sketch.assign import LAND, resolve
+from playground.sketch.assign import TERRAIN_KEYS, resolve
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.toml_edit import text_of
@@ -15,7 +15,7 @@ def written_value(sketch: Sketch, path: str, value: Value, said: str) -> str:
 
     A direction stands in braces where ``said``, what stands there, has them.
     """
-    if path in LAND:
+    if path in TERRAIN_KEYS:
         return written_land(value)
     value = shortest(value)
     parameter: Parameter = resolve(sketch.graph, path)[0].parameter
@@ -46,7 +46,7 @@ def written_number(value: float | int) -> str:
 
 
 def written_land(value: object) -> str:
-    """Return one of the land's own values as TOML writes it: two equal sides as one number."""
+    """Return one of the terrain's own values as TOML writes it: two equal sides as one number."""
     if not isinstance(value, tuple):
         return written_number(value) if isinstance(value, int | float) else str(value)
     numbers = [written_number(n) for n in value]

@@ -45,7 +45,7 @@ class Shadowed:
 def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
     """Return the defaults in the sketch's own kernels that its own files set over.
 
-    Techniques that ship are there to be set, and what is set by hand is known to who set it.
+    Techniques that ship are there to be set, and what is set by the user is known to who set it.
     """
     by, values = _setters(sketch.graph, ""), effective_values(sketch.graph)
     by_hand = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
@@ -60,7 +60,7 @@ def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
 def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
     """Return the parameters whose default an edit has changed, to no effect.
 
-    ``now`` is the sketch after the edit, with what is set by hand in it.
+    ``now`` is the sketch after the edit, with what is set by the user in it.
     """
     was = {path: parameter.default for path, parameter in _parameters(before).items()}
     changed = {

@@ -66,7 +66,7 @@ class Kernel:
     accepts: str = ""
     own_accepts: str = ""  # of a compute variant: the sizes that it takes, where its technique takes more
     visits: str = ""
-    stride: str = ""  # after a turn, only texels at multiples of it are known
+    stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # turns that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
@@ -78,7 +78,7 @@ class Kernel:
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
-    stages: tuple[int, ...] = ()  # of a compute variant: what each of its turns does
+    stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
     agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
     title: str = ""  # the sentence that the file begins with
@@ -123,7 +123,7 @@ class Kernel:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
     def reads(self, given: str) -> bool:
-        """Say whether the text names something that the engine gives."""
+        """Return whether the text names something that the engine gives."""
         return given in self.source.names
 
     @property

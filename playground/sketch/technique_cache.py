@@ -34,7 +34,7 @@ class _Kept:
     depth: int  # how deep techniques of several passes nest in it, itself among them
 
     def stands(self) -> bool:
-        """Say whether all that it was read from is as it was."""
+        """Return whether all that it was read from is as it was."""
         return all(signature(path) == seen for path, seen in self.places.items())
 
 

@@ -109,7 +109,7 @@ class Techniques:
         self.deepest = 0  # the most that were open at once
 
     def has_room_for(self, depth: int) -> bool:
-        """Say whether techniques nested so deep may stand where the reading is."""
+        """Return whether techniques nested so deep may stand where the reading is."""
         return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
@@ -202,7 +202,7 @@ class WithLibrary(Techniques):
 
 
 def refuse_monster(graph: Graph) -> None:
-    """Raise ``SketchError`` for more kernels than any land needs: a few lines can nest millions."""
+    """Raise ``SketchError`` for more kernels than any terrain needs: a few lines can nest millions."""
     count = _count(graph, {})
     if count > _MAX_KERNELS:
         raise SketchError(

@@ -12,7 +12,7 @@ from playground.paths import shown
 from playground.sketch import wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
-from playground.sketch.assign import LAND, check_value, flat_values, resolve
+from playground.sketch.assign import TERRAIN_KEYS, check_value, flat_values, resolve
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
@@ -118,17 +118,17 @@ def read_pass(
     values = _values(file, table, place, name, technique)
     given = table.get("set", {})
     return PassSpec(
-        name,
-        use,
-        technique,
-        inputs,
-        values,
-        _size(file, table, place),
-        repeat,
-        feedback,
-        shown(file.path),
-        file.line(*place),
-        tuple((path, file.line(*_place_of_value(place, given, path))) for path, _ in values),
+        name=name,
+        use=use,
+        technique=technique,
+        inputs=inputs,
+        values=values,
+        size=_size(file, table, place),
+        repeat=repeat,
+        feedback=feedback,
+        file=shown(file.path),
+        line=file.line(*place),
+        set_lines=tuple((p, file.line(*_place_of_value(place, given, p))) for p, _ in values),
     )
 
 
@@ -176,7 +176,7 @@ def read_set(
 
     def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
         value = check_value(sketch, path, raw)
-        return value, None if path in LAND else resolve(sketch.graph, path)[0].parameter
+        return value, None if path in TERRAIN_KEYS else resolve(sketch.graph, path)[0].parameter
 
     return read_values(file, table, place, sketch.graph, read_value, who)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from playground.sketch.assign import LAND, resolve
+from playground.sketch.assign import TERRAIN_KEYS, resolve
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.sketch.toml_camera import read_camera
@@ -65,7 +65,7 @@ def _check_path(
 ) -> None:
     """Raise ``SketchError`` for what is no parameter, or is set under another name as well."""
     at = (*place, "set", *([path] if path in table["set"] else path.split(".")))
-    if path in LAND:
+    if path in TERRAIN_KEYS:
         raise file.error(f"{who}: '{path}' is the land's; keyframes set parameters and the camera", *at)
     for target in resolve(sketch.graph, path):
         other = names.setdefault(target.path, path)
@@ -83,7 +83,7 @@ def _camera(
 
 
 def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
-    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the land"."""
+    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the terrain"."""
     far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
     for index, keyframe in enumerate(found):
         if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:

@@ -1,4 +1,4 @@
-"""Read a whole sketch from its TOML: the land, the passes, the view, shots and presets."""
+"""Read a whole sketch from its TOML: the terrain, the passes, the view, shots and presets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import LAND, check_value, resolve
+from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
 from playground.sketch.flatten import flatten
 from playground.sketch.model import (
     LARGEST_SIDE,
@@ -28,7 +28,7 @@ from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 from playground.sketch.wiring import check_graph
 
-SKETCH_KEYS = frozenset({*LAND, "main", "view", "shot", "preset", "keyframe"})
+SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyframe"})
 """What a sketch's TOML may hold and a technique's may not."""
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
@@ -46,13 +46,13 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     view, camera, samples = _view(file, passes, read)
     name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
     title = file.take(file.table, "title", str, "")
-    land = {key: _land(file, key) for key in LAND if key in file.table}
+    land = {key: _land(file, key) for key in TERRAIN_KEYS if key in file.table}
     sketch = Sketch(
-        name,
-        str(file.path),
-        str(file.path.parent),
-        Graph(name, str(file.path), (*passes, view), title=title),
-        title or name,
+        name=name,
+        file=str(file.path),
+        folder=str(file.path.parent),
+        graph=Graph(name, str(file.path), (*passes, view), title=title),
+        title=title or name,
         camera=camera,
         samples=samples,
         **land,
@@ -153,16 +153,16 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
             raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *place, "preset")
         found.append(
             Shot(
-                name,
-                (size[0], size[1]),
-                file.take(table, "time", float, 0.0, *place),
-                read_camera(file, table, sketch.camera, place) if "camera" in table else None,
-                read_set(file, sketch, table, place, f"shot '{name}'"),
-                preset,
-                _samples(file, table, sketch.samples, place) if "samples" in table else None,
-                read_steps(file, sketch, table, place),
-                _marks(file, table, place),
-                file.line(*place),
+                name=name,
+                size=(size[0], size[1]),
+                time=file.take(table, "time", float, 0.0, *place),
+                camera=read_camera(file, table, sketch.camera, place) if "camera" in table else None,
+                values=read_set(file, sketch, table, place, f"shot '{name}'"),
+                preset=preset,
+                samples=_samples(file, table, sketch.samples, place) if "samples" in table else None,
+                steps=read_steps(file, sketch, table, place),
+                marks=_marks(file, table, place),
+                line=file.line(*place),
             )
         )
     return tuple(found)
@@ -179,7 +179,7 @@ def _marks(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str,
 def read_steps(
     file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place
 ) -> tuple[tuple[str, int], ...]:
-    """Return what a table's ``steps`` says of repeated passes: turns by path; raise ``SketchError``."""
+    """Return what a table's ``steps`` says of repeated passes: steps by path; raise ``SketchError``."""
     steps = file.whole_numbers(table, "steps", *place)
     if steps:
         nodes = flatten(sketch).nodes

@@ -61,7 +61,7 @@ class Pack:
 
 
 def is_pack(path: Path) -> bool:
-    """Say whether a path is named like a packed sketch."""
+    """Return whether a path is named like a packed sketch."""
     return path.suffix.lower() == ENDING
 
 
@@ -181,7 +181,7 @@ def _plain(name: str) -> str:
 
 
 def _manifest(path: Path, archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
-    """Return what the zip says of itself; of one that was made by hand, where its sketch is."""
+    """Return what the zip says of itself; of one that was made by the user, where its sketch is."""
     if MANIFEST not in files:
         found = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
         if len(found) == 1:
@@ -233,7 +233,7 @@ def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
 
 
 def _is_whole(pack: Pack, target: Path) -> bool:
-    """Say whether a folder holds every file of a pack, unchanged."""
+    """Return whether a folder holds every file of a pack, unchanged."""
     if _stamp_of(target) != pack.digest:
         return False
     try:

@@ -36,7 +36,7 @@ def length_of(glsl_type: str) -> int:
 
 
 def is_whole(glsl_type: str) -> bool:
-    """Say whether a type's components are integers."""
+    """Return whether a type's components are integers."""
     return glsl_type in ("int", "uint") or glsl_type.startswith(("ivec", "uvec"))
 
 
@@ -88,7 +88,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
 
 
 def expected(parameter: Parameter) -> str:
-    """Say in a few words what a parameter takes."""
+    """Return in a few words what a parameter takes."""
     widget = parameter.widget
     if widget.choices:
         return "one of " + ", ".join(widget.choices)

@@ -3,7 +3,7 @@
 A technique's canonical form is its plain text. A fast variant beside it, a ``.comp`` or the
 passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
 their contents (see ``canonical``) are in a record (see ``variant_record``). What is asked here
-is asked of the techniques as they are at hand, so a text that stands in for a file's, or a
+is asked of the techniques as they are at hand, so a text that replaces a file's, or a
 kernel that was changed in memory, counts as well.
 """
 
@@ -17,7 +17,7 @@ from shlex import quote
 
 from playground.paths import shown
 from playground.sketch.canonical import content_of
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
 
 
@@ -28,7 +28,7 @@ def standing(technique: Technique, kinds: Collection[str]) -> Variant | None:
 
 
 def is_verified(technique: Technique, variant: Variant) -> bool:
-    """Say whether a technique and its fast variant are those that were found to agree."""
+    """Return whether a technique and its fast variant are those that were found to agree."""
     return variant.verified == (content_of(technique), content_of(variant.technique))
 
 
@@ -36,11 +36,11 @@ def left_out(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[str, ..
     """Return a sentence for each fast variant of some ``kinds`` that its sketch cannot have run, and why."""
     if sketch.plain:
         return ()
-    return _left_out(Same(sketch.graph), frozenset(kinds))
+    return _left_out(Identity(sketch.graph), frozenset(kinds))
 
 
 @lru_cache(maxsize=64)
-def _left_out(key: Same[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
+def _left_out(key: Identity[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_sentences(key.object, kinds)))
 
 
@@ -91,7 +91,7 @@ def without_variants(technique: Technique) -> Technique:
 
 
 def any_variants(technique: Technique) -> bool:
-    """Say whether a technique, or one inside it, has fast variants."""
+    """Return whether a technique, or one inside it, has fast variants."""
     if technique.variants:
         return True
     return isinstance(technique, Graph) and any(any_variants(spec.technique) for spec in technique.passes)

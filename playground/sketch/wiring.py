@@ -41,7 +41,7 @@ def initial_names(kernel: Kernel) -> dict[str, str]:
 
 
 def takes_input(technique: Technique, name: str) -> bool:
-    """Say whether an input of that name, or path inside, can be wired."""
+    """Return whether an input of that name, or path inside, can be wired."""
     if isinstance(technique, Kernel):
         return name in input_names(technique) or name in initial_names(technique)
     head, _, rest = name.partition(".")
@@ -52,7 +52,7 @@ def takes_input(technique: Technique, name: str) -> bool:
 
 
 def is_optional(technique: Technique, name: str) -> bool:
-    """Say whether an input may stay unwired."""
+    """Return whether an input may stay unwired."""
     if isinstance(technique, Kernel):
         if name in initial_names(technique):
             return True

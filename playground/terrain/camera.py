@@ -1,6 +1,6 @@
-"""Turn a camera that orbits the land into matrices.
+"""Turn a camera that orbits the terrain into matrices.
 
-World space: metres of the land, x east, y north, z up from height 0; the south-west
+World space: metres of the terrain, x east, y north, z up from height 0; the south-west
 corner is the origin.
 """
 
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from playground.sketch.model import Camera
 
 MARGIN = 1.06
-"""Air around a land that just fills the picture, as a share of the eye's distance."""
+"""Air around a terrain that just fills the picture, as a share of the eye's distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Eye:
-    """A camera over one land, seen in one picture."""
+    """A camera over one terrain, seen in one picture."""
 
     clip_from_world: NDArray[np.float32]  # (4, 4), rows; acts on column vectors
     position: tuple[float, float, float]  # [m]
@@ -35,7 +35,7 @@ class Eye:
 
 
 def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple[int, int]) -> Eye:
-    """Return the eye of a camera over a land, in a picture.
+    """Return the eye of a camera over a terrain, in a picture.
 
     ``extent`` and ``relief`` in metres, ``size`` in pixels.
     """
@@ -70,9 +70,9 @@ def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple
 
 
 def fit(camera: Camera, extent: tuple[float, float], relief: float, aspect: float) -> float:
-    """Return the distance [m] from the land's middle at which all of it is in the picture.
+    """Return the distance [m] from the terrain's middle at which all of it is in the picture.
 
-    The same for every azimuth, so that orbiting does not zoom: the land's corners are on two
+    The same for every azimuth, so that orbiting does not zoom: the terrain's corners are on two
     circles of radius R around the middle, h above and below it. Where the angle from the eye's
     azimuth is phi, a corner at height z = +-h is
 
@@ -109,7 +109,7 @@ def zoom(camera: Camera, factor: float, distance: float) -> Camera:
 
 
 def pan(camera: Camera, eye: Eye, right: float, up: float) -> Camera:
-    """Return the camera moved over the land: ``right``, and ``up`` along the ground.
+    """Return the camera moved over the terrain: ``right``, and ``up`` along the ground.
 
     Both are shares of the picture's height; what is at the target moves across the picture the other way.
     """

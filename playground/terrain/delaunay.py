@@ -2,13 +2,13 @@
 
 After H. Belaiche 2010, section 1.3.8. Four corners make two triangles. Each further point
 stands at the barycentre of the greatest triangle, its corners weighed alike or at random,
-and has a random height. What it makes illegal is mended in one of two ways, which give the
+and has a random height. What it makes illegal is fixed in one of two ways, which give the
 same triangles: destruction and construction (Bowyer 1981, Watson 1981, both in The Computer
 Journal 24) or flips of edges (Lawson 1977, "Software for C1 Surface Interpolation").
 
-Mended (slip 5 of the thesis's listing): the triangles that are destroyed are gathered in
+Fixed (slip 5 of the thesis's listing): the triangles that are destroyed are gathered in
 one list and leave the triangulation; construction skips neighbours that are in that list
-themselves, and takes the edges of the land's border, which have no neighbour.
+themselves, and takes the edges of the terrain's border, which have no neighbour.
 
 Places are whole numbers on a lattice, so which way three points turn and whether a circle
 holds a point are exact: no case is degenerate but a tie. A circle does not hold the points
@@ -16,9 +16,9 @@ on it. That is what a lifted paraboloid gives when each new point is lifted by t
 amount more than all before it, so both ways leave the same edge of a tie, whatever the order.
 
 No point falls on an edge. The greatest of 2 n + 2 triangles has at least the mean area, so
-no altitude of it is shorter than 1 / (n + 1) / sqrt(2) of a square land's side, and a
+no altitude of it is shorter than 1 / (n + 1) / sqrt(2) of a square terrain's side, and a
 point stands above 1/11 of one from each edge: for ``MOST_POINTS`` over 100 spacings of the
-lattice, and over 18 on the longest land, where rounding moves it by less than one.
+lattice, and over 18 on the longest terrain, where rounding moves it by less than one.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 
 SIDE = 2**24
-"""Lattice spacings along the longer side of the land: a float32 holds every whole number up to it."""
+"""Lattice spacings along the longer side of the terrain: a float32 holds every whole number up to it."""
 
 MOST_POINTS = 10_000
 LONGEST = 8.0
-"""How many times longer one side of the land may be than the other."""
+"""How many times longer one side of the terrain may be than the other."""
 
-_CELLS = 4096  # sides are multiples of SIDE / _CELLS, so that GLSL can divide them by a land's texels
+_CELLS = 4096  # sides are multiples of SIDE / _CELLS, so that GLSL can divide them by a terrain's texels
 _MASK = 2**32 - 1
 SALT = zlib.crc32(b"delaunay")
 """Added to the seed, as every kernel that draws adds one of its own (noise/hash.glsl)."""
@@ -60,14 +60,14 @@ class Rules:
     displaced: bool = False  # heights are the triangle's own, displaced; else random alone
     roughness: float = 1.0  # exponent of the displacement
     corners: tuple[float, float, float, float] = (0.5, 0.5, 0.5, 0.5)  # heights SW, SE, NW, NE
-    proportion: float = 1.0  # the land's length north over its length east
+    proportion: float = 1.0  # the terrain's length north over its length east
 
 
 @dataclass(frozen=True, slots=True)
 class Triangulation:
     """Points, the triangles between them, and what the last insertion did."""
 
-    sides: tuple[int, int]  # of the land, in lattice spacings
+    sides: tuple[int, int]  # of the terrain, in lattice spacings
     places: NDArray[np.int32]  # (n, 2) lattice; the corners SW, SE, NW, NE come first
     heights: NDArray[np.float64]  # (n,)
     triangles: NDArray[np.int32]  # (t, 3) points, counter-clockwise, the least first; greatest area first
@@ -355,7 +355,7 @@ class _Growing:
         return (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
 
     def _holds(self, t: int, point: int) -> bool:
-        """Say whether the circle through a triangle's corners holds a point inside, not on it."""
+        """Return whether the circle through a triangle's corners holds a point inside, not on it."""
         a, b, c = self.corners[3 * t : 3 * t + 3]
         x, y = self.x, self.y
         px, py = x[point], y[point]
@@ -369,7 +369,7 @@ class _Growing:
 
 
 def _sides(proportion: float) -> tuple[int, int]:
-    """Return the land's sides on the lattice, the longer one ``SIDE``."""
+    """Return the terrain's sides on the lattice, the longer one ``SIDE``."""
     share = min(proportion, 1.0 / proportion)
     shorter = SIDE // _CELLS * max(round(share * _CELLS), 1)
     return (SIDE, shorter) if proportion <= 1.0 else (shorter, SIDE)

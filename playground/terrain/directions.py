@@ -1,4 +1,4 @@
-"""Turn directions on the land, azimuth and elevation, into vectors."""
+"""Turn directions on the terrain, azimuth and elevation, into vectors."""
 
 from __future__ import annotations
 

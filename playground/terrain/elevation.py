@@ -1,8 +1,8 @@
-"""Read real land from elevation files.
+"""Read real terrain from elevation files.
 
 Whatever the file's order, heights come out as float32 with row 0 in the south
 and NaN where the file has no data. Heights stand on nodes: n texels in a row
-are n - 1 spacings long, so the corners of the land are the corners of the grid.
+are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
 
 Each format has a reader of its own (`geotiff`, `arrays`, `raw`); this chooses one and
 finishes what it hands over. Raw numbers (0..65535) stay raw: which heights they mean is

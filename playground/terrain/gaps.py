@@ -1,4 +1,4 @@
-"""Span the gaps in real land, where its file has no data."""
+"""Span the gaps in real terrain, where its file has no data."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def fill_no_data(elevation: Elevation, mode: Voids = "refuse") -> Elevation:
     """Return the elevation without gaps; itself, if it has none.
 
     `"refuse"` makes a gap an error; `"fill"` spans gaps with a smooth sheet that
-    meets the land around them (see `_filled`), and leaves every known height as it is.
+    meets the terrain around them (see `_filled`), and leaves every known height as it is.
 
     Raises:
         DataError: gaps, under "refuse", with their number and the first one's texel;
@@ -43,7 +43,7 @@ def fill_no_data(elevation: Elevation, mode: Voids = "refuse") -> Elevation:
 
 
 def _filled(heights: Heights) -> Heights:
-    # Solve Laplace's equation in the gaps (free at the edges of the land), coarse to fine: the
+    # Solve Laplace's equation in the gaps (free at the edges of the terrain), coarse to fine: the
     # pull and push of Gortler et al. 1996, "The Lumigraph", section 3.4, starts each level, a few
     # Gauss-Seidel sweeps finish it: the cascade of Bornemann and Deuflhard 1996.
     known = ~np.isnan(heights)

@@ -1,4 +1,4 @@
-"""Know how long a degree is, so that land given in degrees has metres.
+"""Convert degrees to metres, so that terrain given in degrees has metres.
 
 It does not reproject. Source: Snyder 1987, "Map Projections: A Working Manual", USGS
 Professional Paper 1395.

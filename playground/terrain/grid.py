@@ -1,4 +1,4 @@
-"""Say what a grid of heights may be, and how a format's reader hands one over."""
+"""Report what a grid of heights may be, and how a format's reader hands one over."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Found:
 
 
 def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None:
-    """Raise ``DataError`` for what is no land; a header's claims are judged, before memory is taken."""
+    """Raise ``DataError`` for what is no terrain; a header's claims are judged, before memory is taken."""
     size = " x ".join(map(str, reversed(shape))) or "a single number"
     if dtype.kind not in "iuf":
         raise DataError(f"holds {dtype}, not heights; expected integers or real numbers", file=path)

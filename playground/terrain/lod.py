@@ -1,4 +1,4 @@
-"""Choose what to draw of a land in tiles: which tiles, at which level of detail, joined how.
+"""Choose what to draw of a terrain in tiles: which tiles, at which level of detail, joined how.
 
 ``geomipmap`` gives each tile the coarsest level whose error, in pixels, is allowed.
 Levels of neighbours then differ by one at most; a level made finer for that has a smaller
@@ -7,7 +7,7 @@ error. Tiles outside the view are left out.
 The choice is made here and not in the vertex shader, though that would read nothing back:
 there every vertex of the finest level goes through it, 45 ms a frame for 1025 x 1025
 texels on llvmpipe with all triangles of a tile but two collapsed, where drawing those two
-takes 3 ms, choosing them 1 ms, and reading the tiles' errors 0.03 ms, once for each land.
+takes 3 ms, choosing them 1 ms, and reading the tiles' errors 0.03 ms, once for each terrain.
 """
 
 from __future__ import annotations
@@ -96,11 +96,11 @@ def _gathered(
 
 WHOLE: Piece = ("whole", 0, 0)
 DETAILS = ("full grid", "geomipmap", "morph")
-"""What ``detail`` of mesh "land" may be, by number."""
+"""What ``detail`` of mesh "terrain" may be, by number."""
 
 
 def choose_land(values: Mapping[str, object], tables: Callable[[], Tables], view: View) -> Chosen:
-    """Choose what to draw of mesh "land"; its full grid is drawn whole, once."""
+    """Choose what to draw of mesh "terrain"; its full grid is drawn whole, once."""
     if values["detail"] == 0:
         return Chosen(((WHOLE, 1),), np.zeros((1, 4), np.float32))
     return (geomipmap if values["detail"] == 1 else morph)(values, tables(), view)

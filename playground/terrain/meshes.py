@@ -27,7 +27,7 @@ class Mesh:
 def grid(values: Mapping[str, int]) -> Mesh:
     """Return a square of ``grid`` by ``grid`` vertices with a skirt around it.
 
-    Attribute ``corner``: east and north, 0..1, and 0 on the land or 1 at the skirt's foot.
+    Attribute ``corner``: east and north, 0..1, and 0 on the terrain or 1 at the skirt's foot.
     """
     n = values["grid"]
     steps = np.linspace(0.0, 1.0, n, dtype=np.float32)
@@ -67,7 +67,7 @@ def triangles(values: Mapping[str, int]) -> Mesh:
 def land(values: Mapping[str, int]) -> Mesh:
     """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``tiles``.
 
-    Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on the land or 1 at the skirt's foot.
+    Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on top or 1 at the skirt's foot.
     """
     if values["detail"] == 0:
         return grid(values)

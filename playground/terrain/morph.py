@@ -1,9 +1,9 @@
-"""Choose what to draw of a land in tiles that morph: squares of tiles, cut in four where they are near.
+"""Choose what to draw of a terrain in tiles that morph: squares of tiles, cut in four where they are near.
 
 Every square is drawn by the same 512 triangles. Their vertices slide into those of the
 next level as the distance grows (view/vertices.glsl), so that no level begins or ends in
 one picture, and no edge needs stitching. How far a level reaches is one number for the
-whole land: its roughest place among those near enough to matter rules all of it.
+whole terrain: its roughest place among those near enough to matter rules all of it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from playground.terrain.tiles import CELLS, LEVELS, Chosen, Piece, rims_of
 from playground.terrain.visibility import FAR, Boxes, Floats, View, boxes_of
 
 START = 0.8
-"""Where vertices begin to slide, over the distance that a level reaches; as in view/vertices.glsl."""
+"""Where vertices begin to slide, over a level's distance: MORPH_START in view/vertices.glsl (tested)."""
 NEARLY = 0.8
 """From where on a box counts, over the distance at which it needs a finer level."""
 

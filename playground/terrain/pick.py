@@ -1,4 +1,4 @@
-"""Find the ground under a pixel: where a ray from the eye first meets the land."""
+"""Find the ground under a pixel: where a ray from the eye first meets the terrain."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def ground_under(
     extent: tuple[float, float],
     relief: float,
 ) -> tuple[float, float] | None:
-    """Return where on the land a place of the picture lies; None where there is sky.
+    """Return where on the terrain a place of the picture lies; None where there is sky.
 
     ``place``: shares of the picture's width and height from its lower left. ``heights``:
     (ny, nx), row 0 south, 0..1 of ``relief`` [m]; ``extent`` [m]. The answer is in shares of the
-    land's sides, east and north. Steps are as long as a texel, so that a needle between two may
+    terrain's sides, east and north. Steps are as long as a texel, so that a needle between two may
     be missed; between steps the ground is halved in.
     """
     found = walk_over(eye, place, heights.shape[::-1], extent)
@@ -47,9 +47,9 @@ def ground_under(
 def walk_over(
     eye: Eye, place: tuple[float, float], size: tuple[int, ...], extent: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float, int] | None:
-    """Return how to look for the ground under a place of the picture; None where its ray meets no land.
+    """Return how to look for the ground under a place of the picture; None where its ray meets no terrain.
 
-    Where the ray begins [m], its unit vector, from where to where along it [m] it is over a land of
+    Where the ray begins [m], its unit vector, from where to where along it [m] it is over a terrain of
     ``size`` texels (nx, ny), and in how many steps, each no longer than a texel, to walk that way.
     """
     origin, way = _ray(eye, place)
@@ -68,7 +68,7 @@ def seen_from(
     extent: tuple[float, float],
     relief: float,
 ) -> list[tuple[float, float]]:
-    """Return where in the picture places on the ground are seen, (n, 2) shares of the land's sides.
+    """Return where in the picture places on the ground are seen, (n, 2) shares of the terrain's sides.
 
     In shares of the picture from its lower left; what is behind the eye is left out.
     """
@@ -90,7 +90,7 @@ def _ray(eye: Eye, place: tuple[float, float]) -> tuple[NDArray[np.float64], NDA
 def _over_land(
     origin: NDArray[np.float64], way: NDArray[np.float64], extent: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return from where to where a ray is over the land's rectangle, in metres along it."""
+    """Return from where to where a ray is over the terrain's rectangle, in metres along it."""
     entry, leave = 0.0, np.inf
     for axis in range(2):
         if abs(way[axis]) < 1e-12:
@@ -125,7 +125,7 @@ def _ground(
     extent: tuple[float, float],
     relief: float,
 ) -> NDArray[np.float64]:
-    """Return heights [m] between the four texels around places [m], held on the land."""
+    """Return heights [m] between the four texels around places [m], held on the terrain."""
     ny, nx = heights.shape
     x = np.clip(east / extent[0], 0, 1) * (nx - 1)
     y = np.clip(north / extent[1], 0, 1) * (ny - 1)

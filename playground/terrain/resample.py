@@ -1,4 +1,4 @@
-"""Bring land to another size, corners on corners.
+"""Bring terrain to another size, corners on corners.
 
 Source: Keys 1981, "Cubic Convolution Interpolation for Digital Image Processing", IEEE
 Transactions on Acoustics, Speech and Signal Processing 29, 6: the kernel with a = -1/2.
@@ -24,11 +24,11 @@ def resample(
 
     One cubic kernel (Keys 1981, a = -1/2: "Catmull-Rom"), as wide as the coarser of
     the two grids, so that shrinking averages and does not alias. Beyond its edges the
-    land goes on as its image turned half round about the edge: the corners keep their
+    terrain goes on as its image turned half round about the edge: the corners keep their
     heights, two tiles that share an edge still share it, a plane stays a plane, a
     constant stays exact. Next to a cliff a cubic overshoots by some 8 % of the cliff;
     `within` cuts that off at the lowest and highest height there may be. It is the caller's
-    to say, for tiles of one land must all be cut alike to go on sharing their edges.
+    to say, for tiles of one terrain must all be cut alike to go on sharing their edges.
 
     Raises:
         DataError: not a grid of finite numbers, or a size below 2 x 2 or above 2**28.
@@ -91,7 +91,7 @@ def _taps(
         tilt = broad * (away - (broad * away).sum(axis=1, keepdims=True) / broad.sum(axis=1, keepdims=True))
         mean = (weights * away).sum(axis=1, keepdims=True)
         weights -= tilt * (mean / (tilt * away).sum(axis=1, keepdims=True))
-    # Turned half round about its edges, the land repeats with period p, raised each time by twice
+    # Turned half round about its edges, the terrain repeats with period p, raised each time by twice
     # its rise: v[q p + r] = 2 q (v[n-1] - v[0]) + (v[r] if r < n else 2 v[n-1] - v[p - r]).
     period = 2 * (n - 1)
     turns, place = np.divmod(index, period)

@@ -1,7 +1,7 @@
-"""The sources a sketch may name: what the processor must do to make land.
+"""The sources a sketch may name: what the processor must do to make terrain.
 
 A closed registry: a sketch is data and cannot bring Python. A source says what it knows
-of its land before any texel is made (``describe``), then makes the texels (``make``).
+of its terrain before any texel is made (``describe``), then makes the texels (``make``).
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from playground.terrain.resample import resample
 
 
 @dataclass(frozen=True, slots=True)
-class Land:
-    """What a source knows of its land; None where it does not."""
+class Terrain:
+    """What a source knows of its terrain; None where it does not."""
 
     size: tuple[int, int] | None = None  # texels, x and y
     extent: tuple[float, float] | None = None  # [m]
@@ -40,7 +40,7 @@ class Land:
 class SourceKind:
     """One entry of the registry."""
 
-    describe: Callable[[Mapping[str, Value]], Land]
+    describe: Callable[[Mapping[str, Value]], Terrain]
     make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
@@ -105,7 +105,7 @@ def _span(elevation: Elevation) -> tuple[float, float]:
     return elevation.lowest, elevation.highest
 
 
-def _describe_elevation(values: Mapping[str, Value]) -> Land:
+def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     elevation = _elevation(values)
     low, high = _span(elevation)
     asked = _range(values, elevation)
@@ -116,7 +116,7 @@ def _describe_elevation(values: Mapping[str, Value]) -> Land:
         base, relief = asked[0] + (low - codes[0]) * scale, (high - low) * scale
     elif elevation.in_metres:
         base, relief = low, high - low
-    return Land(elevation.size, elevation.extent, relief, base)
+    return Terrain(elevation.size, elevation.extent, relief, base)
 
 
 def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
@@ -179,13 +179,13 @@ SOURCES: dict[str, SourceKind] = {
         notes=_notes_of_elevation,
     ),
     "delaunay": SourceKind(
-        lambda _: Land(),
+        lambda _: Terrain(),
         _make_triangulation,
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
     ),
     "mask_file": SourceKind(
-        lambda _: Land(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
+        lambda _: Terrain(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
     ),
 }
 """Name → what it does."""

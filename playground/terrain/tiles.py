@@ -1,4 +1,4 @@
-"""Make the tile that all land in tiles is drawn with: its vertices, and how to join them.
+"""Make the tile that all terrain in tiles is drawn with: its vertices, and how to join them.
 
 A tile is 16 by 16 cells. One set of 17 by 17 vertices serves every tile at every level;
 each level has a list of indices for each set of neighbours that are one level coarser,
@@ -119,6 +119,6 @@ def _wall(level: int, side: int) -> NDArray[np.uint32]:
 
 
 def rims_of(ny: int, nx: int) -> dict[int, NDArray[np.bool_]]:
-    """Return which tiles stand at each side of the land."""
+    """Return which tiles stand at each side of the terrain."""
     j, i = np.indices((ny, nx))
     return {SOUTH: j == 0, EAST: i == nx - 1, NORTH: j == ny - 1, WEST: i == 0}

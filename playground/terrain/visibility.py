@@ -1,4 +1,4 @@
-"""Say what a view sees of the boxes around tiles, how deep they lie, and how long a metre looks there."""
+"""Report what a view sees of the boxes around tiles, how deep they lie, and how long a metre looks there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """From where, and how large, a land is looked at."""
+    """From where, and how large, a terrain is looked at."""
 
     clip_from_world: Floats  # (4, 4), rows; acts on column vectors
     eye: tuple[float, float, float]  # [m]
@@ -65,7 +65,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Boxes:
-    """The boxes around the tiles of a land [m]: columns and rows share their sides."""
+    """The boxes around the tiles of a terrain [m]: columns and rows share their sides."""
 
     east: Floats  # (2, nx): west and east sides
     north: Floats  # (2, ny): south and north sides
@@ -100,7 +100,7 @@ class Boxes:
         return _length(*nearest), _length(*furthest)
 
     def seen(self, view: View) -> NDArray[np.bool_]:
-        """Say which are not wholly outside one of the six planes of the view."""
+        """Return which are not wholly outside one of the six planes of the view."""
         found = np.ones(self.up.shape[1:], bool)
         for row in (0, 1, 2):
             for sign in (1.0, -1.0):
@@ -108,9 +108,9 @@ class Boxes:
         return found
 
     def with_walls(self, view: View) -> Boxes:
-        """Return boxes that hold the walls at the land's rim as well.
+        """Return boxes that hold the walls at the terrain's rim as well.
 
-        How deep a wall goes is the draw's to say; none goes deeper than this, or than the land itself.
+        How deep a wall goes is the draw's to say; none goes deeper than this, or than the terrain itself.
         """
         return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
 
@@ -125,7 +125,7 @@ def boxes_of(
 ) -> Boxes:
     """Return the boxes of squares whose lowest and highest heights are ``spans``, (ny, nx, 2).
 
-    ``side`` is theirs in cells; ``tiles`` says how many tiles, east and north, the land has,
+    ``side`` is theirs in cells; ``tiles`` says how many tiles, east and north, the terrain has,
     where that is not how many squares it has.
     """
     heights = np.moveaxis(np.clip(spans.astype(np.float64), -FAR, FAR), -1, 0) * view.relief
@@ -135,5 +135,5 @@ def boxes_of(
     ):
         edges = np.minimum(np.arange(count + 1) * side, whole * CELLS) * (extent / (whole * CELLS))
         sides.append(np.stack([edges[:-1], edges[1:]]))
-    # A relief below 0 turns the land upside down.
+    # A relief below 0 turns the terrain upside down.
     return Boxes(sides[0], sides[1], heights if view.relief >= 0 else heights[::-1])

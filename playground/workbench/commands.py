@@ -8,7 +8,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
 from playground.paths import shown
-from playground.sketch.assign import LAND, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera, Value
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.workbench.edits import Draft
@@ -151,8 +151,10 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
     values = values_of(draft.base)
     found: dict[Key, object] = {}
     for path in draft.applied:
-        known = getattr(draft.base, path) if path in LAND else values[resolve(draft.base.graph, path)[0].path]
-        found["value", path] = known
+        if path in TERRAIN_KEYS:
+            found["value", path] = getattr(draft.base, path)
+        else:
+            found["value", path] = values[resolve(draft.base.graph, path)[0].path]
     for name, _ in draft.edits.techniques:
         spec = draft.file.graph.find(name)
         found["technique", name] = spec.use if spec else None

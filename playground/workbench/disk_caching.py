@@ -6,7 +6,7 @@ time, and nobody would learn which of them made it.
 
 from __future__ import annotations
 
-from playground.engine.disk_cache import store_for
+from playground.engine.disk_cache import disk_cache_for
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.workbench.inspect.toggles import Inspection
@@ -28,7 +28,7 @@ class SessionCaching:
     def attach(self, engine: Engine) -> None:
         """Have an engine use the disk cache, from its next frame on."""
         if self._limit:
-            engine.disk_caching = DiskCaching(store_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(disk_cache_for(engine.info, self._limit))
 
     def update(self, inspection: Inspection, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""

@@ -18,7 +18,7 @@ from typing import Protocol
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.sketch.allowed_files import Signature, noting_places
-from playground.sketch.assign import LAND
+from playground.sketch.assign import TERRAIN_KEYS
 from playground.sketch.find import find
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
@@ -304,7 +304,9 @@ class Drafts:
         """Write edited values in the fewest digits that a shader reads as the same numbers."""
 
         def shortened(edits: Edits) -> Edits:
-            return replace(edits, values=tuple((p, v if p in LAND else shortest(v)) for p, v in edits.values))
+            return replace(
+                edits, values=tuple((p, v if p in TERRAIN_KEYS else shortest(v)) for p, v in edits.values)
+            )
 
         if self.shown is not None and shortened(self.shown.edits) != self.shown.edits:
             self._edit(shortened)

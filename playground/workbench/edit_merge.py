@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from playground.errors import ParameterError
-from playground.sketch.assign import LAND, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Sketch, Value
 from playground.sketch.values import write
 
@@ -31,7 +31,7 @@ def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
     known, own = values_of(sketch), _set_by(sketch)
     found = {}
     for path in wanted:
-        if path in LAND:
+        if path in TERRAIN_KEYS:
             found[path] = FileValue(getattr(sketch, path), True)
             continue
         try:
@@ -60,7 +60,7 @@ def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
     """Return the sentence that reports an edit that gave way; "" where the files say that very value."""
     if newer.value == value:
         return ""
-    if newer.value is None or path in LAND:
+    if newer.value is None or path in TERRAIN_KEYS:
         return f"{path}: the file's new value is taken"
     parameter = resolve(sketch.graph, path)[0].parameter
     return f"{path}: the file's new value, {write(parameter, newer.value)}, is taken"

@@ -31,7 +31,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
-from playground.sketch.assign import LAND, check_value, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, values_of
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.values import is_whole, write
@@ -143,7 +143,7 @@ def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
         found = check_value(sketch, path, value)
     except ParameterError:
         return None
-    if path in LAND or isinstance(value, str):
+    if path in TERRAIN_KEYS or isinstance(value, str):
         return found
     return found if _shape(found) == _shape(value) else None
 
@@ -195,7 +195,7 @@ def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]
     kept: list[tuple[str, Value]] = []
     for path, value in values:
         was, now = _parameter(old.base, path), _parameter(base, path)
-        if path not in LAND and (now is None or taken(old.base, path, value) is None):
+        if path not in TERRAIN_KEYS and (now is None or taken(old.base, path, value) is None):
             kept.append((path, value))  # it waits
             if now is None and was is not None:
                 notes.append(f"{path} is gone; what was set here is kept in case it returns")
@@ -204,7 +204,7 @@ def _kept(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]
         if newer is not None:
             notes += filter(None, [notice(base, path, value, newer)])
             continue
-        if path in LAND:
+        if path in TERRAIN_KEYS:
             kept.append((path, value))
             continue
         assert was is not None and now is not None

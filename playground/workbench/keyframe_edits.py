@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
 
 from playground.errors import ParameterError
-from playground.sketch.assign import LAND, resolve, value_of, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, value_of, values_of
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.workbench.commands import rounded
@@ -45,7 +45,7 @@ class KeyframeEdits:
     def changed_paths(self) -> list[str]:
         """The edited parameters that a keyframe can set."""
         draft = self.session.shown
-        return [path for path in draft.applied if path not in LAND] if draft is not None else []
+        return [path for path in draft.applied if path not in TERRAIN_KEYS] if draft is not None else []
 
     def add_here(self, paths: Collection[str], *, camera: bool = True) -> bool:
         """Add a keyframe of the camera and of parameters at the clock's time, or add them to the one there.
@@ -150,7 +150,7 @@ def summary(keyframe: Keyframe) -> str:
 
 def _name_for(file: Sketch, known: Sequence[Keyframe], path: str) -> str:
     """Return the name that keyframes have for a parameter already, else its own."""
-    if path in LAND:
+    if path in TERRAIN_KEYS:
         raise ParameterError(f"'{path}' is of the terrain; keyframes set parameters and the camera")
     mine = _leaves(file, path)
     if not mine:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.engine.files import find_file
 from playground.engine.plan import Step
-from playground.engine.view_inputs import height_seen
+from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
@@ -79,7 +79,7 @@ class Painting:
     @property
     def side(self) -> float:
         """The land's longer side [m]."""
-        return max(self.session.plan.land.extent or (0.0,)) if self.session.plan else 0.0
+        return max(self.session.plan.terrain.extent or (0.0,)) if self.session.plan else 0.0
 
     def toggle(self) -> None:
         """Take the brush, or put it down."""
@@ -94,21 +94,21 @@ class Painting:
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the land a place of the picture lies, both in shares; None in the sky."""
         plan, heights = self.session.plan, self._land()
-        if plan is None or heights is None or plan.land.extent is None or plan.land.relief is None:
+        if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
             return None
-        return ground_under(plan.eye, place, heights, plan.land.extent, plan.land.relief)
+        return ground_under(plan.eye, place, heights, plan.terrain.extent, plan.terrain.relief)
 
     def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
         """Return the brush's circle as it lies on the land, in shares of the picture; [] in the sky."""
         plan, heights, middle = self.session.plan, self._land(), self.ground(place)
         if middle is None or heights is None or plan is None:
             return []
-        if plan.land.extent is None or plan.land.relief is None:
+        if plan.terrain.extent is None or plan.terrain.relief is None:
             return []
         turns = np.linspace(0, 2 * np.pi, corners, endpoint=False)
         around = np.stack([np.cos(turns), np.sin(turns)], axis=1) * self.brush.radius
-        shares = np.clip(np.array(middle) + around / plan.land.extent, 0.0, 1.0)
-        return seen_from(plan.eye, shares, heights, plan.land.extent, plan.land.relief)
+        shares = np.clip(np.array(middle) + around / plan.terrain.extent, 0.0, 1.0)
+        return seen_from(plan.eye, shares, heights, plan.terrain.extent, plan.terrain.relief)
 
     def press(self, place: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
@@ -128,11 +128,11 @@ class Painting:
     def move(self, place: tuple[float, float]) -> None:
         """Go on with the stroke."""
         plan, canvas = self.session.plan, self.canvas
-        if plan is None or plan.land.extent is None or canvas is None:
+        if plan is None or plan.terrain.extent is None or canvas is None:
             return
         now = self.ground(place)
         if now is not None:
-            canvas.paint(self._last or now, now, plan.land.extent, self.brush)
+            canvas.paint(self._last or now, now, plan.terrain.extent, self.brush)
             if canvas.path in self.session.engine.painted:
                 self.session.redraw()
             elif self._now() - self._saved_at >= SAVES_EVERY:
@@ -227,7 +227,7 @@ class Painting:
         """Return the heights that the picture shows, read once for each picture; a stroke moves none."""
         session = self.session
         if self._last is None and self._heights[0] != session.draws:
-            ref = height_seen(session.plan) if session.plan is not None else ""
+            ref = view_height(session.plan) if session.plan is not None else ""
             self._heights = session.draws, session.read_values(ref) if ref else None
         return self._heights[1]
 

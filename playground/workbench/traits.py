@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-from playground.sketch.identity import Same
+from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 from playground.sketch.reserved_names import PLAIN_UNIFORMS
 
@@ -27,7 +27,7 @@ class Traits:
 
 def traits_of(sketch: Sketch) -> Traits:
     """Return the traits of a sketch's graph."""
-    return _traits(Same(sketch.graph))
+    return _traits(Identity(sketch.graph))
 
 
 def is_animated(sketch: Sketch) -> bool:
@@ -36,7 +36,7 @@ def is_animated(sketch: Sketch) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _traits(key: Same[Graph]) -> Traits:
+def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
     return Traits(

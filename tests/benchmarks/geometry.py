@@ -84,7 +84,7 @@ def main() -> None:
 
 def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], rounds: int) -> Table:
     """Return what the meshes of one land cost, and how far from it they lie."""
-    size = engine.plan_for(sketch, SIZE).land.size
+    size = engine.plan_for(sketch, SIZE).terrain.size
     assert size is not None
     meshes = {"full grid, texel by texel": {"detail": "full grid", "grid": max(size)}}
     if max(size) > 1025:  # its own mesh would take a gigabyte
@@ -156,7 +156,7 @@ def heights(engine: Engine, sketch: Sketch, given: dict[str, object]) -> np.ndar
 def pixels(sketch: Sketch, truth: np.ndarray) -> np.ndarray:
     """Return how many pixels a metre upwards is long over each place of the land, 0 outside the picture."""
     with playground.headless() as engine:
-        land = engine.plan_for(sketch, SIZE).land
+        land = engine.plan_for(sketch, SIZE).terrain
     eye = look(sketch.camera, land.extent, land.relief, SIZE)
     matrix = eye.clip_from_world.astype(np.float64).T
     shares = ((np.arange(n) + 0.5) / n for n in SIZE)

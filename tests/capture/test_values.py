@@ -126,9 +126,9 @@ def test_an_exported_land_renders_like_the_one_it_came_from(
         values["height.raw_size"] = (9, 5)
     again = playground.load("generation/heightmap").with_values(values)
     plan = any_engine.plan_for(again, (64, 36))
-    assert plan.land.size == (9, 5)
-    assert plan.land.extent == pytest.approx((800.0, 300.0))
-    assert (plan.land.base_elevation, plan.land.relief) == pytest.approx((LOW, HIGH - LOW))
+    assert plan.terrain.size == (9, 5)
+    assert plan.terrain.extent == pytest.approx((800.0, 300.0))
+    assert (plan.terrain.base_elevation, plan.terrain.relief) == pytest.approx((LOW, HIGH - LOW))
     share = any_engine.read(again, "height").astype(np.float64)
     back = LOW + share * (HIGH - LOW)
     original = any_engine.read(lop, "height").astype(np.float64) * 1000.0 + 50.0
@@ -143,8 +143,8 @@ def test_metres_that_are_asked_for_win_over_those_that_a_file_tells(
     playground.export(lop, path, span=(0.0, 2000.0), engine=any_engine)
     values = {"height.elevation": str(path), "height.metres": (1000.0, 2000.0)}
     plan = any_engine.plan_for(playground.load("generation/heightmap").with_values(values), (64, 36))
-    assert plan.land.relief == pytest.approx((HIGH - LOW) / 2, abs=0.05)
-    assert plan.land.base_elevation == pytest.approx(1000.0 + LOW / 2, abs=0.05)
+    assert plan.terrain.relief == pytest.approx((HIGH - LOW) / 2, abs=0.05)
+    assert plan.terrain.base_elevation == pytest.approx(1000.0 + LOW / 2, abs=0.05)
 
 
 def test_geotiff_tells_metres_and_points(any_engine: Engine, lop: Sketch, tmp_path: Path):

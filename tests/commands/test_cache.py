@@ -11,7 +11,7 @@ import pytest
 
 from playground import cli
 from playground.commands.cache import in_bytes
-from playground.engine.disk_cache import Kept, Store, place
+from playground.engine.disk_cache import CachedTextures, DiskCache, place
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="the folder is told by XDG_CACHE_HOME"
@@ -23,10 +23,10 @@ def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Make a cache in which two lands are kept, one of them damaged, and something else."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
-    store = Store(place())
+    store = DiskCache(place())
     data = memoryview(bytes(256 * 256 * 4))
-    store.keep("one", Kept((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
-    store.keep("two", Kept((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
+    store.keep("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
+    store.keep("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
     store.close()
     os.utime(store._path("two"), (1e9, 1e9))
     (place() / "broken.land").write_bytes(b"x")

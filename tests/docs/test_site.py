@@ -16,6 +16,8 @@ import pytest
 import playground
 from playground.sketch.catalogue import techniques as listed
 
+from ..report.browser import MISSING, Browser
+
 pytestmark = pytest.mark.slow
 IN_A_BROWSER = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 

@@ -37,7 +37,7 @@ def said(plan: Plan) -> list[object]:
     return [
         plan.sketch,
         list(every_node(plan.nodes)),
-        plan.land,
+        plan.terrain,
         eye,
         plan.frame_size,
         plan.time,
@@ -126,9 +126,9 @@ def test_another_file_of_the_terrain_plans_anew(tmp_path):
         'use = "generation/heightmap"\nset = { elevation = "rise.npy" }\n'
     )
     sketch, planner = load(tmp_path), Planner()
-    assert planner.plan(sketch, frame_size=SIZE).land.size == (9, 9)
+    assert planner.plan(sketch, frame_size=SIZE).terrain.size == (9, 9)
     rise(17)
-    assert planner.plan(sketch, frame_size=SIZE).land.size == (17, 17)
+    assert planner.plan(sketch, frame_size=SIZE).terrain.size == (17, 17)
     Path(tmp_path / "rise.npy").unlink()
     with pytest.raises(DataError, match="there is no such file"):
         planner.plan(sketch, frame_size=SIZE)

@@ -35,7 +35,7 @@ def test_a_file_becomes_heights_row_0_in_the_south(any_engine, land):
     np.testing.assert_allclose(found, (heights[::-1] - heights.min()) / span, atol=1e-6)
     plan = any_engine.plan
     assert plan is not None
-    assert plan.land.size == (7, 5)
+    assert plan.terrain.size == (7, 5)
 
 
 def test_the_sketch_may_ask_for_another_size(any_engine, land):
@@ -134,4 +134,4 @@ def test_a_source_that_knows_nothing_of_its_land_leaves_it_to_the_next(any_engin
     made = '[[pass]]\nname = "tin"\nuse = "generation/delaunay"\n'
     sketch = folder.sketch(f'{made}[[pass]]\nname = "height"\nuse = "./land"\n', size="")
     any_engine.texture(sketch, "height")
-    assert any_engine.plan is not None and any_engine.plan.land.size == (7, 5)
+    assert any_engine.plan is not None and any_engine.plan.terrain.size == (7, 5)

@@ -17,7 +17,16 @@ import numpy as np
 import pytest
 
 from playground.engine import disk_cache as store_module
-from playground.engine.disk_cache import Kept, Store, bytes_in, clear, limit_in, listed, store_for, trim
+from playground.engine.disk_cache import (
+    CachedTextures,
+    DiskCache,
+    bytes_in,
+    clear,
+    disk_cache_for,
+    limit_in,
+    listed,
+    trim,
+)
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
@@ -128,7 +137,7 @@ class Shelf:
     def engine(self, floor: float = ALWAYS, **options: int) -> Engine:
         """Return an engine as a new session has it."""
         made = Engine(self.ctx, driver=self.driver, **options)
-        made.disk_caching = DiskCaching(store_for(made.info, 2**26, self.folder), floor=floor)
+        made.disk_caching = DiskCaching(disk_cache_for(made.info, 2**26, self.folder), floor=floor)
         self.engines.append(made)
         return made
 
@@ -347,19 +356,19 @@ def test_what_made_it_is_part_of_the_key(kept, worn, monkeypatch):
         replace(ours, renderer="llvmpipe (LLVM 99)"),
         replace(ours, version_code=410),
     ):
-        assert names(store_for(other, 1, kept.folder)) != names(store_for(ours, 1, kept.folder))
+        assert names(disk_cache_for(other, 1, kept.folder)) != names(disk_cache_for(ours, 1, kept.folder))
     monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx"))
     software = ContextInfo(450, "llvmpipe", "Mesa", "4.5", 4)
-    one = names(store_for(software, 1, kept.folder))
+    one = names(disk_cache_for(software, 1, kept.folder))
     monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx fma"))
-    assert names(store_for(software, 1, kept.folder)) != one
+    assert names(disk_cache_for(software, 1, kept.folder)) != one
     card = replace(software, renderer="NVIDIA H200")
-    one = names(store_for(card, 1, kept.folder))
+    one = names(disk_cache_for(card, 1, kept.folder))
     monkeypatch.undo()
-    assert names(store_for(card, 1, kept.folder)) == one, "a card's bits do not depend on the processor"
+    assert names(disk_cache_for(card, 1, kept.folder)) == one, "a card's bits do not depend on the processor"
 
 
-def names(store: Store) -> str:
+def names(store: DiskCache) -> str:
     return store._path("a key").name
 
 
@@ -478,8 +487,8 @@ def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_
 
 def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp_path):
     """A picture for a test must not come from a store."""
-    monkeypatch.setattr(Store, "read", lambda *_: pytest.fail("the store was read"))
-    monkeypatch.setattr(Store, "keep", lambda *_: pytest.fail("the store was written"))
+    monkeypatch.setattr(DiskCache, "read", lambda *_: pytest.fail("the store was read"))
+    monkeypatch.setattr(DiskCache, "keep", lambda *_: pytest.fail("the store was written"))
     assert any_engine.disk_caching is None
     picture(any_engine, worn)
     using = {
@@ -521,7 +530,7 @@ DAMAGE = {
 
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_file_is_dropped(tmp_path, damage):
-    store = Store(tmp_path)
+    store = DiskCache(tmp_path)
     store.keep("one", some(1))
     store.close()
     path = store._path("one")
@@ -554,7 +563,7 @@ def test_a_texture_of_another_size_is_not_taken(kept, folder):
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
     key = engine.keys_of(engine.plan).steps["a"]
-    store.keep(key, Kept((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
+    store.keep(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
     store.close()
     assert key in store
     assert reopened(kept, sketch) == {"a"}
@@ -641,13 +650,13 @@ def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, mon
 # ── the files ────────────────────────────────────────────────────────────────
 
 
-def some(number: int, size: int = 64) -> Kept:
+def some(number: int, size: int = 64) -> CachedTextures:
     data = np.random.default_rng(number).bytes(size * size * 4)
-    return Kept((size, size), (("height", "r32f"),), 12.5, f"land: {number}", (memoryview(data),))
+    return CachedTextures((size, size), (("height", "r32f"),), 12.5, f"land: {number}", (memoryview(data),))
 
 
 def test_a_store_gives_back_what_it_was_given(tmp_path):
-    store = Store(tmp_path / "deep" / "land")
+    store = DiskCache(tmp_path / "deep" / "land")
     store.keep("one", some(1))
     store.close()
     found = store.read("one")
@@ -660,7 +669,7 @@ def test_a_store_gives_back_what_it_was_given(tmp_path):
 
 
 def test_what_was_used_least_recently_goes_first(tmp_path):
-    store = Store(tmp_path, limit=2**30)
+    store = DiskCache(tmp_path, limit=2**30)
     for number in range(5):
         store.keep(str(number), some(number))
     store.close()
@@ -675,7 +684,7 @@ def test_what_was_used_least_recently_goes_first(tmp_path):
 
 
 def test_the_bound_holds_while_it_is_written(tmp_path):
-    store = Store(tmp_path, limit=5 * 64 * 64 * 4)
+    store = DiskCache(tmp_path, limit=5 * 64 * 64 * 4)
     for number in range(20):
         store.keep(str(number), some(number))
     store.close()
@@ -703,7 +712,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     ends = threading.Event()
 
     def reads() -> None:
-        store = Store(tmp_path)
+        store = DiskCache(tmp_path)
         while not ends.is_set():
             for number in range(4):
                 found = store.read(str(number))
@@ -713,7 +722,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     readers = [threading.Thread(target=reads) for _ in range(2)]
     for thread in readers:
         thread.start()
-    writers = [Store(tmp_path, limit=3 * 64 * 64 * 4) for _ in range(2)]
+    writers = [DiskCache(tmp_path, limit=3 * 64 * 64 * 4) for _ in range(2)]
     for turn in range(40):
         for store in writers:
             store.keep(str(turn % 4), some(turn % 4))
@@ -730,7 +739,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
 
 def test_where_nothing_can_be_written_one_is_told_and_nothing_more_is_tried(tmp_path):
     (tmp_path / "land").write_text("a file where the folder should be")
-    store = Store(tmp_path / "land")
+    store = DiskCache(tmp_path / "land")
     store.keep("one", some(1))
     store.close()
     assert store.trouble.startswith("land cannot be kept on disk: ") and not store.fits(1)
@@ -739,7 +748,7 @@ def test_where_nothing_can_be_written_one_is_told_and_nothing_more_is_tried(tmp_
 
 def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypatch):
     """On Windows nobody may rename over a file that is being read."""
-    store = Store(tmp_path)
+    store = DiskCache(tmp_path)
     store.keep("one", some(1))
     store.close()
 
@@ -756,7 +765,7 @@ def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypa
 
 
 def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
-    store = Store(tmp_path)
+    store = DiskCache(tmp_path)
     store.keep("one", some(1))
     store.close()
     store._path("one").write_bytes(b"damaged")
@@ -795,7 +804,7 @@ def test_what_is_no_size_is_refused_in_a_sentence(said):
 def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):
     goes_on = threading.Event()
     monkeypatch.setattr(store_module, "trim", lambda *_: goes_on.wait(60))
-    store = Store(tmp_path)
+    store = DiskCache(tmp_path)
     store.keep("one", some(1))
     start = time.monotonic()
     store.close(patience=0.01)

@@ -33,7 +33,7 @@ def metres():
 
 def test_a_real_land_comes_back_in_metres(engine, sketch_of, metres):
     sketch = sketch_of()
-    land = engine.plan_for(sketch, (64, 64)).land
+    land = engine.plan_for(sketch, (64, 64)).terrain
     found = engine.read(sketch, "land").astype(np.float64)
     assert land.size == metres.shape[::-1] and found.shape == metres.shape
     assert (found.min(), found.max()) == (0.0, 1.0)
@@ -44,7 +44,7 @@ def test_a_real_land_comes_back_in_metres(engine, sketch_of, metres):
 
 def test_a_real_land_is_as_long_as_its_degrees(engine, sketch_of):
     """Three arc seconds at 36.6 degrees north: about 92.5 m north and 74.5 m east."""
-    land = engine.plan_for(sketch_of(), (64, 64)).land
+    land = engine.plan_for(sketch_of(), (64, 64)).terrain
     spacing = land.extent[0] / (land.size[0] - 1), land.extent[1] / (land.size[1] - 1)
     assert spacing == pytest.approx((74.5, 92.5), abs=0.3)
 
@@ -80,7 +80,7 @@ def test_greys_stand_between_two_heights(engine, sketch_of, tmp_path):
     greys = np.linspace(51, 204, 12).astype(np.uint8).reshape(3, 4)  # north first
     PillowImage.fromarray(greys).save(tmp_path / "grey.png")
     sketch = sketch_of(values='elevation = "grey.png"\nmetres = [100.0, 1120.0]')
-    land = engine.plan_for(sketch, (64, 64)).land
+    land = engine.plan_for(sketch, (64, 64)).terrain
     found = engine.read(sketch, "land") * land.relief + land.base_elevation
     np.testing.assert_allclose(found, 100 + greys[::-1] / 255 * 1020, atol=1e-3)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import ndimage
 
+from playground.paths import GLSL
 from playground.sketch.model import Camera
 from playground.terrain import morph, tiles
 from playground.terrain import visibility as sight
@@ -122,6 +124,12 @@ def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
         done += count
     assert (times == 1).all()
     return levels
+
+
+def test_vertices_begin_to_slide_where_the_choice_of_levels_says():
+    text = (GLSL / "view" / "vertices.glsl").read_text("utf-8")
+    found = re.search(r"const float MORPH_START = ([\d.]+);", text)
+    assert found is not None and float(found.group(1)) == morph.START
 
 
 @pytest.mark.parametrize("size", [[257, 257], [300, 130], [129, 500]])

@@ -7,7 +7,7 @@ import pytest
 
 from playground.errors import ParameterError
 from playground.sketch.assign import (
-    LAND,
+    TERRAIN_KEYS,
     all_paths,
     flat_values,
     resolve,
@@ -177,7 +177,7 @@ def test_the_land_is_set_like_a_parameter(sketch, given, field, value):
     ids=[str(i) for i in range(29)],
 )
 def test_what_is_no_land_is_one_sentence(sketch, key, given):
-    assert key in LAND
+    assert key in TERRAIN_KEYS
     with pytest.raises(ParameterError, match=f"^{key} = .*: expected") as caught:
         sketch.with_values({key: given})
     assert len(str(caught.value)) < 200

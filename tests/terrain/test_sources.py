@@ -8,7 +8,7 @@ import pytest
 from playground.errors import DataError, SketchError
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
-from playground.terrain.sources import SOURCES, Land, source_kind
+from playground.terrain.sources import SOURCES, Terrain, source_kind
 
 KIND = source_kind("elevation_file")
 LAND = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
@@ -47,7 +47,7 @@ def test_the_triangulation_s_kernel_declares_what_its_source_reads():
         "method": ("destruction and construction", "flips"),
         "heights": ("random", "displaced"),
     }
-    assert kind.describe({p.name: p.default for p in parameters}) == Land()
+    assert kind.describe({p.name: p.default for p in parameters}) == Terrain()
     made = kind.make({p.name: p.default for p in parameters}, (16, 8))
     assert {name: table.shape for name, table in made.items()} == dict.fromkeys(
         ("places", "triangles", "neighbours", "last"), (8, 16, 4)

@@ -114,7 +114,7 @@ def test_the_switch_runs_the_plain_form_and_outlives_a_save(session, folder):
     assert not runs_fast(session) and not session.notes
     change(folder / "sketch.toml", "size = 33", "size = 65")
     saved(session)
-    assert not runs_fast(session) and session.plan is not None and session.plan.land.size == (65, 65)
+    assert not runs_fast(session) and session.plan is not None and session.plan.terrain.size == (65, 65)
     session.drafts.run_plain(False)
     picture(session)
     assert runs_fast(session)

@@ -52,7 +52,7 @@ def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
 def metres_of(session: Session) -> float | None:
     """Return how many metres the map's number 1 is, where it shows heights; None elsewhere."""
     shown, plan = session.view.map, session.plan
-    return plan.land.relief if shown and plan and shown.ref.partition(":")[2] == "height" else None
+    return plan.terrain.relief if shown and plan and shown.ref.partition(":")[2] == "height" else None
 
 
 def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.engine.plan import Plan
-from playground.engine.view_inputs import height_seen
+from playground.engine.view_inputs import view_height
 from playground.gpu.textures import read_texels
 from playground.sketch.flat import Ref
 from playground.workbench.inspect.surface_point import Ground
@@ -108,9 +108,9 @@ class Inspector:
             return Found(pixel, bytes_, None, ())
         if session.view.map is not None:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
-        ref = height_seen(plan)
+        ref = view_height(plan)
         heights = self._texture(plan, ref)
-        extent, relief = plan.land.extent, plan.land.relief
+        extent, relief = plan.terrain.extent, plan.terrain.relief
         if heights is None or extent is None or relief is None or not session.orbits:
             return Found(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:
@@ -130,7 +130,7 @@ class Inspector:
         if shown is None or texel is None:
             return Found(pixel, colour, None, ())
         share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
-        heights = self._texture(plan, height_seen(plan))
+        heights = self._texture(plan, view_height(plan))
         spot = None
         if heights is not None:
             high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
@@ -153,7 +153,7 @@ class Inspector:
 
     def _reading(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Reading:
         values = tuple(read_texels(texture, texel, (1, 1))[0, 0].tolist())
-        relief = plan.land.relief
+        relief = plan.terrain.relief
         is_height = len(values) == 1 and name.partition(":")[2] == "height" and relief is not None
         return Reading(name, texel, values, values[0] * relief if is_height and relief is not None else None)
 
@@ -193,7 +193,7 @@ def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, floa
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
     """
-    land, (nx, ny) = plan.land, heights.size
+    land, (nx, ny) = plan.terrain, heights.size
     assert land.extent is not None and land.relief is not None
     x, y = _node(hit[:2], heights.size)
     west, south, east, north = max(x - 1, 0), max(y - 1, 0), min(x + 1, nx - 1), min(y + 1, ny - 1)

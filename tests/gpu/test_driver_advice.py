@@ -1,10 +1,10 @@
-"""`mend` knows the texts that drivers really print, and gives advice that can be followed."""
+"""`advice` knows the texts that drivers really print, and gives advice that can be followed."""
 
 from __future__ import annotations
 
 import re
 
-from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, complaint, mend
+from playground.gpu.driver_advice import COMPLAINTS, DEBIAN_RENDER, advice, complaint
 
 from ..cases import each
 
@@ -112,7 +112,7 @@ def test_every_complaint_of_the_table_has_a_real_message():
 @each("platform", PLATFORMS)
 @each("message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"}))
 def test_the_answer_is_one_line_of_whole_sentences(message, platform):
-    answer = mend(message, platform, {})
+    answer = advice(message, platform, {})
     assert "\n" not in answer
     assert re.fullmatch(r"[A-Zm_].*\.", answer), answer
     assert "  " not in answer
@@ -121,7 +121,7 @@ def test_the_answer_is_one_line_of_whole_sentences(message, platform):
 @each("platform", ["darwin", "win32"])
 @each(("name", "message"), MESSAGES)
 def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message, platform):
-    answer = mend(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
+    answer = advice(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
     assert "apt" not in answer.split()
     assert "dnf" not in answer.split()
     assert "WSL" not in answer
@@ -130,16 +130,16 @@ def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message,
 @each("platform", PLATFORMS)
 def test_an_unknown_message_gets_the_general_advice(platform):
     assert complaint("the cat sat on the keyboard") is None
-    assert mend("the cat sat on the keyboard", platform, {}).startswith("OpenGL did not start")
+    assert advice("the cat sat on the keyboard", platform, {}).startswith("OpenGL did not start")
 
 
 def test_an_unknown_platform_is_taken_for_linux():
-    assert mend("libEGL.so not loaded", "freebsd14", {}) == mend("libEGL.so not loaded", "linux", {})
+    assert advice("libEGL.so not loaded", "freebsd14", {}) == advice("libEGL.so not loaded", "linux", {})
 
 
 @each("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
 def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_developers(message):
-    answer = mend(message, "linux", {})
+    answer = advice(message, "linux", {})
     assert f"apt install {' '.join(DEBIAN_RENDER)}" in answer
     assert "-dev" not in answer
 
@@ -169,10 +169,10 @@ def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_
     ],
 )
 def test_the_environment_tells_the_likelier_cause(message, environ, expected):
-    assert expected in mend(message, "linux", environ)
-    assert len(mend(message, "linux", {})) < len(mend(message, "linux", environ))
+    assert expected in advice(message, "linux", environ)
+    assert len(advice(message, "linux", {})) < len(advice(message, "linux", environ))
 
 
 def test_a_container_without_an_nvidia_card_is_not_told_about_one():
-    answer = mend("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
+    answer = advice("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
     assert "NVIDIA" not in answer
