@@ -10,23 +10,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from playground.errors import PlaygroundError, SketchError, nearest
+from playground.lessons import model
 from playground.lessons.markdown import Piece
 from playground.lessons.measures import MEASURES
-from playground.lessons.model import (
-    Break,
-    Code,
-    Compare,
-    Exercise,
-    Figure,
-    Measure,
-    Named,
-    Question,
-    Scene,
-    Slider,
-    Steps,
-    key_of,
-    translated_fields,
-)
 from playground.lessons.scenes import FRAME, PICTURE, STATE, Sketches, read_scene, with_steps, with_value
 from playground.paths import GLSL
 from playground.sketch.assign import check_value, resolve
@@ -34,7 +20,7 @@ from playground.sketch.model import Value
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
-B = TypeVar("B", bound=Named)
+B = TypeVar("B", bound=model.Named)
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _RENAMED = {"mend": "fix", "turns": "iterations"}  # keys of older lessons
@@ -51,9 +37,9 @@ class Fence:
     file: TomlFile
     sketches: Sketches
 
-    def only(self, kind: type[Named], *own: str) -> None:
+    def only(self, kind: type[model.Named], *own: str) -> None:
         """Raise ``SketchError`` for a key that is neither a text of such a block nor one of ``own``."""
-        self.file.only(self.file.table, [*own, *map(key_of, translated_fields(kind))])
+        self.file.only(self.file.table, [*own, *map(model.key_of, model.translated_fields(kind))])
 
     def take(self, key: str, kind: type, default: Any) -> Any:
         """Return what a key has, checked to be of a kind."""
@@ -75,8 +61,8 @@ class Fence:
 
     def block(self, kind: type[B], **fields: Any) -> B:
         """Return the block with these fields; its line, its name and its texts are read."""
-        for text in translated_fields(kind):
-            key, meaning = key_of(text), text.metadata
+        for text in model.translated_fields(kind):
+            key, meaning = model.key_of(text), text.metadata
             if text.name not in fields:
                 fields[text.name] = (
                     self.texts(key) if "listed" in meaning else self.markdown(key, needed=meaning["needed"])
@@ -88,7 +74,7 @@ class Fence:
         """Its keys that describe a picture."""
         return {key: value for key, value in self.file.table.items() if key in STATE}
 
-    def scene(self, pixels: tuple[int, int] = PICTURE) -> Scene:
+    def scene(self, pixels: tuple[int, int] = PICTURE) -> model.Scene:
         """Return the picture that the block's own keys describe."""
         return read_scene(self.file, self.state, (), self.sketches, pixels)
 
@@ -111,23 +97,23 @@ def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence
     return Fence(kind, name, piece, line, file, sketches)
 
 
-def read_fence(fence: Fence) -> Named:
+def read_fence(fence: Fence) -> model.Named:
     """Build the block that a fence describes; raise ``SketchError`` at the key that is wrong."""
     return READERS[fence.kind](fence)
 
 
-def _figure(fence: Fence) -> Figure:
-    fence.only(Figure, *STATE, "sliders")
+def _figure(fence: Fence) -> model.Figure:
+    fence.only(model.Figure, *STATE, "sliders")
     scene, sliders = fence.scene(), fence.texts("sliders")
     for path in sliders:
         _check_path(fence, scene, path, "sliders")
-    return fence.block(Figure, scene=scene, sliders=sliders)
+    return fence.block(model.Figure, scene=scene, sliders=sliders)
 
 
-def _steps(fence: Fence) -> Steps:
+def _steps(fence: Fence) -> model.Steps:
     from playground.engine.planner import repeated_in, repeats_of  # it needs what is loaded by then only
 
-    fence.only(Steps, *STATE, "passes", "iterations")
+    fence.only(model.Steps, *STATE, "passes", "iterations")
     scene = fence.scene(FRAME)
     passes = fence.texts("passes")
     if not passes:
@@ -145,20 +131,20 @@ def _steps(fence: Fence) -> Steps:
     if captions and len(captions) != len(given):
         raise fence.error(f"captions: {len(captions)} for {len(given)} iterations", "captions")
     scenes = tuple(with_steps(scene, dict.fromkeys(passes, one)) for one in given)
-    return fence.block(Steps, scenes=scenes, passes=passes, iterations=tuple(given))
+    return fence.block(model.Steps, scenes=scenes, passes=passes, iterations=tuple(given))
 
 
-def _slider(fence: Fence) -> Slider:
-    fence.only(Slider, *STATE, "parameter", "values", "from", "to", "frames")
+def _slider(fence: Fence) -> model.Slider:
+    fence.only(model.Slider, *STATE, "parameter", "values", "from", "to", "frames")
     scene = fence.scene(FRAME)
     parameter = fence.markdown("parameter")
     _check_path(fence, scene, parameter, "parameter")
     values = _swept(fence, scene, parameter)
     scenes = tuple(with_value(scene, parameter, value) for value in values)
-    return fence.block(Slider, scenes=scenes, parameter=parameter, values=values)
+    return fence.block(model.Slider, scenes=scenes, parameter=parameter, values=values)
 
 
-def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
+def _swept(fence: Fence, scene: model.Scene, parameter: str) -> tuple[Value, ...]:
     given = fence.take("values", list, None)
     if given is None:
         low, high = (fence.take(key, float, None) for key in ("from", "to"))
@@ -176,8 +162,8 @@ def _swept(fence: Fence, scene: Scene, parameter: str) -> tuple[Value, ...]:
         raise fence.error(error.diagnostics[0].message, "values") from None
 
 
-def _compare(fence: Fence) -> Compare:
-    fence.only(Compare, *STATE, "variant")
+def _compare(fence: Fence) -> model.Compare:
+    fence.only(model.Compare, *STATE, "variant")
     tables = fence.file.tables("variant")
     if len(tables) < 2:
         raise fence.error("a compare block has two or more [[variant]]")
@@ -191,39 +177,39 @@ def _compare(fence: Fence) -> Compare:
         raise fence.error(f"labels: {len(labels)} for {len(scenes)} variants", "labels")
     if len({scene.pixels for scene in scenes}) > 1:
         raise fence.error("pictures that are compared have one size: set pixels")
-    return fence.block(Compare, scenes=tuple(scenes))
+    return fence.block(model.Compare, scenes=tuple(scenes))
 
 
-def _code(fence: Fence) -> Code:
-    fence.only(Code, "file", "anchor")
-    return fence.block(Code, file=_shader(fence), anchor=fence.markdown("anchor"))
+def _code(fence: Fence) -> model.Code:
+    fence.only(model.Code, "file", "anchor")
+    return fence.block(model.Code, file=_shader(fence), anchor=fence.markdown("anchor"))
 
 
-def _break(fence: Fence) -> Break:
-    fence.only(Break, *STATE, "file", "find", "put")
+def _break(fence: Fence) -> model.Break:
+    fence.only(model.Break, *STATE, "file", "find", "put")
     find, put = (fence.take(key, str, "") for key in ("find", "put"))
-    return fence.block(Break, scene=fence.scene(), file=_shader(fence), find=find, put=put)
+    return fence.block(model.Break, scene=fence.scene(), file=_shader(fence), find=find, put=put)
 
 
-def _question(fence: Fence) -> Question:
-    fence.only(Question, "right")
+def _question(fence: Fence) -> model.Question:
+    fence.only(model.Question, "right")
     choices, right = fence.texts("choices"), fence.take("right", int, -1)
     if choices and not 0 <= right < len(choices):
         raise fence.error(f"right = {right}: expected the place of a choice, 0 to {len(choices) - 1}")
     if right >= 0 and not choices:
         raise fence.error("right: there are no choices", "right")
-    return fence.block(Question, right=right)
+    return fence.block(model.Question, right=right)
 
 
-def _exercise(fence: Fence) -> Exercise:
-    fence.only(Exercise, *STATE)
+def _exercise(fence: Fence) -> model.Exercise:
+    fence.only(model.Exercise, *STATE)
     drawn = "sketch" in fence.file.table
     alt = fence.markdown("alt", needed=drawn)
-    return fence.block(Exercise, scene=fence.scene() if drawn else None, alt=alt)
+    return fence.block(model.Exercise, scene=fence.scene() if drawn else None, alt=alt)
 
 
-def _measure(fence: Fence) -> Measure:
-    fence.only(Measure, *STATE, "of", "what", "with", "over", "digits", "unit", "between")
+def _measure(fence: Fence) -> model.Measure:
+    fence.only(model.Measure, *STATE, "of", "what", "with", "over", "digits", "unit", "between")
     what = fence.markdown("what")
     what = _RENAMED.get(what, what)
     if what not in MEASURES:
@@ -236,7 +222,7 @@ def _measure(fence: Fence) -> Measure:
     if not 1 <= digits <= 7:
         raise fence.error(f"digits = {digits}: expected 1 to 7", "digits")
     return fence.block(
-        Measure,
+        model.Measure,
         scene=fence.scene(),
         over=over,
         of=fence.take("of", str, "height"),
@@ -277,14 +263,14 @@ def _shader(fence: Fence) -> str:
     return file
 
 
-def _check_path(fence: Fence, scene: Scene, path: str, key: str) -> None:
+def _check_path(fence: Fence, scene: model.Scene, path: str, key: str) -> None:
     try:
         resolve(scene.sketch.graph, path)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, key) from None
 
 
-READERS: dict[str, Callable[[Fence], Named]] = {
+READERS: dict[str, Callable[[Fence], model.Named]] = {
     "figure": _figure,
     "step": _steps,
     "slider": _slider,

@@ -8,17 +8,7 @@ from dataclasses import dataclass, replace
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import SketchError
-from playground.lessons.model import (
-    Block,
-    Break,
-    Compare,
-    Exercise,
-    Figure,
-    Lesson,
-    Scene,
-    Slider,
-    Steps,
-)
+from playground.lessons import model
 from playground.paths import GLSL
 from playground.sketch.model import Shot, kernels_of
 from playground.sketch.source import read_text
@@ -33,7 +23,7 @@ class Picture:
     """One picture of a lesson."""
 
     name: str  # in the lesson: "land", "smoothing-3", "fault-broken"
-    scene: Scene
+    scene: model.Scene
     alt: str = ""
 
     @property
@@ -49,26 +39,26 @@ class Picture:
         return replace(self, scene=replace(self.scene, pixels=pixels))
 
 
-def pictures_of(lesson: Lesson) -> list[Picture]:
+def pictures_of(lesson: model.Lesson) -> list[Picture]:
     """List all pictures of a lesson, in its order."""
     return [picture for block in lesson.blocks for picture in pictures_in(block)]
 
 
-def pictures_in(block: Block) -> Iterator[Picture]:
+def pictures_in(block: model.Block) -> Iterator[Picture]:
     """Yield the pictures of a block: of a series each, of a bug the correct one and the broken one."""
-    if isinstance(block, Figure) and block.scene:
+    if isinstance(block, model.Figure) and block.scene:
         yield Picture(block.name, block.scene, block.alt)
-    elif isinstance(block, Steps | Slider | Compare):
+    elif isinstance(block, model.Steps | model.Slider | model.Compare):
         for index, scene in enumerate(block.scenes):
             yield Picture(f"{block.name}-{index}", scene, block.alt)
-    elif isinstance(block, Break) and block.scene:
+    elif isinstance(block, model.Break) and block.scene:
         yield Picture(block.name, block.scene)
         yield Picture(f"{block.name}-broken", broken(block), block.alt)
-    elif isinstance(block, Exercise) and block.scene:
+    elif isinstance(block, model.Exercise) and block.scene:
         yield Picture(block.name, block.scene, block.alt)
 
 
-def broken(block: Break) -> Scene:
+def broken(block: model.Break) -> model.Scene:
     """Return the picture of a block with its bug in it.
 
     Raises ``SketchError`` where what the bug replaces is not there exactly once, or where
@@ -82,7 +72,7 @@ def broken(block: Break) -> Scene:
     return replace(block.scene, sketch=with_texts(sketch, {path: with_bug(block)}).plainly(), plain=False)
 
 
-def with_bug(block: Break, text: str | None = None) -> str:
+def with_bug(block: model.Break, text: str | None = None) -> str:
     """Return the text of a block's file with its bug; ``text`` replaces what is in the file."""
     text = read_text(GLSL / block.file) if text is None else text
     count = text.count(block.find)
@@ -93,10 +83,10 @@ def with_bug(block: Break, text: str | None = None) -> str:
     return text.replace(block.find, block.put)
 
 
-def draw(engine: Engine, scene: Scene) -> Frame:
+def draw(engine: Engine, scene: model.Scene) -> Frame:
     """Draw a picture; raise as ``Engine.render`` does."""
     return engine.render(scene.sketch, size=scene.pixels, time=scene.time, steps=dict(scene.steps))
 
 
-def _error(block: Break, message: str) -> SketchError:
+def _error(block: model.Break, message: str) -> SketchError:
     return SketchError(f"break '{block.name}': {message}", line=block.line)

@@ -10,26 +10,12 @@ from latex2mathml.converter import convert
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError
+from playground.lessons import model
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import lesson_files
 from playground.lessons.markdown import formulas, images, links
 from playground.lessons.measuring import measured, named_in
-from playground.lessons.model import (
-    Block,
-    Break,
-    Code,
-    Compare,
-    Exercise,
-    Figure,
-    Lesson,
-    Measure,
-    Named,
-    Prose,
-    Question,
-    Slider,
-    Steps,
-)
 from playground.sketch.find import shipped_sketches
 
 MOST_WORDS = 60
@@ -42,7 +28,7 @@ VISIBLE_MEAN, VISIBLE_SHARE, VISIBLE_LEVELS = 2.0, 0.02, 16
 """A bug is visible if pictures differ by so many levels in the mean, or such a share of pixels by so many."""
 
 
-def broken_rules(lesson: Lesson) -> Iterator[tuple[int, str]]:
+def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     """Yield (line, sentence) of every rule that a lesson's text breaks; nothing is drawn."""
     yield from _first_screen(lesson)
     yield from _kinds(lesson)
@@ -53,22 +39,22 @@ def broken_rules(lesson: Lesson) -> Iterator[tuple[int, str]]:
         if alt and alt == caption:
             yield block.line, f"'{getattr(block, 'name', '')}': alt repeats the caption"
         try:
-            if isinstance(block, Code):
+            if isinstance(block, model.Code):
                 excerpt(block.file, block.anchor)
-            elif isinstance(block, Break):
+            elif isinstance(block, model.Break):
                 broken(block)
         except PlaygroundError as error:
             yield block.line, error.diagnostics[0].message
 
 
-def wrong_pictures(engine: Engine, lesson: Lesson) -> Iterator[tuple[int, str]]:
+def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     """Yield (line, sentence) of bugs that are not visible, and of numbers that are not as claimed."""
     for block in lesson.blocks:
         try:
-            if isinstance(block, Break) and block.scene:
+            if isinstance(block, model.Break) and block.scene:
                 if not visible(draw(engine, block.scene), draw(engine, broken(block))):
                     yield block.line, f"break '{block.name}': the bug hardly changes the picture"
-            elif isinstance(block, Measure):
+            elif isinstance(block, model.Measure):
                 value = measured(engine, block).value
                 if block.between and not block.between[0] <= value <= block.between[1]:
                     low, high = block.between
@@ -84,52 +70,53 @@ def visible(one: Frame, other: Frame) -> bool:
     return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
 
 
-def _first_screen(lesson: Lesson) -> Iterator[tuple[int, str]]:
+def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     words = 0
     for block in lesson.blocks:
-        if isinstance(block, Figure):
+        if isinstance(block, model.Figure):
             if words > MOST_WORDS:
                 yield block.line, f"{words} words stand before the first figure, at most {MOST_WORDS} may"
             return
-        words += len(block.text.split()) if isinstance(block, Prose) else 0
-        if isinstance(block, Named):
+        words += len(block.text.split()) if isinstance(block, model.Prose) else 0
+        if isinstance(block, model.Named):
             yield block.line, "the first block of a lesson is a figure"
             return
     yield 1, "a lesson has a figure"
 
 
-def _kinds(lesson: Lesson) -> Iterator[tuple[int, str]]:
-    wanted: tuple[tuple[str, tuple[type[Block], ...]], ...] = (
-        ("a step or a slider", (Steps, Slider)),
-        ("a compare or a question", (Compare, Question)),
-        ("a break", (Break,)),
-        ("a code", (Code,)),
-        ("a measure", (Measure,)),
+def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    wanted: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
+        ("a step or a slider", (model.Steps, model.Slider)),
+        ("a compare or a question", (model.Compare, model.Question)),
+        ("a break", (model.Break,)),
+        ("a code", (model.Code,)),
+        ("a measure", (model.Measure,)),
     )
     for what, kinds in wanted:
         if not any(isinstance(block, kinds) for block in lesson.blocks):
             yield 1, f"a lesson has {what} block"
-    count = sum(isinstance(block, Exercise) for block in lesson.blocks)
+    count = sum(isinstance(block, model.Exercise) for block in lesson.blocks)
     if count < EXERCISES:
         yield 1, f"{count} exercises; a lesson has {EXERCISES}"
     if not lesson.thesis or not lesson.papers:
         yield 1, "a lesson names sections of the thesis, and papers"
 
 
-def _sections(lesson: Lesson) -> Iterator[tuple[int, str]]:
+def _sections(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     sections = lesson.sections[1:]
     if not sections:
         yield 1, "a lesson has sections, each begun by ##"
         return
     for section in sections[:-1]:
-        if not any(isinstance(block, Named) and not isinstance(block, Measure) for block in section.blocks):
+        named = [block for block in section.blocks if isinstance(block, model.Named)]
+        if all(isinstance(block, model.Measure) for block in named):
             line = section.blocks[0].line if section.blocks else 1
             yield line, f"section '{section.title}' shows nothing: no picture, code or question"
-    if not any(isinstance(block, Exercise) for block in sections[-1].blocks):
+    if not any(isinstance(block, model.Exercise) for block in sections[-1].blocks):
         yield 1, "the last section of a lesson holds the exercises"
 
 
-def _references(lesson: Lesson) -> Iterator[tuple[int, str]]:
+def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     measures = {measure.name for measure in lesson.measures}
     for text in lesson.texts():
         for latex in formulas(text):

@@ -65,7 +65,7 @@ def test_status_before_and_after_marking_and_after_a_change(texts, capsys):
         (("list", "--lang", "frr"), "--lang frr: no such language; did you mean 'fr'?"),
         (("check", "smal"), "no lesson 'smal'; did you mean 'small'?"),
         (("pictures", "smal"), "no lesson 'smal'"),
-        (("translated", "small"), "say which translation: --lang fr"),
+        (("translated", "small"), "name the translation: --lang fr"),
         (("build", "smal"), "no lesson 'smal'"),
     ],
 )

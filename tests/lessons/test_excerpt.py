@@ -64,7 +64,7 @@ def test_the_lines_around_a_bug(lesson):
     block = lesson.named["fault"]
     found = bug_region(block)
     correct, broken = found.correct, found.broken
-    assert "(all(inside) ? 4.0 : 3.0)" in correct and "8.0" in broken
+    assert "total / count" in correct and "total / 8.0" in broken
     differing = [
         pair for pair in zip(correct.split("\n"), broken.split("\n"), strict=True) if pair[0] != pair[1]
     ]
@@ -97,6 +97,6 @@ def test_lines_put_back_make_the_file_again(lesson):
     ],
 )
 def test_a_bug_that_does_not_fit(make_lesson, find, words):
-    block = make_lesson(('find   = "(all(inside) ? 4.0 : 3.0)"', f'find = "{find}"')).named["fault"]
+    block = make_lesson(('find   = "total / count"', f'find = "{find}"')).named["fault"]
     with pytest.raises(SketchError, match=words):
         with_bug(block)

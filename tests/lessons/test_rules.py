@@ -52,7 +52,7 @@ def test_the_small_lesson_keeps_to_all(lesson):
             "![A picture](https://example.org/x.png) first.",
             "an image of 'https://example.org/x.png'",
         ),
-        ('find   = "(all(inside) ? 4.0 : 3.0)"', 'find = "nothing of it"', "found 0 times"),
+        ('find   = "total / count"', 'find = "nothing of it"', "found 0 times"),
         (
             'file   = "generation/diamond_square/raw.glsl"',
             'file = "generation/white_noise.glsl"',
@@ -66,7 +66,7 @@ def test_each_rule(make_lesson, before, after, words):
 
 def test_a_bug_must_be_visible_and_a_claim_must_hold(make_lesson, engine):
     assert list(wrong_pictures(engine, make_lesson())) == []
-    hidden = make_lesson(('put    = "8.0"', 'put = "(all(inside) ? 4.0001 : 3.0)"'))
+    hidden = make_lesson(('put    = "total / 8.0"', 'put = "total / (1.0001 * count)"'))
     assert [s for _, s in wrong_pictures(engine, hidden)] == [
         "break 'fault': the bug hardly changes the picture"
     ]

@@ -10,27 +10,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from playground.lessons import model
 from playground.lessons.book.html import Address, code_block, line, plain, prose
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import Picture, pictures_in
 from playground.lessons.library import SOURCE, Labels
 from playground.lessons.measuring import Number, filled
-from playground.lessons.model import (
-    Block,
-    Break,
-    Code,
-    Compare,
-    Exercise,
-    Figure,
-    Lesson,
-    Measure,
-    Named,
-    Prose,
-    Question,
-    Slider,
-    Steps,
-)
 from playground.lessons.values import spelled_value
 from playground.markup import Markup, joined, tag
 
@@ -39,7 +25,7 @@ from playground.markup import Markup, joined, tag
 class Setting:
     """What the blocks of one lesson are written with."""
 
-    lesson: Lesson
+    lesson: model.Lesson
     label: Labels  # around the lesson, in its language
     numbers: Mapping[str, Number]
     source: Callable[[Picture], str]  # address of a picture
@@ -70,7 +56,7 @@ class Setting:
         """Return what is unfolded by its label."""
         return tag("details", tag("summary", self.label(key)), tag("div", *inside))
 
-    def titled(self, block: Named, title: str, *inside: Markup | None) -> Markup:
+    def titled(self, block: model.Named, title: str, *inside: Markup | None) -> Markup:
         """Return the section of a block, under a heading."""
         heading = tag("h3", title, id=f"{block.name}-title")
         return tag("section", heading, *inside, id=block.name, class_=type(block).__name__.lower())
@@ -79,24 +65,24 @@ class Setting:
         return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
 
 
-def block_html(block: Block, setting: Setting, *, first: bool = False) -> Markup:
+def block_html(block: model.Block, setting: Setting, *, first: bool = False) -> Markup:
     """Return a block as HTML; the first picture of a page is loaded at once."""
-    if isinstance(block, Figure):
+    if isinstance(block, model.Figure):
         return _figure(block, setting, first)
     return _WRITERS[type(block)](block, setting)
 
 
-def open_command(lesson: Lesson) -> str:
+def open_command(lesson: model.Lesson) -> str:
     """Return the command that opens a lesson in the window."""
     language = "" if lesson.language == SOURCE else f" --lang {lesson.language}"
     return f"playground lesson open {lesson.name}{language}"
 
 
-def _prose(block: Prose, setting: Setting) -> Markup:
+def _prose(block: model.Prose, setting: Setting) -> Markup:
     return setting.prose(block.text if block.kind in ("heading", "code") else block.markdown)
 
 
-def _figure(block: Figure, setting: Setting, first: bool) -> Markup:
+def _figure(block: model.Figure, setting: Setting, first: bool) -> Markup:
     (picture,) = pictures_in(block)
     dragged = None
     if block.sliders:  # a page cannot have them
@@ -106,9 +92,9 @@ def _figure(block: Figure, setting: Setting, first: bool) -> Markup:
     return tag("figure", setting.image(picture, lazy=not first), caption, id=block.name)
 
 
-def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: str) -> Markup:
+def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[str], name: str) -> Markup:
     frames = []
-    captions = block.captions if isinstance(block, Steps) and block.captions else [""] * len(labels)
+    captions = block.captions if isinstance(block, model.Steps) and block.captions else [""] * len(labels)
     for picture, label, caption in zip(pictures_in(block), labels, captions, strict=True):
         # The pictures of a series differ by their labels; what they show is written once, above.
         written = tag("span", setting.line(caption)) if caption else None
@@ -121,23 +107,23 @@ def _series(block: Steps | Slider, setting: Setting, labels: list[str], name: st
         tag("figcaption", setting.line(block.caption)),
         id=block.name,
         class_="series",
-        data_kind="step" if isinstance(block, Steps) else "slider",
+        data_kind="step" if isinstance(block, model.Steps) else "slider",
     )
 
 
-def _steps(block: Steps, setting: Setting) -> Markup:
+def _steps(block: model.Steps, setting: Setting) -> Markup:
     count = len(block.iterations)
     labels = [setting.label("step_of", n=index + 1, m=count) for index in range(count)]
     return _series(block, setting, labels, setting.label("step"))
 
 
-def _slider(block: Slider, setting: Setting) -> Markup:
+def _slider(block: model.Slider, setting: Setting) -> Markup:
     name = block.label or block.parameter
     labels = [spelled_value(block, value, setting.lesson.language) for value in block.values]
     return _series(block, setting, labels, plain(name))
 
 
-def _compare(block: Compare, setting: Setting) -> Markup:
+def _compare(block: model.Compare, setting: Setting) -> Markup:
     shown = []
     for picture, label in zip(pictures_in(block), block.labels, strict=True):
         below = tag("p", tag("b", setting.line(label)))
@@ -152,7 +138,7 @@ def _compare(block: Compare, setting: Setting) -> Markup:
     )
 
 
-def _code(block: Code, setting: Setting) -> Markup:
+def _code(block: model.Code, setting: Setting) -> Markup:
     title = setting.label("code_of", file=f"glsl/{block.file}")
     caption = setting.line(block.caption) if block.caption else None
     return tag(
@@ -164,7 +150,7 @@ def _code(block: Code, setting: Setting) -> Markup:
     )
 
 
-def _break(block: Break, setting: Setting) -> Markup:
+def _break(block: model.Break, setting: Setting) -> Markup:
     label, lines = setting.label, bug_region(block)
     correct, broken = pictures_in(block)
     caption = setting.line(block.caption) if block.caption else None
@@ -196,13 +182,13 @@ def _break(block: Break, setting: Setting) -> Markup:
     )
 
 
-def _choice(block: Question, index: int, setting: Setting) -> Markup:
+def _choice(block: model.Question, index: int, setting: Setting) -> Markup:
     right = "yes" if index == block.right else "no"
     button = tag("input", type="radio", name=block.name, value=index, data_right=right)
     return tag("label", button, Markup(" "), tag("span", setting.line(block.choices[index])))
 
 
-def _question(block: Question, setting: Setting) -> Markup:
+def _question(block: model.Question, setting: Setting) -> Markup:
     label, choices = setting.label, None
     if block.choices:
         choices = tag(
@@ -217,8 +203,8 @@ def _question(block: Question, setting: Setting) -> Markup:
     return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
 
 
-def _exercise(block: Exercise, setting: Setting) -> Markup:
-    names = [each.name for each in setting.lesson.blocks if isinstance(each, Exercise)]
+def _exercise(block: model.Exercise, setting: Setting) -> Markup:
+    names = [each.name for each in setting.lesson.blocks if isinstance(each, model.Exercise)]
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
     return setting.titled(
         block,
@@ -229,21 +215,21 @@ def _exercise(block: Exercise, setting: Setting) -> Markup:
     )
 
 
-def _measure(block: Measure, setting: Setting) -> Markup:
+def _measure(block: model.Measure, setting: Setting) -> Markup:
     if not block.sentence:
         return joined()
     chip = tag("b", setting.label("measured"), class_="chip")
     return tag("p", chip, Markup(" "), setting.line(block.sentence), id=block.name, class_="measure")
 
 
-_WRITERS: dict[type[Block], Callable[[Any, Setting], Markup]] = {
-    Prose: _prose,
-    Steps: _steps,
-    Slider: _slider,
-    Compare: _compare,
-    Code: _code,
-    Break: _break,
-    Question: _question,
-    Exercise: _exercise,
-    Measure: _measure,
+_WRITERS: dict[type[model.Block], Callable[[Any, Setting], Markup]] = {
+    model.Prose: _prose,
+    model.Steps: _steps,
+    model.Slider: _slider,
+    model.Compare: _compare,
+    model.Code: _code,
+    model.Break: _break,
+    model.Question: _question,
+    model.Exercise: _exercise,
+    model.Measure: _measure,
 }

@@ -7,29 +7,16 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from playground.errors import DataError
+from playground.lessons import model
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
 from playground.lessons.library import SOURCE, THESIS, interface_labels
 from playground.lessons.measuring import Number, filled
-from playground.lessons.model import (
-    Block,
-    Break,
-    Code,
-    Compare,
-    Exercise,
-    Figure,
-    Lesson,
-    Measure,
-    Prose,
-    Question,
-    Slider,
-    Steps,
-)
 
 _LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis):([^)]*)\)")
 
 
-def notebook_text(lesson: Lesson, numbers: Mapping[str, Number]) -> str:
+def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
     """Return a lesson's notebook, not run yet, with its numbers; raise ``DataError`` without nbformat."""
     try:
         import nbformat
@@ -55,7 +42,7 @@ def notebook_text(lesson: Lesson, numbers: Mapping[str, Number]) -> str:
 class _Writer:
     """Writes the cells of one lesson: (kind, text)."""
 
-    def __init__(self, lesson: Lesson, numbers: Mapping[str, Number]) -> None:
+    def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number]) -> None:
         self.lesson = lesson
         self.numbers = numbers
         self.label = interface_labels(lesson.language)
@@ -77,39 +64,39 @@ class _Writer:
         thesis = f"## {label('thesis')}\n\n{THESIS}{label('colon')}{sections}."
         yield "markdown", f"{thesis}\n\n## {label('papers')}\n\n{papers}"
 
-    def block(self, block: Block) -> Iterator[tuple[str, str]]:
+    def block(self, block: model.Block) -> Iterator[tuple[str, str]]:
         """Yield the cells of a block: its text, then the code that draws it."""
         label, text = self.label, self.text
-        if isinstance(block, Prose):
+        if isinstance(block, model.Prose):
             mark = f"{'#' * block.level} " if block.kind == "heading" else ""
             yield "markdown", text(f"{mark}{block.markdown}")
-        elif isinstance(block, Figure | Steps | Slider | Compare):
+        elif isinstance(block, model.Figure | model.Steps | model.Slider | model.Compare):
             yield "markdown", f"*{text(block.caption)}*"
             yield "code", f'lesson.show("{block.name}")'
-        elif isinstance(block, Code):
+        elif isinstance(block, model.Code):
             title = label("code_of", file=f"glsl/{block.file}")
             caption = f"{text(block.caption)} " if block.caption else ""
             yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
-        elif isinstance(block, Break):
+        elif isinstance(block, model.Break):
             yield "markdown", f"### {label('bug')}\n\n{text(block.ask)}"
             yield "code", f'lesson.show("{block.name}")'
             yield "markdown", label("your_task")
             yield "code", f'lesson.fix("{block.name}", r"""\n{bug_region(block).broken}\n""")'
             folded = (self.folded("hint", block.hint), self.folded("fix", block.fix))
             yield "markdown", "\n\n".join(folded)
-        elif isinstance(block, Question):
+        elif isinstance(block, model.Question):
             choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
             asked = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
             yield "markdown", f"{asked}\n\n{self.folded('answer', block.answer)}"
-        elif isinstance(block, Exercise):
+        elif isinstance(block, model.Exercise):
             yield "markdown", self.exercise(block)
-        elif isinstance(block, Measure) and block.sentence:
+        elif isinstance(block, model.Measure) and block.sentence:
             yield "markdown", text(block.sentence)
             yield "code", f'lesson.measure("{block.name}")'
 
-    def exercise(self, block: Exercise) -> str:
+    def exercise(self, block: model.Exercise) -> str:
         """Return an exercise, its solution folded away."""
-        others = [one.name for one in self.lesson.blocks if isinstance(one, Exercise)]
+        others = [one.name for one in self.lesson.blocks if isinstance(one, model.Exercise)]
         parts = [f"### {self.label('exercise')} {others.index(block.name) + 1}", self.text(block.ask)]
         if block.hint:
             parts.append(self.folded("hint", block.hint))

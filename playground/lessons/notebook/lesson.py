@@ -14,22 +14,11 @@ from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundWarning, SketchError, nearest
+from playground.lessons import model
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import SOURCE, interface_labels
 from playground.lessons.measuring import measured
-from playground.lessons.model import (
-    Break,
-    Compare,
-    Exercise,
-    Figure,
-    Lesson,
-    Measure,
-    Named,
-    Scene,
-    Slider,
-    Steps,
-)
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.read import read_lesson
 from playground.markup import tag
@@ -75,7 +64,7 @@ class Fixed(Frame):
 class NotebookLesson:
     """A lesson whose blocks can be shown one by one."""
 
-    def __init__(self, lesson: Lesson) -> None:
+    def __init__(self, lesson: model.Lesson) -> None:
         self.lesson = lesson
         self.label = interface_labels(lesson.language)
 
@@ -85,18 +74,18 @@ class NotebookLesson:
         Raises ``SketchError`` for a block there is not, or one without a picture.
         """
         block = self._block(name)
-        if isinstance(block, Figure | Steps | Slider | Compare):
+        if isinstance(block, model.Figure | model.Steps | model.Slider | model.Compare):
             return self._dragged(block)
-        if isinstance(block, Break):
+        if isinstance(block, model.Break):
             return self._frame(broken(block))
-        if isinstance(block, Exercise) and block.scene:
+        if isinstance(block, model.Exercise) and block.scene:
             return self._frame(block.scene)
         raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' has no picture")
 
     def measure(self, name: str) -> float:
         """Return the number of a measure, computed now."""
         block = self._block(name)
-        if not isinstance(block, Measure):
+        if not isinstance(block, model.Measure):
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' measures nothing")
         return on_engine(lambda engine: measured(engine, block)).value
 
@@ -106,7 +95,7 @@ class NotebookLesson:
         Raises ``ShaderError`` naming what is wrong with the lines.
         """
         block = self._block(name)
-        if not isinstance(block, Break) or block.scene is None:
+        if not isinstance(block, model.Break) or block.scene is None:
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no bug to fix")
         text = bug_region(block).with_lines(lines)
         path = str((GLSL / block.file).resolve())
@@ -121,16 +110,16 @@ class NotebookLesson:
         warnings.warn("lesson.mend is called lesson.fix now", PlaygroundWarning, stacklevel=2)
         return self.fix(name, lines)
 
-    def _block(self, name: str) -> Named:
+    def _block(self, name: str) -> model.Named:
         named = self.lesson.named
         if name not in named:
             raise SketchError(f"lesson '{self.lesson.name}' has no block '{name}'{nearest(name, named)}")
         return named[name]
 
-    def _frame(self, scene: Scene) -> Frame:
+    def _frame(self, scene: model.Scene) -> Frame:
         return on_engine(lambda engine: draw(engine, scene))
 
-    def _dragged(self, block: Figure | Steps | Slider | Compare) -> Any:
+    def _dragged(self, block: model.Figure | model.Steps | model.Slider | model.Compare) -> Any:
         controls = controls_of(block, self.lesson.language, self.label)
 
         def png(values: Mapping[str, float]) -> bytes:
