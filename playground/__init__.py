@@ -5,7 +5,7 @@
     sketch = playground.load("jacksboro")                    # a shipped sketch, or a path
     with playground.headless() as engine:                    # EGL: no display, no GPU needed
         frame = engine.render(sketch, size=(1280, 720))      # shows itself in a notebook
-        frame.save("land.png")
+        frame.save("terrain.png")
         height = engine.read(sketch, "height")               # float32, row 0 in the south
         evening = sketch.with_values({"light.sun": (250.0, 12.0)})
         square = playground.load("diamond_square")

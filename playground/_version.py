@@ -1,3 +1,3 @@
-"""Say which version this is; the only place that does."""
+"""The version of the package; the only place that states it."""
 
 __version__ = "0.1.0"

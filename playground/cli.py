@@ -2,8 +2,8 @@
 
 Standard output holds the answer (a path, a table, JSON); notes, progress and errors go to
 standard error. A mistake of the user's is one sentence, never a traceback. Exit status:
-0 well; 1 ``check`` or ``doctor`` found something; 2 a mistake in what was asked; 130
-interrupted; 141 the reader of a pipe has gone; 143 and 129 ended by SIGTERM or SIGHUP.
+0 well; 1 ``check`` or ``doctor`` found something; 2 a mistake in the command; 130
+interrupted; 141 the reader of a pipe has closed it; 143 and 129 ended by SIGTERM or SIGHUP.
 
 What is heavy (NumPy, OpenGL, tables) is imported by the command that needs it.
 """
@@ -31,21 +31,14 @@ from playground.commands import (
     listing,
     live,
     new,
+    options,
     pack,
     reduce,
     render,
     shots,
     variants,
 )
-from playground.commands.arguments import (
-    DeviceOption,
-    Renderer,
-    SoftwareOption,
-    complete_sketch,
-    help_text,
-    quoted,
-    read_device,
-)
+from playground.commands.arguments import Renderer, help_text, quoted, read_device
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
@@ -113,7 +106,7 @@ def _status(given: list[str]) -> int:
         complain(": ".join(str(part) for part in (error.filename, error.strerror or error) if part))
         return MISTAKE
     finally:
-        # What is still in their buffers cannot be written either; without this, Python says so as it ends.
+        # Their buffers cannot be written either; without this, Python reports an error as it ends.
         for stream in (output, sys.stderr):
             let_go(stream)
     return int(status or 0)
@@ -153,8 +146,8 @@ def _global(
             "--version", metavar="", help="Print the version.", callback=_print_version, is_eager=True
         ),
     ] = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     ctx.obj = Renderer(software, read_device(device))
     if ctx.invoked_subcommand is None:
@@ -168,12 +161,12 @@ def _open_default(renderer: Renderer) -> None:
     if where_to_show(os.environ, sys.platform):
         live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, beside=True)
         return
-    note("no display here, so a picture is made instead; playground --help says what else there is")
+    note("no display here, so a picture is rendered instead; playground --help lists the commands")
     render.make_picture(render.Request(), renderer)
 
 
 def _usage_message(error: Exception) -> str:
-    """Return a usage mistake as one sentence, with the help to turn to."""
+    """Return a usage mistake as one sentence, with the help to read."""
     text: str = error.format_message() if hasattr(error, "format_message") else str(error)
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)
@@ -187,7 +180,7 @@ def _usage_message(error: Exception) -> str:
 
 def _no_command(text: str) -> str:
     name = text.split("'")[1] if text.count("'") >= 2 else ""
-    if name in complete_sketch("") or Path(name).exists():
+    if name in options.complete_sketch("") or Path(name).exists():
         shell = quoted(name)
         return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
     return f"no command '{name}'{nearest(name, _COMMANDS)}"

@@ -5,7 +5,7 @@
     │   └── ParameterError         a value or a parameter's name is wrong
     ├── ShaderError                a GLSL text is wrong; one diagnostic a mistake
     ├── DataError                  an image or elevation file cannot be used
-    ├── ContextError               no OpenGL context, or one that cannot do what is asked
+    ├── ContextError               no OpenGL context, or one that lacks what is needed
     │   └── OpenGLFault            OpenGL reports an error of the engine's own doing
     └── SandboxError               a worker process was stopped
         ├── SandboxTimeout         … it took too long
@@ -110,7 +110,7 @@ class DataError(PlaygroundError):
 
 
 class ContextError(PlaygroundError):
-    """There is no OpenGL context, or it cannot do what is asked."""
+    """There is no OpenGL context, or it lacks what is needed."""
 
 
 class OpenGLFault(ContextError):
@@ -130,7 +130,7 @@ class SandboxCrash(SandboxError):
 
 
 class PlaygroundWarning(UserWarning):
-    """What can be drawn, though not as its author may think: Python's own warnings tell it to a program."""
+    """What can be drawn, but maybe not as its author intends; programs receive it as a Python warning."""
 
 
 class PlainFormWarning(PlaygroundWarning):
@@ -143,7 +143,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
-    """Say which valid name was probably meant, as the tail of a sentence.
+    """Suggest the valid name that was probably meant, as the end of a sentence.
 
     Returns ``""`` when nothing is near and there is nothing to list, else
     ``"; did you mean 'x'?"`` or ``"; there are: a, b, c"``.

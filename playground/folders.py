@@ -1,10 +1,10 @@
-"""Know where this system keeps what a program remembers, and what it can make again.
+"""Find the folders of this system for a program's state and for its cache.
 
     Linux     $XDG_STATE_HOME (~/.local/state), $XDG_CACHE_HOME (~/.cache)
     macOS     ~/Library/Application Support, ~/Library/Caches
     Windows   %LOCALAPPDATA%
 
-in a folder of the playground's own. Nothing is made here: who writes makes the folder.
+in a folder of the playground's own. Nothing is created here: the writer creates the folder.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ NAME = "terrain-shader-playground"
 
 
 def state_folder(system: str = sys.platform, environment: Mapping[str, str] = os.environ) -> Path:
-    """Return the folder for what is remembered from one start to the next."""
+    """Return the folder for state that lasts from one start to the next."""
     if system == "win32":
         return _local(environment) / NAME / "state"
     if system == "darwin":
@@ -27,7 +27,7 @@ def state_folder(system: str = sys.platform, environment: Mapping[str, str] = os
 
 
 def cache_folder(system: str = sys.platform, environment: Mapping[str, str] = os.environ) -> Path:
-    """Return the folder for what may be thrown away at any time."""
+    """Return the folder for what may be deleted at any time."""
     if system == "win32":
         return _local(environment) / NAME / "cache"
     if system == "darwin":

@@ -1,4 +1,4 @@
-"""Read JSON that somebody else may have written: what is wrong with it is one kind of error."""
+"""Read untrusted JSON: whatever is wrong with it raises one kind of error."""
 
 from __future__ import annotations
 

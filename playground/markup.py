@@ -22,7 +22,7 @@ def tag(name: str, /, *inside: str | Markup | None, **attributes: str | int | bo
     """Return an element with what is inside it, escaped where it is no `Markup`; None is left out.
 
     Attributes are named as in HTML, with ``_`` for ``-`` and a ``_`` at the end of Python's own
-    words (``class_``); True gives the bare name, False and None none.
+    keywords (``class_``); True gives the bare name, False and None none.
     """
     written = [name]
     for key, value in attributes.items():

@@ -1,7 +1,7 @@
-"""Files that are being written beside the name they will take: locked while that goes on, removed after.
+"""Write files under a temporary name in the same folder: locked while written, removed after.
 
-Whoever writes one holds a lock on it, which the system gives back however a process ends. So
-one that nobody locks is left over, from a process that was killed: it is removed the first
+The writer holds a lock on the file, which the system releases however a process ends. So
+an unlocked one is left over from a process that was killed: it is removed the first
 time that a process writes into its folder.
 """
 
@@ -38,7 +38,7 @@ class Partial:
 
 @contextmanager
 def partial_file(path: Path) -> Iterator[Partial]:
-    """Make a file beside ``path``, open in the block and gone after it, unless it was renamed.
+    """Create a file in the folder of ``path``, open in the block and removed after it, unless it was renamed.
 
     Raises ``OSError`` where it cannot be made.
     """
@@ -53,7 +53,7 @@ def partial_file(path: Path) -> Iterator[Partial]:
 
 @cache
 def remove_left_over(folder: Path) -> None:
-    """Remove the files of processes that are gone from a folder; once for each folder."""
+    """Remove the files that ended processes left in a folder; once for each folder."""
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             if entry.name.startswith(".") and _NAMED.fullmatch(entry.name) and entry.is_file():
@@ -79,7 +79,7 @@ def _made(path: Path) -> Partial:
 
 
 def _locked(file: BinaryIO, *, wait: bool) -> bool:
-    """Lock a file until it is closed; say no where somebody else has."""
+    """Lock a file until it is closed; return False where another process has locked it."""
     if sys.platform == "win32":  # there an open file cannot be removed, which is as good
         return True
     import fcntl

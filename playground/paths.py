@@ -1,4 +1,4 @@
-"""Know where the GLSL library is: beside the package in a checkout, inside it in a wheel."""
+"""Find the GLSL library: next to the package in a checkout, inside it in a wheel."""
 
 from __future__ import annotations
 

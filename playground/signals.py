@@ -1,4 +1,4 @@
-"""End as Ctrl-C does when the system asks: files that are half written are removed, a film is shortened."""
+"""End as on Ctrl-C for the system's signals: half-written files are removed, a film is shortened."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_ASKING = ("SIGTERM", "SIGHUP")  # what a shutdown and a closed terminal send; the second not on Windows
+_ASKING = ("SIGTERM", "SIGHUP")  # sent by a shutdown and a closed terminal; the second not on Windows
 
 
 @contextmanager
 def ended_by_signals() -> Iterator[list[int]]:
-    """Raise ``KeyboardInterrupt`` in the block where the system asks to end; yields the signals that came.
+    """Raise ``KeyboardInterrupt`` in the block on a signal to end; yields the signals that came.
 
     Does nothing outside the main thread, and leaves alone a signal that is ignored, as by nohup.
     """

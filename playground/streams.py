@@ -1,7 +1,7 @@
-"""Make the standard streams fit to be used: closed ones, and those whose encoding lacks what is printed.
+"""Make the standard streams usable: closed ones, and those whose encoding lacks what is printed.
 
 What an encoding lacks is spelled in ASCII, as "->". A stream that was closed before the start
-takes everything and keeps nothing, and so does one whose reader has gone, once it is let go.
+discards everything, and so does one whose reader has closed the pipe, after ``let_go``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ASCII = {
 
 
 class Nowhere(io.TextIOWrapper):
-    """What stands in the place of a standard stream that was closed."""
+    """The replacement of a standard stream that was closed."""
 
     def __init__(self, number: int) -> None:
         super().__init__(os.fdopen(number, "rb" if number == 0 else "wb", closefd=False), "utf-8", "replace")

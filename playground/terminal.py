@@ -2,9 +2,9 @@
 
 Colour only on a terminal, and not where NO_COLOR is set; bars and spinners only on
 standard error. Tables are drawn on a terminal; in a pipe each row is a line, its columns
-parted by tabs.
+separated by tabs.
 
-What is printed on standard error never ends a command: whoever read it may have gone.
+What is printed on standard error never ends a command: its reader may have closed it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def has_colour(stream: TextIO) -> bool:
-    """Say whether colour belongs on a stream."""
+    """Whether colour belongs on a stream."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
@@ -73,7 +73,7 @@ def print_table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str
 
 
 def print_rows(rows: Sequence[Sequence[str]]) -> None:
-    """Print one line a row on standard output, its columns parted by tabs."""
+    """Print one line a row on standard output, its columns separated by tabs."""
     for row in rows:
         print("\t".join(" ".join(cell.split()) for cell in row))
 

@@ -11,17 +11,9 @@ import pytest
 
 import playground
 
-SKETCH = """
-format = 1
-size = 65
-[[pass]]
-name = "height"
-use = "generation/diamond_square"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+from .sketch_texts import map_of_height
+
+SKETCH = "\nformat = 1\nsize = 65\n" + map_of_height("generation/diamond_square", channel="red")
 
 
 @pytest.fixture
@@ -37,7 +29,7 @@ def test_a_sketch_renders_to_an_array_and_a_png(sketch: playground.Sketch, tmp_p
     assert frame.array.shape == (90, 120, 4)
     assert frame.array.dtype == np.uint8
     assert frame._repr_png_().startswith(b"\x89PNG")
-    saved = frame.save(tmp_path / "land.png")
+    saved = frame.save(tmp_path / "terrain.png")
     assert saved.read_bytes().startswith(b"\x89PNG")
 
 
@@ -175,5 +167,5 @@ def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
     example = textwrap.dedent(rest.partition("\n\nA sketch is")[0]).replace("(1280, 720)", "(64, 36)")
     names: dict[str, object] = {}
     exec(compile(example, "playground", "exec"), names)
-    assert (tmp_path / "land.png").is_file()
-    assert names["turn"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"
+    assert (tmp_path / "terrain.png").is_file()
+    assert names["step"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"

@@ -31,6 +31,8 @@ from playground.images.files import read_png, read_samples
 from playground.paths import DEFAULT_SKETCH, GLSL
 from playground.sketch.find import shipped_sketches
 
+from .sketch_texts import map_of_height
+
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
 COMMANDS += ["shots", "shots list", "shots mutants", "cache", "cache show", "cache clear"]
@@ -58,17 +60,10 @@ SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as it is
 uniform float rise = 1.0;  //! slider(0, 4) unit("m") How high the eastern edge is
 float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
 """
-SLOPE_SKETCH = """format = 1
-title = "A slope"
-size = 33
-[[pass]]
-name = "height"
-use = "./slope"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[preset]]
+SLOPE_SKETCH = (
+    'format = 1\ntitle = "A slope"\nsize = 33\n'
+    + map_of_height("./slope", channel="red")
+    + """[[preset]]
 name = "half"
 set = { "height.rise" = 0.5 }
 [[shot]]
@@ -76,6 +71,7 @@ name = "dark"
 size = [66, 33]
 set = { "height.rise" = 0.25 }
 """
+)
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 

@@ -14,6 +14,7 @@ from playground.paths import GLSL
 from playground.sketch.find import shipped_sketches
 from playground.sketch.variant_record import NAME
 
+from .sketch_texts import map_of_height
 from .variants import trust
 
 KERNEL = """// land.glsl -- a slope.
@@ -28,16 +29,7 @@ use = "./same"
 [parameters]
 rise = "height.rise"
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height(channel="red")
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from playground.partial import partial_file, remove_left_over
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
-LEFT = ".land.png.0123456789ab.part"
+UNCHANGED = ".land.png.0123456789ab.part"
 
 
 def names(folder: Path) -> list[str]:
@@ -39,7 +39,7 @@ def test_a_file_is_there_while_it_is_written_and_gone_after(tmp_path: Path):
 
 def test_what_a_dead_process_left_is_removed_and_nothing_else(tmp_path: Path):
     others = [".land.png.part", "land.png.0123456789ab.part", ".a.0123456789az.part", "b.part"]
-    for name in (LEFT, *others):
+    for name in (UNCHANGED, *others):
         (tmp_path / name).write_bytes(b"some")
     (tmp_path / ".folder.0123456789ab.part").mkdir()
     with replacing(tmp_path / "b.png"):

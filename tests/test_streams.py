@@ -12,18 +12,12 @@ import pytest
 
 from playground.streams import open_streams
 
+from .sketch_texts import map_of_height
+
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
 KERNEL = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) { return 2.0; }\n'
-SKETCH = """format = 1
-size = 5
-[[pass]]
-name = "height"
-use = "./a"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 5\n" + map_of_height("./a")
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 // noise/columns.glsl -- octaves of Perlin noise along a column of texels, as polynomials.
 //
-//   gives    perlin_across, Column, Rows, Span, octave_span, column_end, column_add, column_moved,
+//   gives    perlin, by rows; Column, Rows, Span, octave_span, column_end, column_add, column_moved,
 //            column_height
-//   needs    noise/octaves.glsl
+//   needs    noise/gradient.glsl, noise/octaves.glsl, which it must come before
 //   units    places in cells of the first octave; rows of texels
 //   source   derived here from noise/gradient.glsl
 //   tested   tests/glsl/test_gradient_noise.py, against noise/octaves.glsl at every texel
@@ -23,7 +23,9 @@
 // products and six sums. Counted from the middle of a piece, no digits are lost.
 #ifndef NOISE_COLUMNS
 #define NOISE_COLUMNS
-#include "noise/octaves.glsl"
+#define perlin perlin_by_corners  // octaves take the one by rows instead
+#include "noise/gradient.glsl"
+#undef perlin
 
 // What equation 1 needs of one lattice row, at the share u of a cell from west to east.
 vec2 perlin_across(uvec2 columns, uint row, float u) {
@@ -34,6 +36,21 @@ vec2 perlin_across(uvec2 columns, uint row, float u) {
     float rise = east.x * (u - 1.0) - from;
     return vec2(from + rise * fade, west.y + (east.y - west.y) * fade);
 }
+
+// The noise by equation 1; its slopes are left out.
+vec3 perlin(vec2 place, uint seed) {
+    vec2 cell = floor(place);
+    vec2 part = place - cell;
+    uvec2 columns = lattice_columns(int(cell.x), seed);
+    uvec2 rows = lattice_rows(int(cell.y), seed);
+    vec2 low = perlin_across(columns, rows.x, part.x);
+    vec2 high = perlin_across(columns, rows.y, part.x);
+    float south = low.x + low.y * part.y;
+    float north = high.x + high.y * (part.y - 1.0);
+    return vec3(PERLIN_SCALE * (south + (north - south) * quintic(part.y)), 0.0, 0.0);
+}
+
+#include "noise/octaves.glsl"
 
 // Coefficients of t^0 .. t^3 and of t^4 .. t^6, t in rows.
 struct Column {

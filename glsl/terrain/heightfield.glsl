@@ -52,12 +52,13 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
     int row = way == ONE_TRIANGLE ? low.y : node.y;
     int column = way == ONE_TRIANGLE ? high.x : node.x;
     // anchor: slope
-    float east = texelFetch(field, ivec2(high.x, row), 0).r
-            - texelFetch(field, ivec2(low.x, row), 0).r;
-    float north = texelFetch(field, ivec2(column, high.y), 0).r
-            - texelFetch(field, ivec2(column, low.y), 0).r;
+    float west = texelFetch(field, ivec2(low.x, row), 0).r;
+    float east = texelFetch(field, ivec2(high.x, row), 0).r;
+    float south = texelFetch(field, ivec2(column, low.y), 0).r;
+    float north = texelFetch(field, ivec2(column, high.y), 0).r;
+    vec2 rise = vec2(east - west, north - south);
     // A grid one texel wide has no run, and no rise either.
-    return vec2(east, north) / (vec2(max(high - low, ivec2(1))) * spacing);
+    return rise / (vec2(max(high - low, ivec2(1))) * spacing);
     // end: slope
 }
 

@@ -13,9 +13,9 @@ _MARK = b"terrain shader playground"
 _LOOKED_AT = 4096  # bytes, within which an export says who made it
 
 
-def refuse_strangers(path: Path, beside: list[Path]) -> None:
+def refuse_foreign_files(path: Path, sidecars: list[Path]) -> None:
     """Raise ``DataError`` where a file that goes beside ``path`` would replace one that is no export."""
-    for other in beside:
+    for other in sidecars:
         try:
             if not other.exists():
                 continue

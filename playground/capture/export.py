@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.capture.atomic_group import write_together
-from playground.capture.export_options import Form, besides, bits_for, check
+from playground.capture.export_options import Form, bits_for, check, sidecar_paths
 from playground.capture.export_textures import height_of, kind_of
 from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
 from playground.capture.gltf import encode_glb
@@ -40,14 +40,14 @@ class Exported:
     """What was written."""
 
     path: Path
-    said: str  # one line on what the file holds
-    beside: tuple[Path, ...] = ()  # further files that belong to it
+    summary: str  # one line on what the file holds
+    sidecars: tuple[Path, ...] = ()  # further files that belong to it
     warnings: tuple[str, ...] = ()  # what was lost
 
 
 @dataclass(frozen=True, kw_only=True)
-class Job:
-    """An export that nothing speaks against, so far as can be told before a texel is made."""
+class ExportJob:
+    """An export that is valid, as far as can be checked before a texel is made."""
 
     sketch: Sketch
     path: Path
@@ -107,7 +107,7 @@ def prepare(
     *,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
-) -> Job:
+) -> ExportJob:
     """Find the textures that an export needs; raise ``PlaygroundError`` where there are none."""
     check(path, form)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
@@ -119,7 +119,7 @@ def prepare(
         kind = kind or kind_of(plan, texture)
     else:
         texture, kind = height_of(plan), kind or HEIGHT
-    return Job(
+    return ExportJob(
         sketch=sketch,
         path=path,
         form=replace(form, bits=bits_for(path, kind, form)),
@@ -129,7 +129,7 @@ def prepare(
     )
 
 
-def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> Job:
+def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> ExportJob:
     height, texture, kind = height_of(plan), form.texture, form.kind or COLOUR
     if texture:
         plan.flat.ref(texture, sketch.name)
@@ -140,17 +140,17 @@ def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> Job:
     light = view_input(plan, "light") if form.light else ""
     if form.light and not light:
         raise SketchError(f"sketch {sketch.name} has no light to bake in")
-    return Job(
+    return ExportJob(
         sketch=sketch, path=path, form=form, plan=plan, texture=texture, kind=kind, height=height, light=light
     )
 
 
-def run(engine: Engine, job: Job) -> Exported:
+def run(engine: Engine, job: ExportJob) -> Exported:
     """Make the textures that a job needs and write its files, all of them or none."""
     return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)
 
 
-def _read(engine: Engine, job: Job, texture: str, kind: str) -> NDArray[np.float32]:
+def _read(engine: Engine, job: ExportJob, texture: str, kind: str) -> NDArray[np.float32]:
     """Return a texture with its north row first, heights in metres, colours without their alpha."""
     values = engine.read(job.sketch, texture, time=job.plan.time, steps=job.plan.steps)[::-1]
     channels = 1 if values.ndim == 2 else values.shape[2]
@@ -168,7 +168,7 @@ def _read(engine: Engine, job: Job, texture: str, kind: str) -> NDArray[np.float
     return values
 
 
-def _write_values(engine: Engine, job: Job) -> Exported:
+def _write_values(engine: Engine, job: ExportJob) -> Exported:
     values = _read(engine, job, job.texture, job.kind)
     channels = 1 if values.ndim == 2 else values.shape[2]
     if job.ending in RAW and channels != 1:
@@ -188,20 +188,20 @@ def _write_values(engine: Engine, job: Job) -> Exported:
     except DataError as error:
         raise DataError(error.diagnostics[0].message, file=job.path) from error
     files = {job.path: made.data}
-    beside = tuple(besides(job.path)) if made.beside else ()
-    files |= dict.fromkeys(beside, made.beside)
+    sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()
+    files |= dict.fromkeys(sidecars, made.sidecar)
     write_together(files)
-    said = [f"{cols} x {rows}", *made.said, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
-    return Exported(job.path, "; ".join(said), beside, tuple(filter(None, [made.warning])))
+    parts = [f"{cols} x {rows}", *made.details, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
+    return Exported(job.path, "; ".join(parts), sidecars, tuple(filter(None, [made.warning])))
 
 
-def _spacing(job: Job, size: tuple[int, int]) -> tuple[float, float]:
+def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's land is known
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
 
-def _write_mesh(engine: Engine, job: Job) -> Exported:
+def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     heights = _read(engine, job, job.height, HEIGHT)
     wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
     size = grid_of((heights.shape[1], heights.shape[0]), wanted)
@@ -213,20 +213,20 @@ def _write_mesh(engine: Engine, job: Job) -> Exported:
     except DataError as error:
         raise DataError(error.diagnostics[0].message, file=job.path) from error
     name = job.sketch.name
-    beside: list[Path] = []
+    sidecars: list[Path] = []
     if job.ending == ".glb":
         glb = encode_glb(mesh, name, texture=baked, unlit=bool(job.light), software=SOFTWARE)
         files = {job.path: glb}
     else:
-        library, picture = besides(job.path)
-        beside = [library, picture] if baked else [library]
+        library, picture = sidecar_paths(job.path)
+        sidecars = [library, picture] if baked else [library]
         named = picture.name if baked else ""
-        files = {path: baked for path in beside[1:]}
+        files = {path: baked for path in sidecars[1:]}
         files[library] = encode_mtl(texture=named, unlit=bool(job.light), software=SOFTWARE)
         files[job.path] = encode_obj(mesh, name, library=library.name, software=SOFTWARE)
     write_together(files)
     low, high = float(mesh.positions[:, 1].min()), float(mesh.positions[:, 1].max())
-    said = [
+    parts = [
         f"{size[0]} x {size[1]} vertices, {len(mesh.triangles)} triangles",
         f"{extent[0]:.7g} x {extent[1]:.7g} m, {low:.5g} to {high:.5g} m high",
         f"texture {texels[0]} x {texels[1]}" if texels else _NO_TEXTURE,
@@ -234,10 +234,10 @@ def _write_mesh(engine: Engine, job: Job) -> Exported:
     notes = [warning]
     if job.form.grid > max(size):
         notes.append(f"the land has {max(size)} texels on its longer side, so the mesh has no more vertices")
-    return Exported(job.path, "; ".join(said), tuple(beside), tuple(filter(None, notes)))
+    return Exported(job.path, "; ".join(parts), tuple(sidecars), tuple(filter(None, notes)))
 
 
-def _texture(engine: Engine, job: Job) -> tuple[bytes, tuple[int, int] | None, str]:
+def _texture(engine: Engine, job: ExportJob) -> tuple[bytes, tuple[int, int] | None, str]:
     """Return the PNG that is draped over the mesh, its size, and a sentence on what was clamped."""
     layers = []
     if job.texture:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.capture.atomic_group import refuse_strangers
+from playground.capture.atomic_group import refuse_foreign_files
 from playground.capture.extensions import (
     COLOUR,
     ENDINGS,
@@ -53,7 +53,7 @@ def check(path: Path, form: Form) -> None:
         _check_mesh(path, form)
     else:
         _check_values(path, form)
-    refuse_strangers(path, besides(path))
+    refuse_foreign_files(path, sidecar_paths(path))
 
 
 def _no_ending(ending: str) -> str:
@@ -107,7 +107,7 @@ def _wrong_bits(path: Path, bits: int, able: set[int]) -> DataError:
     return DataError(f"{path.suffix.lower()} has {listed} bits for these, not {bits}", file=path)
 
 
-def besides(path: Path) -> list[Path]:
+def sidecar_paths(path: Path) -> list[Path]:
     """Return the further files that an export writes: a raw file's JSON; an OBJ's MTL, and its texture.
 
     What an OBJ names has no spaces, since some programs end a name at the first.

@@ -76,8 +76,8 @@ def film_of(
 
 
 @contextmanager
-def telling(engine: Engine, film: Film, number: int) -> Iterator[None]:
-    """Tell plain shaders the number of a picture and the time between two, in the block."""
+def frame_uniforms(engine: Engine, film: Film, number: int) -> Iterator[None]:
+    """Progress plain shaders the number of a picture and the time between two, in the block."""
     before = engine.runner.frame, engine.runner.delta
     engine.runner.frame, engine.runner.delta = number, float(1 / film.fps)
     try:
@@ -89,7 +89,7 @@ def telling(engine: Engine, film: Film, number: int) -> Iterator[None]:
 def frames(engine: Engine, film: Film) -> Iterator[NDArray[np.uint8]]:
     """Yield the pictures of a film, each (height, width, 4), top row first, sRGB and alpha."""
     for number in range(film.count):
-        with telling(engine, film, number):
+        with frame_uniforms(engine, film, number):
             frame = engine.render(film.sketch, size=film.size, time=film.time(number), steps=film.steps)
         engine.forget_unused()
         yield frame.array
@@ -102,11 +102,11 @@ def write_film(
     *,
     quality: str = QUALITY,
     done: Callable[[], None] = lambda: None,
-    say: Callable[[str], None] = lambda _: None,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write a film as a video by the path's ending, whole or not at all, and return its path.
 
-    Each picture is encoded as it is drawn; ``done`` is called after each, ``say`` with a
+    Each picture is encoded as it is drawn; ``done`` is called after each, ``notice`` with a
     sentence where alpha was dropped. The file is read back before it takes its name: the
     pictures in it are counted. See ``Video`` for what is refused, and for what is left of it
     when it is interrupted.
@@ -117,7 +117,7 @@ def write_film(
             done()
     for note in (video.warning, alpha_note(video.dropped, film.count, "the video")):
         if note:
-            say(note)
+            notice(note)
     return Path(path)
 
 
@@ -134,7 +134,7 @@ def render_video(
 ) -> Path:
     """Render a sketch as a video: ``.mp4`` (H.264), ``.webm`` (VP9) or ``.gif``, by the path's ending.
 
-    ``seconds`` long, to its last keyframe unless told, from ``start``; ``size`` in pixels,
+    ``seconds`` long, to its last keyframe unless given, from ``start``; ``size`` in pixels,
     both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
     an ``engine`` one is opened. Needs PyAV: ``pip install "terrain-shader-playground[video]"``.
     Raises ``PlaygroundError`` in a sentence; a file of that name is replaced at the end.

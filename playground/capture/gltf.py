@@ -43,56 +43,51 @@ def encode_glb(
         (_bytes(mesh.uv), _VERTICES),
         (indices.tobytes(), _INDICES),
     ]
-    if texture:
-        parts.append((texture, 0))
     count = len(mesh.positions)
-    positions = {
+    bounds = {
         "min": [float(v) for v in mesh.positions.min(axis=0)],
         "max": [float(v) for v in mesh.positions.max(axis=0)],
     }
-    look: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
-    material: dict[str, Any] = {"name": name, "pbrMetallicRoughness": look}
+    attributes = {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}
+    primitive = {"attributes": attributes, "indices": 3, "material": 0}
     document: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": software},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "name": name}],
-        "meshes": [
-            {
-                "name": name,
-                "primitives": [
-                    {
-                        "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2},
-                        "indices": 3,
-                        "material": 0,
-                    }
-                ],
-            }
-        ],
-        "materials": [material],
+        "meshes": [{"name": name, "primitives": [primitive]}],
         "accessors": [
-            {"bufferView": 0, "componentType": _FLOAT, "count": count, "type": "VEC3", **positions},
-            {"bufferView": 1, "componentType": _FLOAT, "count": count, "type": "VEC3"},
-            {"bufferView": 2, "componentType": _FLOAT, "count": count, "type": "VEC2"},
-            {
-                "bufferView": 3,
-                "componentType": _USHORT if narrow else _UINT,
-                "count": indices.size,
-                "type": "SCALAR",
-            },
+            _accessor(0, _FLOAT, count, "VEC3") | bounds,
+            _accessor(1, _FLOAT, count, "VEC3"),
+            _accessor(2, _FLOAT, count, "VEC2"),
+            _accessor(3, _USHORT if narrow else _UINT, indices.size, "SCALAR"),
         ],
     }
     if texture:
+        parts.append((texture, 0))
+    return _packed(document | _material(name, textured=bool(texture), unlit=unlit), parts)
+
+
+def _accessor(view: int, component: int, count: int, kind: str) -> dict[str, Any]:
+    return {"bufferView": view, "componentType": component, "count": count, "type": kind}
+
+
+def _material(name: str, *, textured: bool, unlit: bool) -> dict[str, Any]:
+    """Return the entries of the one material, whose texture is in buffer view 4."""
+    look: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
+    material: dict[str, Any] = {"name": name, "pbrMetallicRoughness": look}
+    entries: dict[str, Any] = {"materials": [material]}
+    if textured:
         look["baseColorTexture"] = {"index": 0}
-        document["textures"] = [{"source": 0, "sampler": 0}]
-        document["images"] = [{"bufferView": 4, "mimeType": "image/png", "name": name}]
-        document["samplers"] = [
+        entries["textures"] = [{"source": 0, "sampler": 0}]
+        entries["images"] = [{"bufferView": 4, "mimeType": "image/png", "name": name}]
+        entries["samplers"] = [
             {"magFilter": _LINEAR, "minFilter": _LINEAR_MIPMAP_LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
         ]
     if unlit:
         material["extensions"] = {"KHR_materials_unlit": {}}
-        document["extensionsUsed"] = ["KHR_materials_unlit"]
-    return _packed(document, parts)
+        entries["extensionsUsed"] = ["KHR_materials_unlit"]
+    return entries
 
 
 def _bytes(values: NDArray[np.float32]) -> bytes:

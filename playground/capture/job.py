@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from playground.capture.film import film_of, write_film
+from playground.capture.film import Film, film_of, write_film
 from playground.capture.large import count_tiles, is_large, write_large
 from playground.capture.sequence import write_sequence
 from playground.capture.sheet import write_sheet
@@ -29,7 +29,7 @@ PICTURE, PICTURES, FILM, SHEET = KINDS = ("picture", "pictures", "film", "sheet"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Job:
+class CaptureJob:
     """What is to be captured, and where to."""
 
     kind: str  # one of KINDS
@@ -45,38 +45,43 @@ class Job:
     sweeps: tuple[str, ...] = ()  # of a sheet
 
 
-Tell = Callable[[int, int], None]
+Progress = Callable[[int, int], None]
 """Called with how many parts are done, and of how many; may raise to stop the job."""
 
+Notice = Callable[[str], None]
+"""Called with a sentence that is no mistake."""
 
-def do(job: Job, engine: Engine, tell: Tell, say: Callable[[str], None]) -> Path:
+
+def do(job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> Path:
     """Do a job and return the new file, or of numbered pictures their folder.
 
-    ``say`` takes sentences that are no mistakes. Raises ``PlaygroundError`` in a sentence.
+    Raises ``PlaygroundError`` in a sentence.
     """
     name = re.sub(r"[^\w.-]+", "-", job.sketch.name).strip("-.") or "picture"
     work = {PICTURE: _picture, PICTURES: _pictures, FILM: _film, SHEET: _sheet}[job.kind]
-    return work(job, engine, name, _Counter(tell), say)
+    return work(job, engine, name, _Counter(progress), notice)
 
 
 class _Counter:
     """Counts parts that are done."""
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
         self._done = self._of = 0
 
     def begin(self, of: int) -> None:
         """Say how many parts there are."""
         self._done, self._of = 0, of
-        self._tell(0, of)
+        self._progress(0, of)
 
     def __call__(self) -> None:
         self._done += 1
-        self._tell(self._done, self._of)
+        self._progress(self._done, self._of)
 
 
-def _picture(job: Job, engine: Engine, name: str, done: _Counter, say: Callable[[str], None]) -> Path:
+def _picture(
+    job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Callable[[str], None]
+) -> Path:
     with new_name(job.folder / f"{name}.png") as path:
         if is_large(engine, job.sketch, job.size):
             done.begin(count_tiles(job.size))
@@ -87,31 +92,35 @@ def _picture(job: Job, engine: Engine, name: str, done: _Counter, say: Callable[
     return path
 
 
-def _pictures(job: Job, engine: Engine, name: str, done: _Counter, say: Callable[[str], None]) -> Path:
-    film = film_of(
-        job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
-    )
+def _pictures(
+    job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Callable[[str], None]
+) -> Path:
+    film = _film_of(job)
     with _new_folder(job.folder / f"{name}-frames") as folder:
         done.begin(film.count)
         write_sequence(engine, film, folder / "%05d.png", done=done)
     return folder
 
 
-def _film(job: Job, engine: Engine, name: str, done: _Counter, say: Callable[[str], None]) -> Path:
-    film = film_of(
-        job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
-    )
+def _film(job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Notice) -> Path:
+    film = _film_of(job)
     with new_name(job.folder / f"{name}{job.ending}") as path:
         done.begin(film.count)
-        return write_film(engine, film, path, quality=job.quality, done=done, say=say)
+        return write_film(engine, film, path, quality=job.quality, done=done, notice=notice)
 
 
-def _sheet(job: Job, engine: Engine, name: str, done: _Counter, say: Callable[[str], None]) -> Path:
+def _film_of(job: CaptureJob) -> Film:
+    return film_of(
+        job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
+    )
+
+
+def _sheet(job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Notice) -> Path:
     sketch = job.sketch.at(job.time)
     rows = swept(sketch, [read_sweep(sketch, text, USUAL_STEPS) for text in job.sweeps])
     with new_name(job.folder / f"{name}-sweep.png") as path:
         done.begin(sum(map(len, rows)))
-        return write_sheet(engine, rows, path, size=job.size, time=job.time, done=done, say=say)
+        return write_sheet(engine, rows, path, size=job.size, time=job.time, done=done, notice=notice)
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from playground.api import headless
-from playground.capture.job import Job, do
+from playground.capture.job import CaptureJob, do
 from playground.capture.job_process import Finished
 from playground.engine.plain_forms import silent
 from playground.process.child import Parent, Service
@@ -13,7 +13,7 @@ def open_service(parent: Parent, options: tuple[bool, str]) -> Service:
     """Give what does a job: on a software renderer, by which driver."""
     software, driver = options
 
-    def answer(job: Job) -> Finished:
+    def answer(job: CaptureJob) -> Finished:
         notes: list[str] = []
         with headless(software=software, driver=driver, notice=silent) as engine:
             path = do(job, engine, lambda done, of: parent.report((done, of)), notes.append)

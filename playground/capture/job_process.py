@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.capture.job import Job
+from playground.capture.job import CaptureJob
 from playground.errors import PlaygroundError
 from playground.process.messages import Answer, Cancelled, UnexpectedError
 from playground.process.worker import Launch, Worker, WorkerDied
@@ -27,7 +27,7 @@ class Finished:
 class JobProcess:
     """One job at work; call ``poll`` now and then."""
 
-    def __init__(self, job: Job, *, software: bool = False, driver: str = "auto") -> None:
+    def __init__(self, job: CaptureJob, *, software: bool = False, driver: str = "auto") -> None:
         self.job = job
         self.started = time.monotonic()
         self._stopped_at: float | None = None

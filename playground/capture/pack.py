@@ -54,9 +54,9 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
                 file=shown(sketch.file),
             )
         with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
-            said = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
+            text = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
             for name in sorted({*files, MANIFEST}):
-                data = said if name == MANIFEST else files[name].read_bytes()
+                data = text if name == MANIFEST else files[name].read_bytes()
                 archive.writestr(_entry(name), data, zipfile.ZIP_DEFLATED, 9)
     except OSError as error:
         raise DataError(f"cannot be packed: {reason(error)}", file=error.filename or path) from None

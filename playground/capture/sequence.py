@@ -14,7 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.api import headless
-from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, telling
+from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_uniforms
 from playground.capture.large import is_large, write_large
 from playground.engine.engine import Engine, opened
 from playground.errors import DataError, ParameterError
@@ -59,7 +59,7 @@ def write_sequence(
 ) -> Written:
     """Write pictures of a film as PNG files, each whole or not at all.
 
-    ``numbers`` are those of the pictures, all of the film's unless told; ``pattern`` names the
+    ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
     files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
     and good is kept. ``done`` is called after each. Raises ``DataError`` in a sentence.
     """
@@ -87,7 +87,7 @@ def write_sequence(
 
 def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) -> None:
     text, time = {MADE_OF: made_of}, film.time(number)
-    with telling(engine, film, number):
+    with frame_uniforms(engine, film, number):
         if is_large(engine, film.sketch, film.size):
             write_large(engine, film.sketch, path, film.size, time=time, steps=film.steps, text=text)
         else:

@@ -103,23 +103,23 @@ def write_sheet(
     size: tuple[int, int] = USUAL_SIZE,
     time: float = 0.0,
     done: Callable[[], None] = lambda: None,
-    say: Callable[[str], None] = lambda _: None,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write a contact sheet as a PNG, whole or not at all, and return its path.
 
-    ``done`` is called after each picture, ``say`` with a sentence where alpha was dropped.
+    ``done`` is called after each picture, ``notice`` with a sentence where alpha was dropped.
     """
     dropped = 0
 
-    def told() -> Iterator[NDArray[np.uint8]]:
+    def opaque() -> Iterator[NDArray[np.uint8]]:
         nonlocal dropped
         for picture in _counted(pictures(engine, rows, size, time), done):
             dropped += has_alpha(picture)
             yield picture
 
-    write_png(path, sheet(rows, told()))
+    write_png(path, sheet(rows, opaque()))
     if note := alpha_note(dropped, sum(map(len, rows)), "a sheet"):
-        say(note)
+        notice(note)
     return Path(path)
 
 
@@ -133,7 +133,7 @@ def write_sweep_film(
     time: float = 0.0,
     quality: str = QUALITY,
     done: Callable[[], None] = lambda: None,
-    say: Callable[[str], None] = lambda _: None,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write the pictures of a sweep as a video, one after another.
 
@@ -144,7 +144,7 @@ def write_sweep_film(
             video.add(picture)
     for note in (video.warning, alpha_note(video.dropped, video.count, "the video")):
         if note:
-            say(note)
+            notice(note)
     return Path(path)
 
 

@@ -30,7 +30,7 @@ class Sweep:
     parameter: str  # path of the parameter
     part: int | None  # which number of a vector; None: all of it
     values: tuple[Value, ...]
-    said: tuple[str, ...]  # each value in words
+    labels: tuple[str, ...]  # each value as text
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,15 @@ def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
         else:
             vector = parameter is not None and part is None and length_of(parameter.type) > 1
             raw = [each.strip() for each in given.split(";" if vector or ";" in given else ",")]
-        values, said = [], []
+        values, labels = [], []
         for each in raw:
             value = _value(sketch, whole_path, part, parameter, each)
             if value not in values:  # a range of whole numbers may have more steps than numbers
                 values.append(value)
-                said.append(_say(parameter, part, value))
+                labels.append(_label(parameter, part, value))
     except ParameterError as error:
         raise ParameterError(f"sweep {text}: {error.diagnostics[0].message}") from None
-    return Sweep(path, whole_path, part, tuple(values), tuple(said))
+    return Sweep(path, whole_path, part, tuple(values), tuple(labels))
 
 
 def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
@@ -128,7 +128,7 @@ def _value(sketch: Sketch, path: str, part: int | None, parameter: Parameter | N
     return found[part]
 
 
-def _say(parameter: Parameter | None, part: int | None, value: Value) -> str:
+def _label(parameter: Parameter | None, part: int | None, value: Value) -> str:
     if parameter is not None and part is None:
         return write(parameter, value)
     numbers = value if isinstance(value, tuple) else (value,)
@@ -173,7 +173,7 @@ def _set(sketch: Sketch, chosen: Sequence[tuple[Sweep, int]]) -> Swept:
             sketch = sketch.with_values({sweep.parameter: now})
         else:
             sketch = sketch.with_values({sweep.parameter: value})
-        caption.append(f"{sweep.path} = {sweep.said[index]}")
+        caption.append(f"{sweep.path} = {sweep.labels[index]}")
     return Swept(sketch, tuple(caption))
 
 

@@ -49,9 +49,9 @@ class Encoded:
     """The bytes of a file, and what there is to say of them."""
 
     data: bytes
-    said: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers stand for
+    details: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers stand for
     warning: str = ""  # what was lost
-    beside: bytes = b""  # of a JSON file that goes beside it
+    sidecar: bytes = b""  # of a JSON file that describes it
 
 
 def encode(layer: Layer, ending: str) -> Encoded:
@@ -68,17 +68,17 @@ def encode(layer: Layer, ending: str) -> Encoded:
     span = layer.span or usual_span(layer)
     samples, warning = _quantised(layer, span, ending)
     top = 2**layer.bits - 1
-    said = (f"{layer.bits} bits", f"0 is {span[0]:.7g}{layer.unit} and {top} is {span[1]:.7g}{layer.unit}")
+    details = (f"{layer.bits} bits", f"0 is {span[0]:.7g}{layer.unit} and {top} is {span[1]:.7g}{layer.unit}")
     if ending == ".png":
-        return Encoded(encode_samples(samples, _text(layer, span)), said, warning)
+        return Encoded(encode_samples(samples, _text(layer, span)), details, warning)
     if ending in (".tif", ".tiff"):
-        return Encoded(_tiff(samples, layer, span), said, warning)
-    beside = _description(layer, "unsigned integer", span)
-    return Encoded(samples.astype("<u2").tobytes(), said, warning, beside)
+        return Encoded(_tiff(samples, layer, span), details, warning)
+    sidecar = _description(layer, "unsigned integer", span)
+    return Encoded(samples.astype("<u2").tobytes(), details, warning, sidecar)
 
 
 def usual_span(layer: Layer) -> tuple[float, float]:
-    """Return what 0 and the largest number stand for unless told: of heights, the lowest and highest."""
+    """Return what 0 and the largest number stand for unless given: of heights, the lowest and highest."""
     if layer.kind != HEIGHT:
         return 0.0, 1.0
     _check_finite(layer.values, "whole numbers")
@@ -136,24 +136,24 @@ def _check_finite(values: NDArray[np.float32], where: str) -> None:
 
 
 def _floats(layer: Layer, ending: str) -> Encoded:
-    said = f"float{layer.bits}"
+    details = f"float{layer.bits}"
     if layer.kind == COLOUR:
-        said += ", linear"
+        details += ", linear"
     elif layer.kind == HEIGHT:
-        said += ", metres above sea level"
+        details += ", metres above sea level"
     values = layer.values
     if ending == ".npy":
         stream = io.BytesIO()
         np.lib.format.write_array(stream, np.ascontiguousarray(values), allow_pickle=False)
-        return Encoded(stream.getvalue(), (said,))
+        return Encoded(stream.getvalue(), (details,))
     if ending == ".exr":
-        return _exr(layer, said)
+        return _exr(layer, details)
     if ending == ".r32":
-        return Encoded(values.astype("<f4").tobytes(), (said,), beside=_description(layer, "float"))
-    return Encoded(_tiff(values, layer), (said,))
+        return Encoded(values.astype("<f4").tobytes(), (details,), sidecar=_description(layer, "float"))
+    return Encoded(_tiff(values, layer), (details,))
 
 
-def _exr(layer: Layer, said: str) -> Encoded:
+def _exr(layer: Layer, details: str) -> Encoded:
     comments = f"{_what(layer)}; {_spacing(layer)} m a texel; made by {SOFTWARE}"
     values: NDArray[Any] = layer.values
     warning = ""
@@ -165,7 +165,7 @@ def _exr(layer: Layer, said: str) -> Encoded:
             warning = f"{outside} of {values.size} values lay beyond {limit:.0f}, where halves end; clamped"
         with np.errstate(all="ignore"):
             values = np.clip(values, -limit, limit).astype(np.float16)
-    return Encoded(encode_exr(values, comments), (said,), warning)
+    return Encoded(encode_exr(values, comments), (details,), warning)
 
 
 def _what(layer: Layer) -> str:
@@ -190,7 +190,7 @@ def _text(layer: Layer, span: tuple[float, float] | None = None) -> dict[str, st
 def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = None) -> bytes:
     """Return the JSON that goes beside a raw file, which itself cannot even say how wide it is."""
     rows, cols = layer.values.shape[:2]
-    told: dict[str, object] = {
+    description: dict[str, object] = {
         "software": SOFTWARE,
         "width": cols,
         "height": rows,
@@ -202,8 +202,8 @@ def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = 
         "spacing_m": list(layer.spacing),
     }
     if span is not None:
-        told |= {"offset": span[0], "scale": scale_of(span, layer.bits)}
-    return (json.dumps(told, indent=2) + "\n").encode()
+        description |= {"offset": span[0], "scale": scale_of(span, layer.bits)}
+    return (json.dumps(description, indent=2) + "\n").encode()
 
 
 _PIXEL_SCALE, _TIE_POINT, _GEO_KEYS, _GEO_WORDS = 33550, 33922, 34735, 34737

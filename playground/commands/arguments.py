@@ -1,4 +1,4 @@
-"""What commands share: their options, how arguments are read, how help is written."""
+"""What commands share: how arguments are read, how help is written, where output goes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
@@ -64,113 +64,6 @@ def command_group(name: str, text: str, short: str) -> typer.Typer:
             print(ctx.get_help())
 
     return app
-
-
-# ── options ──────────────────────────────────────────────────────────────────
-
-
-def option(names: str, metavar: str, text: str, complete: Callable[[str], list[str]] | None = None) -> Any:
-    """Declare an option with a value, by its names parted by spaces; its default is not shown."""
-    return typer.Option(
-        *names.split(), help=text, metavar=metavar, show_default=False, autocompletion=complete
-    )
-
-
-def flag(name: str, text: str) -> Any:
-    """Declare an option without a value."""
-    return typer.Option(name, help=text, metavar="")
-
-
-def argument(metavar: str, text: str, complete: Callable[[str], list[str]] | None = None) -> Any:
-    """Declare a positional argument; its default is not shown."""
-    return typer.Argument(help=text, metavar=metavar, show_default=False, autocompletion=complete)
-
-
-def complete_sketch(incomplete: str) -> list[str]:
-    """Return the shipped sketches that complete a word."""
-    from playground.sketch.find import shipped_sketches
-
-    return [name for name in shipped_sketches() if name.startswith(incomplete)]
-
-
-def complete_listed(incomplete: str) -> list[str]:
-    """Return what ``list`` knows that completes a word."""
-    from playground.sketch.find import shipped_names, shipped_sketches
-
-    names = ["sketches", "techniques", *shipped_sketches(), *shipped_names()]
-    return [name for name in names if name.startswith(incomplete)]
-
-
-def complete_driver(incomplete: str) -> list[str]:
-    """Return the drivers that complete a word."""
-    return [name for name in DRIVERS if name.startswith(incomplete)]
-
-
-def complete_lesson(incomplete: str) -> list[str]:
-    """Return the lessons that complete a word."""
-    from playground.lessons.library import lesson_files
-
-    return [name for name in lesson_files() if name.startswith(incomplete)]
-
-
-def complete_language(incomplete: str) -> list[str]:
-    """Return the codes of languages that complete a word."""
-    from playground.lessons.library import LANGUAGES
-
-    return [code for code in LANGUAGES if code.startswith(incomplete)]
-
-
-def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
-    """Return the parameters, as ``path=``, that complete a word."""
-    from playground.sketch.catalogue import settable
-    from playground.sketch.load import load
-
-    try:
-        paths = settable(load(ctx.params.get("sketch") or ""))
-    except PlaygroundError:
-        return []
-    return [f"{path}=" for path in paths if path.startswith(incomplete)]
-
-
-SketchArgument = Annotated[
-    str,
-    argument(
-        "SKETCH",
-        "A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
-        " a shader. Without it, the default sketch.",
-        complete_sketch,
-    ),
-]
-SizeOption = Annotated[str | None, option("--size", "WxH", "Size in pixels, as 1280x720.")]
-SetOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        help="Set a parameter, as light.sun=250,12, or the terrain, as size=513. May be repeated.",
-        metavar="PATH=VALUE",
-        show_default=False,
-        autocompletion=complete_setting,
-    ),
-]
-PresetOption = Annotated[str, option("--preset", "NAME", "Begin with a preset.")]
-TimeOption = Annotated[str, option("--time", "T", "Time in seconds.")]
-StepsOption = Annotated[
-    list[str] | None,
-    option("--steps", "PASS=COUNT", "Stop a repeated pass after so many iterations. May be repeated."),
-]
-DriverOption = Annotated[
-    str, option("--driver", "NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)
-]
-PlainOption = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]
-SoftwareOption = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
-DeviceOption = Annotated[str, option("--device", "N", "Render on this EGL device, from 0.")]
-JsonOption = Annotated[bool, flag("--json", "Print JSON, for programs.")]
-LanguageOption = Annotated[
-    str, option("--lang", "CODE", "Language: en or fr; that of the system by default.", complete_language)
-]
-
-
-# ── their values ─────────────────────────────────────────────────────────────
 
 
 def read_option(name: str, text: str, read: Callable[[str], T | None], expected: str) -> T | None:

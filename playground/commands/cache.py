@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from playground.commands.arguments import JsonOption, command_group, help_text
+from playground.commands import options
+from playground.commands.arguments import command_group, help_text
 from playground.errors import counted
 from playground.terminal import print_json, print_table
 
@@ -36,7 +37,7 @@ app = command_group("cache", HELP, "Show or remove the expensive terrain that is
 
 
 @app.command("show", help=SHOW_HELP)
-def show(as_json: JsonOption = False) -> None:
+def show(as_json: options.Json = False) -> None:
     """Show where terrain is cached, how much there is, and of which passes."""
     from playground.engine.disk_cache import limit_in, listed, place
 
@@ -72,7 +73,7 @@ def usage_text(*, folder: str, files: int, bytes: int, most_bytes: int) -> str:
 
 
 def in_bytes(size: int) -> str:
-    """Return a size in words, as "1.5 GiB"."""
+    """Format a size, as "1.5 GiB"."""
     if size < 1000:
         return counted(size, "byte")
     number, unit = float(size), ""

@@ -9,15 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import (
-    FAILED,
-    DeviceOption,
-    PlainOption,
-    Renderer,
-    SoftwareOption,
-    flag,
-    help_text,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, help_text
+from playground.commands.options import flag
 from playground.errors import Diagnostic, counted
 from playground.terminal import painted, print_json, progress
 
@@ -42,9 +36,9 @@ def check(
     ctx: typer.Context,
     paths: Annotated[list[Path], typer.Argument(help="Files, and folders to search.", metavar="PATH...")],
     as_json: Annotated[bool, flag("--json", "Print one JSON object a file, a line each.")] = False,
-    plain: PlainOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    plain: options.Plain = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files

@@ -1,4 +1,4 @@
-"""Say what this machine offers."""
+"""Report what this machine offers."""
 
 from __future__ import annotations
 
@@ -9,14 +9,8 @@ from typing import TYPE_CHECKING, TypedDict
 import typer
 
 from playground._version import __version__
-from playground.commands.arguments import (
-    FAILED,
-    DeviceOption,
-    JsonOption,
-    Renderer,
-    SoftwareOption,
-    help_text,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, help_text
 from playground.commands.cache import usage_text
 from playground.terminal import complain, print_json
 
@@ -25,7 +19,7 @@ if TYPE_CHECKING:
 
 
 HELP = help_text(
-    "Say what this machine offers, and what to do where something is missing.\n\n"
+    "Report what this machine offers, and what to do where something is missing.\n\n"
     "The OpenGL context, its limits, the display, the packages, the terrain cached on disk."
     " Exit status 1 when no context opens.",
     "playground doctor",
@@ -36,11 +30,11 @@ HELP = help_text(
 
 def doctor(
     ctx: typer.Context,
-    as_json: JsonOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    as_json: options.Json = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
-    """Say what this machine offers."""
+    """Report what this machine offers."""
     from playground.gpu.doctor import examine
 
     renderer: Renderer = ctx.obj.or_else(software, device)

@@ -9,23 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.capture.extensions import KINDS, MESHES, USUAL_GRID, VALUES
+from playground.commands import options
 from playground.commands.arguments import (
-    DeviceOption,
-    DriverOption,
     Moment,
-    PlainOption,
-    PresetOption,
     Renderer,
-    SetOption,
-    SketchArgument,
-    SoftwareOption,
-    StepsOption,
-    TimeOption,
     either,
-    flag,
     help_text,
     moment_of,
-    option,
     read_driver,
     read_option,
     read_seconds,
@@ -33,6 +23,7 @@ from playground.commands.arguments import (
     read_values,
     within,
 )
+from playground.commands.options import flag, value
 from playground.errors import ParameterError
 from playground.terminal import busy, complain, note
 
@@ -59,62 +50,56 @@ HELP = help_text(
 
 def export(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     to: Annotated[
         list[str] | None,
-        option(
-            "-o --to",
-            "FILE",
+        value(
+            "-o --to FILE",
             f"A file to write, ending in {either([*VALUES, *MESHES])}. May be repeated."
             " Without it, a .glb of a new name in this folder.",
         ),
     ] = None,
     texture: Annotated[
         str,
-        option(
-            "--texture",
-            "PASS",
+        value(
+            "--texture PASS",
             "Write this pass's texture instead of the heights, or drape it over the mesh.",
         ),
     ] = "",
     kind: Annotated[
         str,
-        option(
-            "--as",
-            "KIND",
+        value(
+            "--as KIND",
             f"What the texture holds: {either(KINDS)}. Without it, by its name:"
             " height; colour and light; anything else.",
         ),
     ] = "",
     bits: Annotated[
-        str, option("--bits", "N", "Bits of a number, 8, 16 or 32, where the format has a choice.")
+        str, value("--bits N", "Bits of a number, 8, 16 or 32, where the format has a choice.")
     ] = "",
     span: Annotated[
         str,
-        option(
-            "--range", "LOW,HIGH", "What 0 and the largest whole number stand for, in metres for heights."
-        ),
+        value("--range LOW,HIGH", "What 0 and the largest whole number stand for, in metres for heights."),
     ] = "",
     grid: Annotated[
         str,
-        option(
-            "--grid",
-            "N",
+        value(
+            "--grid N",
             f"Vertices of a mesh's longer side. Without it, one for each texel, up to {USUAL_GRID}.",
         ),
     ] = "",
     light: Annotated[
         bool, flag("--light", "Bake the light into a mesh's texture, and ask for no other light.")
     ] = False,
-    settings: SetOption = None,
-    shot: Annotated[str, option("--shot", "NAME", "Export the terrain of a shot of the sketch.")] = "",
-    preset: PresetOption = "",
-    steps: StepsOption = None,
-    time: TimeOption = "",
-    driver: DriverOption = "auto",
-    plain: PlainOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    settings: options.Set = None,
+    shot: Annotated[str, value("--shot NAME", "Export the terrain of a shot of the sketch.")] = "",
+    preset: options.Preset = "",
+    steps: options.Steps = None,
+    time: options.Time = "",
+    driver: options.Driver = "auto",
+    plain: options.Plain = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Write the terrain or a texture to files, and print the files' paths."""
     from playground.capture.export_options import Form
@@ -156,19 +141,19 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         jobs = [prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps) for path in paths]
         for job in jobs:
             done = run(engine, job)
-            note(f"{done.path.name}: {done.said}")
+            note(f"{done.path.name}: {done.summary}")
             for warning in done.warnings:
                 complain(f"{done.path.name}: {warning}", "warning")
-            for path in (done.path, *done.beside):
+            for path in (done.path, *done.sidecars):
                 print(path)
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.capture.export_options import besides
+    from playground.capture.export_options import sidecar_paths
 
     taken: set[Path] = set()
     for path in paths:
-        files = {file.resolve(): file for file in (path, *besides(path))}
+        files = {file.resolve(): file for file in (path, *sidecar_paths(path))}
         twins = [named for file, named in files.items() if file in taken]
         if twins:
             raise ParameterError(f"--to {path}: {min(twins)} would be written twice; choose another name")

@@ -158,7 +158,7 @@ def _make_video(job: SeriesJob) -> None:
     )
     quality = job.check_video(pixels, fps)
     with job.drawing("filming", film.count) as (engine, done), _noting_stop():
-        print(write_film(engine, film, series.video, quality=quality, done=done, say=note))
+        print(write_film(engine, film, series.video, quality=quality, done=done, notice=note))
 
 
 def _make_sweep(job: SeriesJob) -> None:
@@ -184,7 +184,7 @@ def _make_sweep(job: SeriesJob) -> None:
                 time=moment.time,
                 quality=quality,
                 done=done,
-                say=note,
+                notice=note,
             )
             print(path)
         return
@@ -193,7 +193,7 @@ def _make_sweep(job: SeriesJob) -> None:
         job.drawing("sweeping", count) as (engine, done),
     ):
         size = job.size or sheet.USUAL_SIZE
-        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, say=note))
+        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, notice=note))
 
 
 def _pattern(output: str, name: str) -> str:

@@ -8,19 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from playground.commands import options
 from playground.commands.arguments import (
-    DeviceOption,
-    DriverOption,
-    PlainOption,
     Renderer,
-    SetOption,
-    SizeOption,
-    SoftwareOption,
-    argument,
     check_parent,
-    complete_sketch,
     help_text,
-    option,
     read_driver,
     read_option,
     read_pixels,
@@ -29,6 +21,7 @@ from playground.commands.arguments import (
     within,
 )
 from playground.commands.live import check_display
+from playground.commands.options import complete_sketch, positional, value
 from playground.errors import ParameterError
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import busy, progress
@@ -93,31 +86,31 @@ def fly(
     ctx: typer.Context,
     sketch: Annotated[
         str,
-        argument(
+        positional(
             "SKETCH",
             f"A shipped sketch's name, or the path of a sketch. Without it, {DEFAULT_FLIGHT}.",
             complete_sketch,
         ),
     ] = "",
-    size: SizeOption = None,
-    settings: SetOption = None,
-    record: Annotated[str, option("--record", "FILE", "Write the flight to this file.")] = "",
-    replay: Annotated[str, option("--replay", "FILE", "Fly a recorded flight again.")] = "",
+    size: options.Size = None,
+    settings: options.Set = None,
+    record: Annotated[str, value("--record FILE", "Write the flight to this file.")] = "",
+    replay: Annotated[str, value("--replay FILE", "Fly a recorded flight again.")] = "",
     frames: Annotated[
         str,
-        option("--frames", "FOLDER", "With --replay: write its pictures into this folder, without a window."),
+        value("--frames FOLDER", "With --replay: write its pictures into this folder, without a window."),
     ] = "",
     every: Annotated[
         str,
-        option("--every", "N", "With --frames: steps of 1/60 s from one picture to the next; 6 by default."),
+        value("--every N", "With --frames: steps of 1/60 s from one picture to the next; 6 by default."),
     ] = "",
     radius: Annotated[
-        str, option("--radius", "PARTS", "How many parts are visible, 1.5 to 16; 5 by default.")
+        str, value("--radius PARTS", "How many parts are visible, 1.5 to 16; 5 by default.")
     ] = "",
-    driver: DriverOption = "auto",
-    plain: PlainOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    driver: options.Driver = "auto",
+    plain: options.Plain = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Fly in a window, or write the pictures of a recorded flight and print their paths."""
     request = Request(

@@ -9,21 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import (
-    FAILED,
-    JsonOption,
-    LanguageOption,
-    Renderer,
-    SoftwareOption,
-    argument,
-    command_group,
-    complete_language,
-    complete_lesson,
-    flag,
-    help_text,
-    option,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, command_group, help_text
 from playground.commands.live import check_display, open_window
+from playground.commands.options import complete_language, complete_lesson, flag, positional, value
 from playground.errors import PlaygroundError, SketchError, counted, nearest
 from playground.terminal import complain, note, painted, print_json, print_table, progress
 
@@ -32,20 +21,20 @@ if TYPE_CHECKING:
     from playground.lessons.model import Lesson
 
 HELP = help_text(
-    "Lessons on terrain, to read beside the window, in a browser or as notebooks.",
+    "Lessons on terrain, to read next to the window, in a browser or as notebooks.",
     "playground lesson list",
     "playground lesson open diamond_square",
     "playground lesson build -o book",
     "playground lesson status",
 )
 LIST_HELP = help_text(
-    "List the lessons, in their order.\n\nIn a pipe, the columns are parted by tabs.",
+    "List the lessons, in their order.\n\nIn a pipe, the columns are separated by tabs.",
     "playground lesson list",
     "playground lesson list --lang fr",
     "playground lesson list --json",
 )
 OPEN_HELP = help_text(
-    "Open a lesson beside the live window, with the sketch that it ends with.\n\n"
+    "Open a lesson next to the live window, with the sketch that it ends with.\n\n"
     "Its figures are the window's picture, its sliders act on it; its bugs are put into a copy, no file"
     " is written. Next time it opens at the page where you were.",
     "playground lesson open diamond_square",
@@ -86,12 +75,12 @@ BUILD_HELP = help_text(
 
 app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
 
-NameArgument = Annotated[str, argument("NAME", "A lesson.", complete_lesson)]
-NamesArgument = Annotated[list[str] | None, argument("NAME", "Lessons; all by default.", complete_lesson)]
+NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
+NamesArgument = Annotated[list[str] | None, positional("NAME", "Lessons; all by default.", complete_lesson)]
 
 
 @app.command("list", help=LIST_HELP)
-def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
+def list_(lang: options.Language = "", as_json: options.Json = False) -> None:
     """List the lessons, in their order."""
     from playground.lessons.read import summaries
 
@@ -105,9 +94,9 @@ def list_(lang: LanguageOption = "", as_json: JsonOption = False) -> None:
 
 @app.command("open", help=OPEN_HELP)
 def open_(
-    ctx: typer.Context, name: NameArgument, lang: LanguageOption = "", software: SoftwareOption = False
+    ctx: typer.Context, name: NameArgument, lang: options.Language = "", software: options.Software = False
 ) -> None:
-    """Open a lesson beside the live window."""
+    """Open a lesson next to the live window."""
     from playground.lessons.document import read_document
     from playground.lessons.library import lesson_file
 
@@ -119,7 +108,7 @@ def open_(
 
 
 @app.command("status", help=STATUS_HELP)
-def status(as_json: JsonOption = False) -> None:
+def status(as_json: options.Json = False) -> None:
     """List the translations that are out of date."""
     from playground.lessons.library import LANGUAGES, SOURCE
     from playground.lessons.read import summaries
@@ -137,7 +126,7 @@ def status(as_json: JsonOption = False) -> None:
 
 
 @app.command("check", help=CHECK_HELP)
-def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOption = False) -> None:
+def check(ctx: typer.Context, names: NamesArgument = None, software: options.Software = False) -> None:
     """Check lessons: what they name, the rules of lessons, what they claim."""
     from playground.lessons.library import LANGUAGES
     from playground.lessons.read import read_lesson
@@ -173,8 +162,8 @@ def check(ctx: typer.Context, names: NamesArgument = None, software: SoftwareOpt
 def pictures(
     ctx: typer.Context,
     name: NameArgument,
-    output: Annotated[Path, option("-o --output", "FOLDER", "The folder; this one by default.")] = Path(),
-    software: SoftwareOption = False,
+    output: Annotated[Path, value("-o --output FOLDER", "The folder; this one by default.")] = Path(),
+    software: options.Software = False,
 ) -> None:
     """Draw every picture of a lesson into a folder."""
     from playground.images.files import write_png
@@ -195,14 +184,15 @@ def pictures(
 def build(
     ctx: typer.Context,
     names: NamesArgument = None,
-    output: Annotated[
-        Path, option("-o --output", "FOLDER", "The folder of the book; book by default.")
-    ] = Path("book"),
+    output: Annotated[Path, value("-o --output FOLDER", "The folder of the book; book by default.")] = Path(
+        "book"
+    ),
     lang: Annotated[
-        str, option("--lang", "CODE", "Language: en or fr; both by default.", complete_language)
+        str,
+        value("--lang CODE", "Language: en or fr; both by default.", complete_language),
     ] = "",
     notebooks: Annotated[bool, flag("--notebooks", "Write Jupyter notebooks, not pages.")] = False,
-    software: SoftwareOption = False,
+    software: options.Software = False,
 ) -> None:
     """Build the lessons as a book, or as notebooks."""
     from playground.lessons.library import LANGUAGES
@@ -226,9 +216,7 @@ def build(
 @app.command("translated", help=TRANSLATED_HELP)
 def translated(
     name: NameArgument,
-    lang: Annotated[
-        str, option("--lang", "CODE", "Language of the translation: fr.", complete_language)
-    ] = "",
+    lang: Annotated[str, value("--lang CODE", "Language of the translation: fr.", complete_language)] = "",
 ) -> None:
     """Mark a translation as up to date with today's English."""
     from playground.lessons.document import read_document
@@ -238,7 +226,7 @@ def translated(
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
-        raise SketchError("say which translation: --lang fr")
+        raise SketchError("name the translation: --lang fr")
     path = lesson_file(name, lang)
     mark(read_lesson(name), read_document(lesson_file(name)), read_document(path), lang)
     print(shown(path))
@@ -273,7 +261,7 @@ def _chosen(names: list[str] | None) -> list[str]:
     from playground.lessons.read import summaries
 
     for name in names or []:
-        lesson_file(name)  # says which there are
+        lesson_file(name)  # raises with the list of lessons
     return names or [one.name for one in summaries(SOURCE)]
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Annotated
 
-from playground.commands.arguments import JsonOption, argument, complete_listed, help_text
+from playground.commands import options
+from playground.commands.arguments import help_text
+from playground.commands.options import complete_listed, positional
 from playground.errors import SketchError
 from playground.terminal import note, painted, print_indented, print_json, print_rows, print_table
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
 HELP = help_text(
     "List sketches and techniques, or the parameters of one.\n\n"
     "WHAT is sketches, techniques, a folder of techniques, or the name or path of one sketch or"
-    " technique. In a pipe, the columns are parted by tabs.",
+    " technique. In a pipe, the columns are separated by tabs.",
     "playground list",
     "playground list jacksboro",
     "playground list generation",
@@ -25,8 +27,8 @@ HELP = help_text(
 
 
 def list_(
-    what: Annotated[str, argument("WHAT", "What to list; everything by default.", complete_listed)] = "",
-    as_json: JsonOption = False,
+    what: Annotated[str, positional("WHAT", "What to list; everything by default.", complete_listed)] = "",
+    as_json: options.Json = False,
 ) -> None:
     """List sketches, techniques, parameters."""
     from playground.sketch import catalogue

@@ -9,24 +9,16 @@ from typing import Annotated, Any
 
 import typer
 
+from playground.commands import options
 from playground.commands.arguments import (
-    DriverOption,
-    LanguageOption,
-    PlainOption,
     Renderer,
-    SetOption,
-    SizeOption,
-    SketchArgument,
-    SoftwareOption,
-    complete_lesson,
-    flag,
     help_text,
-    option,
     read_driver,
     read_pixels,
     read_values,
     with_whole_paths,
 )
+from playground.commands.options import complete_lesson, flag, value
 from playground.errors import ContextError, PlaygroundError
 from playground.terminal import complain
 
@@ -45,19 +37,18 @@ HELP = help_text(
 
 def live(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
-    size: SizeOption = None,
-    settings: SetOption = None,
-    driver: DriverOption = "auto",
-    plain: PlainOption = False,
-    software: SoftwareOption = False,
+    sketch: options.Sketch = "",
+    size: options.Size = None,
+    settings: options.Set = None,
+    driver: options.Driver = "auto",
+    plain: options.Plain = False,
+    software: options.Software = False,
     fresh: Annotated[bool, flag("--fresh", "Forget your edits of the last time.")] = False,
-    lesson: Annotated[
-        str, option("--lesson", "NAME", "Open a lesson beside the sketch.", complete_lesson)
-    ] = "",
-    lang: LanguageOption = "",
+    lesson: Annotated[str, value("--lesson NAME", "Open a lesson next to the sketch.", complete_lesson)] = "",
+    lang: options.Language = "",
     no_cache: Annotated[
-        bool, flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache).")
+        bool,
+        flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache)."),
     ] = False,
 ) -> None:
     """Open a sketch in a window."""

@@ -1,4 +1,4 @@
-"""Break a sketch in every known way, and see whether the comparison of its pictures would tell."""
+"""Break a sketch in every known way, and see whether the comparison of its pictures detects it."""
 
 from __future__ import annotations
 
@@ -12,18 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import (
-    FAILED,
-    DeviceOption,
-    JsonOption,
-    Renderer,
-    SizeOption,
-    SketchArgument,
-    SoftwareOption,
-    help_text,
-    option,
-    read_pixels,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, help_text, read_pixels
+from playground.commands.options import value
 from playground.errors import DataError, counted
 from playground.paths import shown
 from playground.terminal import note, painted, print_json, print_table, progress
@@ -31,7 +22,7 @@ from playground.terminal import note, painted, print_json, print_table, progress
 if TYPE_CHECKING:
     from playground.shots.mutants.repeatability import Redrawn
     from playground.shots.mutants.suite import Result
-    from playground.shots.suite import Taken
+    from playground.shots.suite import RenderedShot
 
 HELP = help_text(
     "Break a sketch in every known way, and see whether the comparison of its pictures tells.\n\n"
@@ -51,14 +42,13 @@ HELP = help_text(
 
 def mutants(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     shot: Annotated[
-        str, option("--shot", "NAME", "The shot to break; without it, of each mutant the one that shows it.")
+        str,
+        value("--shot NAME", "The shot to break; without it, of each mutant the one that shows it."),
     ] = "",
-    size: SizeOption = None,
-    only: Annotated[
-        list[str] | None, option("--mutant", "NAME", "Draw this one only; may be repeated.")
-    ] = None,
+    size: options.Size = None,
+    only: Annotated[list[str] | None, value("--mutant NAME", "Draw this one only; may be repeated.")] = None,
     count: Annotated[
         int,
         typer.Option(
@@ -66,14 +56,14 @@ def mutants(
         ),
     ] = 0,
     pictures: Annotated[
-        Path | None, option("--pictures", "DIR", "Write every mutant's picture into this folder.")
+        Path | None, value("--pictures DIR", "Write every mutant's picture into this folder.")
     ] = None,
-    as_json: JsonOption = False,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    as_json: options.Json = False,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
-    from playground.shots.mutants.repeatability import again
+    from playground.shots.mutants.repeatability import redraw
     from playground.shots.mutants.suite import Bench, named, shot_of
     from playground.sketch.load import load
 
@@ -97,7 +87,7 @@ def mutants(
     if pictures is not None:
         _write(pictures, bench.expected, results)
     with progress("drawn again", count) if count else nullcontext(lambda: None) as advance:
-        for drawn in again(loaded, first, expected, info, count, **asdict(renderer)):
+        for drawn in redraw(loaded, first, expected, info, count, **asdict(renderer)):
             redrawn.append(drawn)
             advance()
     if as_json:
@@ -119,7 +109,7 @@ def _print(results: Sequence[Result]) -> None:
     headings: tuple[str, ...] = ("mutant", *_NUMBERS, *TIERS, "broken")
     if sys.stdout.isatty() and shutil.get_terminal_size().columns < _WIDE:
         headings, rows = headings[:-1], [row[:-1] for row in rows]
-    print_table("Mutants, and what the comparison says of them", headings, rows)
+    print_table("Mutants, and what the comparison finds", headings, rows)
     for number, tier in enumerate(TIERS):
         caught, of = kill_rate(results, number)
         passed = survivors(results, number)
@@ -144,10 +134,10 @@ def _row(result: Result) -> tuple[str, ...]:
     found = result.comparison
     assert found is not None
     numbers = ["", ""] if found.verdict in ("blank", "size") else [str(found.most), f"{result.share:.2%}"]
-    seen = result.seen
-    numbers += ["", ""] if seen is None else [f"{seen.mean:.3f}", f"{seen.tile:.3f}"]
-    words = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
-    return (result.mutant.name, *numbers, *words, result.mutant.broke)
+    perceived = result.perceived
+    numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]
+    verdicts = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
+    return (result.mutant.name, *numbers, *verdicts, result.mutant.broke)
 
 
 def _print_again(redrawn: Sequence[Redrawn]) -> None:
@@ -191,7 +181,7 @@ def _make(folder: Path) -> None:
         raise DataError(f"no folder can be made: {error.strerror}", file=shown(folder)) from error
 
 
-def _write(folder: Path, expected: Mapping[str, Taken], results: Sequence[Result]) -> None:
+def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[Result]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
     from playground.images.files import write_png
     from playground.shots.compare import difference_picture

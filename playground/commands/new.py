@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from playground.commands.arguments import argument, help_text, quoted
+from playground.commands.arguments import help_text, quoted
+from playground.commands.options import positional
 from playground.terminal import note
 
 HELP = help_text(
@@ -18,7 +19,7 @@ HELP = help_text(
 def new(
     name: Annotated[
         str,
-        argument("NAME", "The folder to make; letters, digits, - and _."),
+        positional("NAME", "The folder to make; letters, digits, - and _."),
     ],
 ) -> None:
     """Make a new sketch folder."""
@@ -31,5 +32,5 @@ def new(
     note(
         f"next: playground live {shell}     opens it; edit {folder / 'my_land.glsl'}, save, and look\n"
         f"      playground render {shell}   makes a PNG\n"
-        f"      playground check {shell}    says what is wrong with it, if anything"
+        f"      playground check {shell}    reports what is wrong with it, if anything"
     )

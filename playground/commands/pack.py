@@ -1,4 +1,4 @@
-"""Pack a sketch into one file to hand on."""
+"""Pack a sketch into one file to share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from playground.commands.arguments import SketchArgument, help_text, option, output_file
+from playground.commands import options
+from playground.commands.arguments import help_text, output_file
+from playground.commands.options import value
 from playground.errors import DataError
 from playground.terminal import busy, note
 
@@ -16,8 +18,8 @@ if TYPE_CHECKING:
 HELP = help_text(
     "Put a sketch with all that it needs into one zip, and print its path.\n\n"
     "In it are the sketch, its kernels and includes, its images and elevation files, its references, and a"
-    " README and a licence beside it. What ships with the playground is not: its names and the version are."
-    " The zip opens wherever a sketch does. A window opens a copy beside it, for edits; the zip stays.",
+    " README and a licence. What ships with the playground is not: only its names and the version."
+    " The zip opens wherever a sketch does. A window opens a copy in its folder, for edits; the zip stays.",
     "playground pack my-land",
     "playground pack my-land -o lesson-3.zip",
     "playground live lesson-3.zip",
@@ -26,9 +28,9 @@ HELP = help_text(
 
 
 def pack(
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     output: Annotated[
-        str, option("-o --output", "FILE", "The zip to write. Without it, a new name in this folder.")
+        str, value("-o --output FILE", "The zip to write. Without it, a new name in this folder.")
     ] = "",
 ) -> None:
     """Pack a sketch into one zip."""
@@ -46,7 +48,7 @@ def pack(
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:
     """Yield the sketch's reference pictures, and where they go in its folder."""
-    from playground.shots.names import SCREENSHOTS
+    from playground.shots.plugin_constants import SCREENSHOTS
     from playground.shots.references import home_of
 
     try:

@@ -14,20 +14,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from playground.commands import options
 from playground.commands.arguments import (
-    DeviceOption,
+    Moment,
     Renderer,
-    SetOption,
-    SizeOption,
-    SketchArgument,
-    SoftwareOption,
-    StepsOption,
-    TimeOption,
-    complete_driver,
-    flag,
     help_text,
     moment_of,
-    option,
     quoted,
     read_device,
     read_driver,
@@ -36,12 +28,13 @@ from playground.commands.arguments import (
     read_steps,
     read_values,
 )
+from playground.commands.options import complete_driver, flag, value
 from playground.errors import ParameterError
 from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
     from playground.reduce.failures import Finding
-    from playground.reduce.initial_case import Beginning, Question
+    from playground.reduce.initial_case import InitialCase, Question
     from playground.reduce.output import Account
     from playground.reduce.search import Search, State
 
@@ -66,20 +59,21 @@ _EVERY = 5.0  # [s] between lines of progress where there is no terminal
 
 def reduce(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     output: Annotated[
-        str, option("-o --output", "FOLDER", "The folder to write. Without it, NAME-reduced in this folder.")
+        str,
+        value("-o --output FOLDER", "The folder to write. Without it, NAME-reduced in this folder."),
     ] = "",
     shot: Annotated[
         str,
-        option("--shot", "NAME", "A shot that is off its reference; with another option, the moment to use."),
+        value("--shot NAME", "A shot that is off its reference; with another option, the moment to use."),
     ] = "",
     drivers: Annotated[bool, flag("--drivers", "The two drivers differ.")] = False,
     against: Annotated[
         list[str] | None,
-        option("--against", "ENV=VALUE", "It differs where this is set in the environment. May be repeated."),
+        value("--against ENV=VALUE", "It differs where this is set in the environment. May be repeated."),
     ] = None,
-    against_device: Annotated[str, option("--against-device", "N", "It differs on this EGL device.")] = "",
+    against_device: Annotated[str, value("--against-device N", "It differs on this EGL device.")] = "",
     nan: Annotated[bool, flag("--nan", "A value is NaN or infinite.")] = False,
     anywhere: Annotated[
         bool,
@@ -87,32 +81,30 @@ def reduce(
     ] = False,
     error: Annotated[
         str,
-        option("--error", "REGEX", "The compiler refuses with a message that this regular expression finds."),
+        value("--error REGEX", "The compiler refuses with a message that this regular expression finds."),
     ] = "",
     crash: Annotated[bool, flag("--crash", "The driver crashes.")] = False,
     hang: Annotated[bool, flag("--hang", "A candidate takes over --timeout.")] = False,
     command: Annotated[
         str,
-        option(
-            "--command",
-            "COMMAND",
+        value(
+            "--command COMMAND",
             "A command, run where sketch.toml is: 0 is good, 125 no answer, others up to 127 fail.",
         ),
     ] = "",
-    path: Annotated[str, option("--pass", "PASS", "Look at this pass only.")] = "",
+    path: Annotated[str, value("--pass PASS", "Look at this pass only.")] = "",
     tolerance: Annotated[
         float, typer.Option("--tolerance", help="How far apart two sides may be.", metavar="X", min=0.0)
     ] = 0.0,
     driver: Annotated[
         str,
-        option(
-            "--driver",
-            "NAME",
+        value(
+            "--driver NAME",
             "What runs the kernels: auto, fragment or compute. Without it, each is tried.",
             complete_driver,
         ),
     ] = "",
-    limit: Annotated[str, option("--limit", "SECONDS", "Stop after so many seconds.")] = "",
+    limit: Annotated[str, value("--limit SECONDS", "Stop after so many seconds.")] = "",
     tries: Annotated[
         int, typer.Option("--tries", help="Stop after so many tries; 0: never.", metavar="N", min=0)
     ] = 0,
@@ -123,16 +115,15 @@ def reduce(
     plain: Annotated[
         bool, flag("--plain", "Also write the shader as the driver sees it, if that still fails.")
     ] = False,
-    settings: SetOption = None,
-    size: SizeOption = None,
-    time: TimeOption = "",
-    steps: StepsOption = None,
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    settings: options.Set = None,
+    size: options.Size = None,
+    time: options.Time = "",
+    steps: options.Steps = None,
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Shrink a sketch that fails to the smallest that still fails."""
     from playground.reduce.initial_case import Question
-    from playground.sketch.load import load
 
     kinds = {
         "drivers": drivers,
@@ -144,19 +135,11 @@ def reduce(
         "command": bool(command),
     }
     kind = _kind([name for name, given in kinds.items() if given], shot)
+    moment = _moment(sketch, kind, shot, settings, steps, time)
+    _check_options(kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or time or steps))
     renderer: Renderer = ctx.obj.or_else(software, device)
-    if kind == "shot" and (settings or size or time or steps):
-        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
-    loaded = load(sketch)
-    moment = moment_of(
-        loaded,
-        shot=shot,
-        values=read_values(settings),
-        steps=read_steps(steps),
-        time=read_seconds(time),
-    )
     question = Question(
-        sketch=loaded if kind == "shot" else moment.sketch,
+        sketch=moment.sketch,
         kind=kind,
         shot=shot if kind == "shot" else "",
         frame=read_pixels(size) or moment.size or _FRAME,
@@ -174,7 +157,6 @@ def reduce(
         device=renderer.device,
         limit=timeout,
     )
-    _check_options(kind, anywhere=anywhere, plain=plain)
     folder = Path(output).expanduser() if output else Path(f"{question.sketch.name}-reduced")
     _reduce(question, folder, read_seconds(limit) or 0.0, tries, plain)
 
@@ -187,11 +169,26 @@ def _kind(chosen: Sequence[str], shot: str) -> str:
     return chosen[0] if chosen else "shot" if shot else ""
 
 
-def _check_options(kind: str, *, anywhere: bool, plain: bool) -> None:
+def _check_options(kind: str, *, anywhere: bool, plain: bool, moved: bool) -> None:
+    """Raise ``ParameterError`` for options that do not go together."""
+    if kind == "shot" and moved:
+        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
     if anywhere and kind != "nan":
         raise ParameterError("--anywhere is for --nan")
     if plain and kind not in ("", "error", "crash", "hang"):
         raise ParameterError("--plain is for what the compiler refuses or dies of: --error, --crash, --hang")
+
+
+def _moment(
+    sketch: str, kind: str, shot: str, settings: list[str] | None, steps: list[str] | None, time: str
+) -> Moment:
+    """Return the moment to look at; a shot off its reference is set by the comparison itself."""
+    from playground.sketch.load import load
+
+    loaded = load(sketch)
+    values, stops = read_values(settings), read_steps(steps)
+    moment = moment_of(loaded, shot=shot, values=values, steps=stops, time=read_seconds(time))
+    return replace(moment, sketch=loaded) if kind == "shot" else moment
 
 
 def _pattern(text: str) -> str:
@@ -224,7 +221,7 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
         probe, found = beginning.probe, beginning.finding
         # The message of a refusal is its kind; of the rest, the details say where and how much.
         note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, tell=tell)
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=tell)
         stopped = False
         try:
             search.run()
@@ -246,13 +243,13 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
 
 
 def _account(
-    question: Question, beginning: Beginning, search: Search, finding: Finding, folder: Path
+    question: Question, beginning: InitialCase, search: Search, finding: Finding, folder: Path
 ) -> Account:
     """Return what the text in the folder says."""
     from playground.reduce.output import Account, to_reproduce
 
     return Account(
-        asked=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
+        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
         sketch=question.sketch.name,
         before=beginning.case,
         after=search.best,

@@ -10,24 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from playground.commands import options
 from playground.commands.arguments import (
-    DeviceOption,
-    DriverOption,
     Moment,
-    PlainOption,
-    PresetOption,
     Renderer,
-    SetOption,
-    SizeOption,
-    SketchArgument,
-    SoftwareOption,
-    StepsOption,
-    TimeOption,
     either,
-    flag,
     help_text,
     moment_of,
-    option,
     output_file,
     read_driver,
     read_option,
@@ -38,6 +27,7 @@ from playground.commands.arguments import (
     within,
 )
 from playground.commands.film import Series, SeriesJob, make_series, read_fps, read_frames
+from playground.commands.options import flag, value
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
@@ -112,62 +102,56 @@ class Request:
 
 def render(
     ctx: typer.Context,
-    sketch: SketchArgument = "",
+    sketch: options.Sketch = "",
     output: Annotated[
         str,
-        option(
-            "-o --output",
-            "FILE",
+        value(
+            "-o --output FILE",
             "The file to write, or - for standard output. Without it, a new name in this folder.",
         ),
     ] = "",
-    size: SizeOption = None,
-    time: TimeOption = "",
-    settings: SetOption = None,
-    driver: DriverOption = "auto",
-    plain: PlainOption = False,
-    shot: Annotated[str, option("--shot", "NAME", "Render a shot of the sketch.")] = "",
-    preset: PresetOption = "",
-    texture: Annotated[
-        str, option("--texture", "PASS", "Write this pass's own values, not the picture.")
-    ] = "",
-    steps: StepsOption = None,
+    size: options.Size = None,
+    time: options.Time = "",
+    settings: options.Set = None,
+    driver: options.Driver = "auto",
+    plain: options.Plain = False,
+    shot: Annotated[str, value("--shot NAME", "Render a shot of the sketch.")] = "",
+    preset: options.Preset = "",
+    texture: Annotated[str, value("--texture PASS", "Write this pass's own values, not the picture.")] = "",
+    steps: options.Steps = None,
     profile: Annotated[bool, flag("--profile", "Print the milliseconds of each pass.")] = False,
     video: Annotated[
         str,
-        option(
-            "--video",
-            "FILE",
+        value(
+            "--video FILE",
             f"Write a video: {either([f'{e} ({what})' for e, what in VIDEO_ENDINGS.items()])}.",
         ),
     ] = "",
     seconds: Annotated[
-        str, option("--seconds", "S", "With --video: how long. Without it, to the last keyframe.")
+        str, value("--seconds S", "With --video: how long. Without it, to the last keyframe.")
     ] = "",
     fps: Annotated[
-        str, option("--fps", "N", "Pictures a second of --video and --frames: 30 by default, 4 of a sweep.")
+        str,
+        value("--fps N", "Pictures a second of --video and --frames: 30 by default, 4 of a sweep."),
     ] = "",
     quality: Annotated[
-        str, option("--quality", "NAME", "With --video: low, medium, high or best; high by default.")
+        str, value("--quality NAME", "With --video: low, medium, high or best; high by default.")
     ] = "",
     frames: Annotated[
         str,
-        option(
-            "--frames", "FIRST..LAST", "Write these pictures as PNG files, named by -o, as frames/%05d.png."
-        ),
+        value("--frames FIRST..LAST", "Write these pictures as PNG files, named by -o, as frames/%05d.png."),
     ] = "",
     resume: Annotated[bool, flag("--resume", "With --frames: keep good files that are there.")] = False,
     sweep: Annotated[
         list[str] | None,
-        option(
-            "--sweep",
-            "PATH=FROM..TO",
+        value(
+            "--sweep PATH=FROM..TO",
             "A picture for each value of a parameter, on one sheet. May be given twice.",
         ),
     ] = None,
-    count: Annotated[str, option("-n", "N", "With --sweep: values of a range; 9 by default.")] = "",
-    software: SoftwareOption = False,
-    device: DeviceOption = "",
+    count: Annotated[str, value("-n N", "With --sweep: values of a range; 9 by default.")] = "",
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Render a sketch to a file and print its path."""
     series = Series(

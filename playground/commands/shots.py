@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from playground.commands import mutants, shots_results
-from playground.commands.arguments import JsonOption, argument, command_group, complete_sketch, help_text
+from playground.commands import mutants, options, shots_results
+from playground.commands.arguments import command_group, help_text
+from playground.commands.options import complete_sketch, positional
 from playground.terminal import print_json, print_table
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ HELP = help_text(
 )
 LIST_HELP = help_text(
     "List shots, their sizes, and whether there is a reference.\n\n"
-    "Without a sketch, those of all sketches that ship. In a pipe, the columns are parted by tabs.",
+    "Without a sketch, those of all sketches that ship. In a pipe, the columns are separated by tabs.",
     "playground shots list",
     "playground shots list jacksboro my-land/sketch.toml",
     "playground shots list jacksboro --json",
@@ -34,7 +35,7 @@ app = command_group("shots", HELP, "List the pictures that sketches promise, and
 
 SketchesArgument = Annotated[
     list[str] | None,
-    argument(
+    positional(
         "SKETCH",
         "Shipped sketches by name, or paths of sketches, of their folders, or of shaders.",
         complete_sketch,
@@ -43,7 +44,7 @@ SketchesArgument = Annotated[
 
 
 @app.command("list", help=LIST_HELP)
-def list_(sketches: SketchesArgument = None, as_json: JsonOption = False) -> None:
+def list_(sketches: SketchesArgument = None, as_json: options.Json = False) -> None:
     """List shots, their sizes, and whether there is a reference."""
     from playground.sketch.find import shipped_sketches
     from playground.sketch.load import load_with

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from playground.commands.arguments import argument, flag, help_text, option
+from playground.commands.arguments import help_text
+from playground.commands.options import flag, positional, value
 from playground.errors import PlaygroundError
 from playground.terminal import complain, note
 
@@ -39,14 +40,14 @@ REVIEW_HELP = help_text(
 
 FolderArgument = Annotated[
     Path | None,
-    argument("DIR", "The folder of results, as --shots-output of pytest named it (default: shots-report)."),
+    positional("DIR", "The folder of results, as --shots-output of pytest named it (default: shots-report)."),
 ]
 
 
 def report(
     folder: FolderArgument = None,
     output: Annotated[
-        Path | None, option("-o --output", "FILE", "The file to write (default: index.html in DIR).")
+        Path | None, value("-o --output FILE", "The file to write (default: index.html in DIR).")
     ] = None,
 ) -> None:
     """Make one HTML file of the results of screenshot tests."""
@@ -59,7 +60,7 @@ def report(
 def accept(
     shots: Annotated[
         list[str] | None,
-        argument(
+        positional(
             "[DIR] SHOT...",
             "Shots, as sketch/shot, or with * and ?; before them, the folder of results if it is"
             " not shots-report.",

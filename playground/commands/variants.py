@@ -8,16 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.commands.arguments import (
-    FAILED,
-    DeviceOption,
-    JsonOption,
-    Renderer,
-    SoftwareOption,
-    argument,
-    command_group,
-    help_text,
-)
+from playground.commands import options
+from playground.commands.arguments import FAILED, Renderer, command_group, help_text
+from playground.commands.options import positional
 from playground.errors import counted
 from playground.terminal import print_json, print_table, progress
 
@@ -27,10 +20,10 @@ if TYPE_CHECKING:
 
 HELP = help_text(
     "Fast variants: other forms of a technique, that give the same result and exist only for speed.\n\n"
-    "A technique is its plain text, x.glsl or x.toml. x.comp beside it (a compute shader) or x.fast.toml"
-    " (several passes) runs in its place only while both texts are those that were found to agree, within"
-    " the bound that the variant states; a file fast_variants.json beside them says so. Otherwise the plain"
-    " form runs. Without WHAT, the variants that ship.",
+    "A technique is its plain text, x.glsl or x.toml. In the same folder, x.comp (a compute shader) or"
+    " x.fast.toml (several passes) replaces it only while both texts are those that were found to agree,"
+    " within the bound that the variant states; a file fast_variants.json there records so. Otherwise the"
+    " plain form runs. Without WHAT, the variants that ship.",
     "playground variants list",
     "playground variants verify lighting",
     "playground variants renew my-land",
@@ -47,7 +40,7 @@ VERIFY_HELP = help_text(
 )
 RENEW_HELP = help_text(
     "Verify fast variants, and record those that agree.\n\n"
-    "The record is fast_variants.json: for what ships, in glsl/; for your own, beside the variant.",
+    "The record is fast_variants.json: for what ships, in glsl/; for your own, in the folder of the variant.",
     "playground variants renew",
     "playground variants renew my-land",
 )
@@ -56,12 +49,12 @@ app = command_group("variants", HELP, "List, verify and record the fast variants
 
 WhatArgument = Annotated[
     str,
-    argument("WHAT", "A technique or a folder of glsl/, or the path of a variant, a kernel or a sketch."),
+    positional("WHAT", "A technique or a folder of glsl/, or the path of a variant, a kernel or a sketch."),
 ]
 
 
 @app.command("list", help=LIST_HELP)
-def list_(what: WhatArgument = "", as_json: JsonOption = False) -> None:
+def list_(what: WhatArgument = "", as_json: options.Json = False) -> None:
     """List fast variants, how closely they agree, and which of them run."""
     from playground.engine.verify_targets import subjects
 
@@ -74,7 +67,10 @@ def list_(what: WhatArgument = "", as_json: JsonOption = False) -> None:
 
 @app.command("verify", help=VERIFY_HELP)
 def verify_(
-    ctx: typer.Context, what: WhatArgument = "", software: SoftwareOption = False, device: DeviceOption = ""
+    ctx: typer.Context,
+    what: WhatArgument = "",
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Draw fast variants and the canonical form, and compare."""
     _refuse(_verdicts(what, ctx.obj.or_else(software, device)))
@@ -82,7 +78,10 @@ def verify_(
 
 @app.command("renew", help=RENEW_HELP)
 def renew(
-    ctx: typer.Context, what: WhatArgument = "", software: SoftwareOption = False, device: DeviceOption = ""
+    ctx: typer.Context,
+    what: WhatArgument = "",
+    software: options.Software = False,
+    device: options.Device = "",
 ) -> None:
     """Verify fast variants, and record those that agree."""
     from playground.engine.verify_targets import recorded

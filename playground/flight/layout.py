@@ -88,6 +88,39 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
     if _HEIGHT not in names:
         raise _refused(sketch, f"it has no pass named '{_HEIGHT}'")
     leaves = values_of(sketch)
+    _check_part(sketch, leaves)
+    apron = _apron(sketch, leaves)
+    # What is made with another apron would not fit: one for all.
+    aprons = [f"{name}.{_APRON}" for name in names]
+    others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
+    sketch = sketch.with_values(dict.fromkeys(others, apron))
+    ground = engine.plan_for(sketch, (1, 1)).terrain
+    extent, relief = ground.extent, ground.relief
+    assert extent is not None and relief is not None
+    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
+    side, intervals = _intervals(sketch, sizes[_HEIGHT], extent, apron)
+    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
+    finest = max(lit.values(), default=1)
+    parts = [f"{name}.{_PART}" for name in names]
+    hour = f"{_DAYLIGHT}.{_HOUR}"
+    return Plot(
+        sketch=sketch,
+        part_paths=tuple(path for path in parts if _value(sketch, path, leaves) is not None),
+        intervals=intervals,
+        apron=apron,
+        spacing=extent[0] / (side - 1),
+        relief=relief,
+        base=ground.base_elevation or 0.0,
+        ground=intervals * finest + 1,
+        shares={name: (float(apron * times), times / finest) for name, times in lit.items()},
+        view=_view(sketch, leaves),
+        hour=hour if _value(sketch, hour, leaves) is not None else "",
+        has_daylight=_DAYLIGHT in names,
+    )
+
+
+def _check_part(sketch: Sketch, leaves: dict[str, Value]) -> None:
+    """Raise ``SketchError`` where the height has no parameter for the part to make."""
     part = _value(sketch, f"{_HEIGHT}.{_PART}", leaves)
     if not (isinstance(part, tuple) and len(part) == 2 and all(isinstance(n, int) for n in part)):
         raise _refused(
@@ -95,12 +128,12 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
             f"the technique of its pass '{_HEIGHT}' has no parameter '{_PART}' of two whole numbers, "
             "which part of the terrain to make",
         )
-    apron = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
-    apron = apron if isinstance(apron, int) else 0
-    # What is made with another apron would not fit: one for all.
-    aprons = [f"{name}.{_APRON}" for name in names]
-    others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
-    sketch = sketch.with_values(dict.fromkeys(others, apron))
+
+
+def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
+    """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
+    found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
+    apron = found if isinstance(found, int) else 0
     reach = _value(sketch, f"{_LIGHT}.{_REACH}", leaves)
     if isinstance(reach, int | float) and reach > apron > 0:
         raise _refused(
@@ -108,15 +141,18 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
             f"shadows reach {reach:g} texels ({_LIGHT}.{_REACH}), and there are only {apron} around a part "
             f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_REACH}={apron}",
         )
-    plan = engine.plan_for(sketch, (1, 1))
-    extent, relief = plan.terrain.extent, plan.terrain.relief
-    assert extent is not None and relief is not None
-    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
-    side = sizes[_HEIGHT][0]
-    if sizes[_HEIGHT] != (side, side) or abs(extent[0] - extent[1]) > 1e-6 * extent[0]:
+    return apron
+
+
+def _intervals(
+    sketch: Sketch, size: tuple[int, int], extent: tuple[float, float], apron: int
+) -> tuple[int, int]:
+    """Return the texels of a side, and the intervals of a part; raise ``SketchError`` for a bad fit."""
+    side = size[0]
+    if size != (side, side) or abs(extent[0] - extent[1]) > 1e-6 * extent[0]:
         raise _refused(
             sketch,
-            f"its terrain is {side} x {sizes[_HEIGHT][1]} texels on {extent[0]:g} x {extent[1]:g} m, "
+            f"its terrain is {side} x {size[1]} texels on {extent[0]:g} x {extent[1]:g} m, "
             "and parts are as wide as they are long",
         )
     intervals = side - 1 - 2 * apron
@@ -126,27 +162,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
             f"{side} texels less an apron of {apron} on each side leave a part of {intervals} intervals; "
             f"2 to {_FINEST} were expected",
         )
-    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
-    finest = max(lit.values(), default=1)
-    shares = {name: (float(apron * times), times / finest) for name, times in lit.items()}
-    part_paths = tuple(
-        f"{name}.{_PART}" for name in names if _value(sketch, f"{name}.{_PART}", leaves) is not None
-    )
-    hour = f"{_DAYLIGHT}.{_HOUR}"
-    return Plot(
-        sketch=sketch,
-        part_paths=part_paths,
-        intervals=intervals,
-        apron=apron,
-        spacing=extent[0] / (side - 1),
-        relief=relief,
-        base=plan.terrain.base_elevation or 0.0,
-        ground=intervals * finest + 1,
-        shares=shares,
-        view=_view(sketch, leaves),
-        hour=hour if _value(sketch, hour, leaves) is not None else "",
-        has_daylight=_DAYLIGHT in names,
-    )
+    return side, intervals
 
 
 def _refused(sketch: Sketch, why: str) -> SketchError:

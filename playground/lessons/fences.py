@@ -85,7 +85,7 @@ class Fence:
 
     @property
     def state(self) -> dict[str, Any]:
-        """Its keys that say what a picture shows."""
+        """Its keys that describe a picture."""
         return {key: value for key, value in self.file.table.items() if key in STATE}
 
     def scene(self, pixels: tuple[int, int] = PICTURE) -> Scene:

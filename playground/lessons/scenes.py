@@ -60,44 +60,60 @@ def read_scene(
 
     ``set`` and ``steps`` of both are joined. Raises ``SketchError`` at the key that is wrong.
     """
-    whole = dict(under or {}) | dict(table)
-    if under:
-        for key in ("set", "steps"):
-            if key in under and key in table:
-                below = file.take(under, key, dict, {})
-                whole[key] = {**below, **file.take(table, key, dict, {}, *place)}
+    whole = _joined(file, table, place, under or {})
     sketch = _sketch(file, whole, place, sketches)
     shot = _shot(file, whole, place, sketch)
     preset = file.take(whole, "preset", str, "", *place)
     values = read_set(file, sketch, whole, place, "this picture")
     steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, place))
-    camera = None
     begun = sketch.for_shot(shot)
-    if "camera" in whole:
-        camera = read_camera(file, whole, begun.camera, place)
     try:
         made = begun.with_preset(preset) if preset else begun
         made = made.with_values(dict(values))
     except PlaygroundError as error:
         raise file.error(error.diagnostics[0].message, *place, "preset" if preset else "set") from None
-    if camera is not None:
-        made = made.with_camera(camera)
+    if "camera" in whole:
+        made = made.with_camera(read_camera(file, whole, begun.camera, place))
     view = file.take(whole, "view", str, "", *place)
     if view:
         made = _from_above(file, whole, place, made)
     elif "range" in whole:
         raise file.error("range: there is no view, whose lowest and highest value it is", *place, "range")
-    time = file.take(whole, "time", float, shot.time, *place)
-    size = _pixels(file, whole, place, shot.size if shot.name else pixels)
-    try:
-        if steps:
-            from playground.engine.planner import make_plan  # it needs what is loaded by then only
+    scene = Scene(
+        sketch=made,
+        pixels=_pixels(file, whole, place, shot.size if shot.name else pixels),
+        time=file.take(whole, "time", float, shot.time, *place),
+        steps=tuple(steps.items()),
+        shot=shot.name,
+        preset=preset,
+        values=values,
+        view=view,
+        plain=bool(shot.name) and whole.keys() <= {"sketch", "shot"},
+    )
+    _check_steps(file, place, scene)
+    return scene
 
-            make_plan(made, frame_size=size, time=time, steps=steps)
+
+def _joined(
+    file: TomlFile, table: Mapping[str, Any], place: Place, under: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the keys of both tables; ``set`` and ``steps`` hold those of both, the table's own first."""
+    whole = dict(under) | dict(table)
+    for key in ("set", "steps"):
+        if key in under and key in table:
+            whole[key] = file.take(under, key, dict, {}) | file.take(table, key, dict, {}, *place)
+    return whole
+
+
+def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
+    """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
+    from playground.engine.planner import make_plan  # it needs what is loaded by then only
+
+    try:
+        if scene.steps:
+            make_plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
     except ParameterError as error:
         raise file.error(error.diagnostics[0].message, *place, "steps") from None
-    plain = bool(shot.name) and whole.keys() <= {"sketch", "shot"}
-    return Scene(made, size, time, tuple(steps.items()), shot.name, preset, values, view, plain)
 
 
 def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:

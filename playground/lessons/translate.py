@@ -31,7 +31,7 @@ _SOURCE = re.compile(r"^source\s*=\s*\[.*?\]", re.MULTILINE | re.DOTALL)
 class Stale:
     """What a translation lacks of today's English."""
 
-    changed: tuple[int, ...] = ()  # indices of English blocks that say something else now
+    changed: tuple[int, ...] = ()  # indices of English blocks whose text is another now
     added: tuple[int, ...] = ()  # indices of English blocks that were not there
     removed: int = 0  # how many are there no more
 
@@ -155,7 +155,7 @@ def _pairs(then: tuple[str, ...], now: list[str]) -> dict[int, int]:
 def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:
     if isinstance(block, Prose):
         if block.kind != (found := prose_of(piece)).kind or block.level != found.level:
-            message = f"a {found.kind} stands here, where the English has a {block.kind} (line {block.line})"
+            message = f"a {found.kind} is here, where the English has a {block.kind} (line {block.line})"
             raise SketchError(message, file=other.path, line=piece.line)
         return replace(block, markdown=found.markdown)
     assert isinstance(block, Named)
@@ -174,7 +174,7 @@ def _texts(block: Named, fence: Fence) -> dict[str, Any]:
     keys = [key_of(text) for text in texts]
     for key in fence.file.table:
         if key not in keys:
-            message = f"'{key}' is not for a translation, which says only {', '.join(keys)}"
+            message = f"'{key}' is not for a translation, which sets only {', '.join(keys)}"
             raise fence.error(message, key)
     found: dict[str, Any] = {}
     for text in texts:
@@ -195,7 +195,7 @@ def _other_shape(english: Lesson | Document, other: Document) -> SketchError:
     for here, there in zip(other.pieces, theirs, strict=False):
         kind = _kind(there)
         if here.kind != kind or (here.kind == "fence" and here.info.split() != _head(there)):
-            message = f"a {here.kind} stands here, where the English has a {kind} (line {there.line})"
+            message = f"a {here.kind} is here, where the English has a {kind} (line {there.line})"
             return SketchError(message, file=other.path, line=here.line)
     message = f"{len(other.pieces)} blocks, where the English has {len(theirs)}"
     return SketchError(message, file=other.path, line=other.pieces[-1].line if other.pieces else 1)

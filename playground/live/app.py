@@ -25,18 +25,19 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.lessons.library import SOURCE, lesson_file
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code
-from playground.live.drops import draw_drops, opened_from, take_dropped
-from playground.live.errors_list import draw_errors
+from playground.live.draw import Area
+from playground.live.drops import Drops, opened_from
+from playground.live.errors_list import ErrorsList
 from playground.live.guard import Guard
 from playground.live.inspect.ab import below_bar, drag_line, paint_both
-from playground.live.inspect.overlays import draw_see
+from playground.live.inspect.overlays import draw_inspection
 from playground.live.inspect.timeline import height_of_timeline
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.lesson.host import Lessons
-from playground.live.mouse import Hand
+from playground.live.mouse import PictureMouse
 from playground.live.non_finite import draw_not_finite
-from playground.live.overlay import Area, draw_notices, draw_trial, draw_waiting, trial_text
+from playground.live.overlay import checking_text, draw_checking, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
 from playground.live.status import Status
@@ -46,11 +47,11 @@ from playground.sketch.allowed_files import TEXTS
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
-from playground.workbench.actions import Actions
 from playground.workbench.autosave import QUIET, Rememberer, memory_of
-from playground.workbench.disk_caching import Storing
+from playground.workbench.bench import Bench
+from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.editors import Opener
-from playground.workbench.interface_size import remembered_size
+from playground.workbench.interface import WindowControls, remembered_size
 from playground.workbench.last_frame import Painter
 from playground.workbench.memory import Remembered
 from playground.workbench.non_finite import FiniteWatch
@@ -125,14 +126,14 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, Storing(session, keeps), tell)
+        live = Live(window, session, watcher, rememberer, SessionCaching(session, keeps), tell)
         if found.at is not None:
             live.place.stand_at(found.at)
         live.lessons.begin(lesson, language, beside=beside)
         stack.callback(live.release)
-        stack.callback(live.actions.capture.close)
+        stack.callback(live.bench.captures.close)
         stack.callback(rememberer.close)
-        stack.callback(live.storing.close)
+        stack.callback(live.caching.close)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
@@ -175,43 +176,45 @@ class Live:
         session: Session,
         watcher: Watcher,
         rememberer: Rememberer,
-        storing: Storing,
+        caching: SessionCaching,
         tell: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
-        self.storing = storing
+        self.caching = caching
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
         self.place = Place(lambda: window.handle)
-        self.actions = Actions(session, window.ask_to_close, full_screen=self.place.toggle_full)
-        self.actions.fills_screen = lambda: self.place.full
-        self.actions.opener = Opener(wake)
-        self.actions.interface = remembered_size()
-        self.actions.sign_held = lambda: window.sign_held
-        self.guard = Guard(self.actions.say)
+        controls = WindowControls(
+            quit=window.ask_to_close,
+            toggle_full=self.place.toggle_full,
+            is_full=lambda: self.place.full,
+            sign_held=lambda: window.sign_held,
+        )
+        self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size())
+        self.drops = Drops(self.bench.commands)
+        self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(tell)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
-        rememberer.compare = self.actions.see.compare
+        rememberer.compare = self.bench.inspection.compare
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
-        self.hand = Hand(session, self.actions.painting)
+        self.mouse = PictureMouse(session, self.bench.painting)
         self.finite = FiniteWatch()
-        self.lessons = Lessons(self.actions, rememberer, self._remember)
+        self.lessons = Lessons(self.bench, rememberer, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.guard.run("watching the files", self.follower.follow, None)
         while self._stays():
-            now = self.actions.now()
-            patience = min(
-                self._patience(), self.actions.see.patience(now), self.lessons.reading.patience(now)
-            )
+            now = self.bench.notices.now()
+            others = self.bench.inspection.patience(now), self.lessons.reading.patience(now)
+            patience = min(self._patience(), *others)
             if end is not None:
                 left = end - time.perf_counter()
                 if left <= 0:
@@ -220,28 +223,28 @@ class Live:
             self._sleep(patience)
             self.guard.run("reading what was saved", self._take_saved, None)
             if self.window.pixels != (0, 0):
-                self._turn()
+                self._draw_frame()
             if self.window.lost:
                 self.recover()
             self.guard.run("watching the files", self.follower.follow, None)
 
     def _take_saved(self) -> None:
-        if self.follower.take(self.actions.painting.files):
+        if self.follower.take(self.bench.painting.files):
             self._settling = _SETTLES  # an error grows to its size
 
     def _stays(self) -> bool:
         """Say whether the window stays; where it is to close and texts are not saved, that is asked first."""
         if self.window.open:
             return True
-        if not unsaved(self.actions.editing):
+        if not unsaved(self.bench.files.editing):
             return False
         self.window.stay()
-        self.actions.leaving, self._settling = True, _SETTLES
+        self.bench.files.leaving, self._settling = True, _SETTLES
         return True
 
     def release(self) -> None:
         """Give back all that was made in the window's context."""
-        self.actions.see.release()
+        self.bench.inspection.release()
         self.lessons.release()
         self.painter.release()
         self.session.release()
@@ -254,7 +257,7 @@ class Live:
             self.release()
         self.window.reopen()
         self.session.rebuild(Engine(self.window.ctx, driver=driver))
-        self.storing.attach(self.session.engine)
+        self.caching.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self._settling = _SETTLES
 
@@ -272,13 +275,13 @@ class Live:
             return REST / 2
         if self.finite.patience is not None:
             return self.finite.patience
-        if self.storing.patience is not None:
-            return min(self.storing.patience, QUIET / 2)
+        if self.caching.patience is not None:
+            return min(self.caching.patience, QUIET / 2)
         if self.rememberer.waits:
             return QUIET / 2
-        if self.actions.capture.working is not None:
+        if self.bench.captures.working is not None or self.bench.notices.items:
             return 0.1
-        if self.actions.notices or imgui.get_io().want_text_input:
+        if imgui.get_io().want_text_input:
             return 0.1
         return IDLE
 
@@ -292,22 +295,25 @@ class Live:
             self.session.advance(min(now - self._last, _LONGEST_STEP), datetime.now())
         self._last = now
 
-    def _turn(self) -> None:
+    def _draw_frame(self) -> None:
         """Draw the window once; a part of it that fails is left out, and a notice says so."""
-        window, actions, guard = self.window, self.actions, self.guard
+        window, bench, guard = self.window, self.bench, self.guard
         look = window.theme
         window.call(title_of(self.session.path))
-        guard.run("taking in what was dropped", lambda: take_dropped(actions, self.place.dropped()), None)
-        window.zoom = actions.interface.size
+        guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
+        window.zoom = bench.interface.size.size
         window.begin()
-        actions.see.begin()
+        bench.inspection.begin()
         left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
-        if actions.panel_shown:
-            left += guard.draw("the panel", lambda: self.panel.draw(actions, look, left), 0.0)
+        if bench.interface.panel_shown:
+            left += guard.draw("the panel", lambda: self.panel.draw(bench, look, left), 0.0)
         room = imgui.get_main_viewport().size
         area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
-        guard.draw("the editor", lambda: draw_code(actions, look, area), None)
-        guard.draw("what a key asks for", lambda: act_on_keys(actions), None)
+        quit_window = bench.window.quit
+        guard.draw(
+            "the editor", lambda: draw_code(bench.files, bench.problems, quit_window, look, area), None
+        )
+        guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
@@ -320,9 +326,9 @@ class Live:
         guard.run("what follows a picture", self._follow_up, None)
 
     def _act(self, area: Area) -> None:
-        if not drag_line(self.actions.see.compare, area):
-            self.hand.act(area, self.window.density)
-        self.actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        if not drag_line(self.bench.inspection.compare, area):
+            self.mouse.act(area, self.window.density)
+        self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
 
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
         session = self.session
@@ -334,37 +340,38 @@ class Live:
 
     def _take_in(self) -> None:
         """Take in what the picture, or the error in its place, has brought."""
-        actions, session = self.actions, self.session
-        self.finite.turn(actions, imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
-        self.storing.turn(actions, self.finite)
+        bench, session = self.bench, self.session
+        self.finite.update(session, held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        self.caching.update(bench.inspection, self.finite)
         self._say_reload()
-        actions.take_notes()
-        actions.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
-        self.terminal.take(actions.problems.errors)
+        bench.take_notes()
+        bench.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
+        self.terminal.take(bench.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:
         """Draw what stands over the picture, each with a guard of its own."""
-        actions, session, look, draw = self.actions, self.session, self.window.theme, self.guard.draw
-        taken = draw("the bar of time", lambda: height_of_timeline(actions, look), 0.0)
+        bench, session, look, draw = self.bench, self.session, self.window.theme, self.guard.draw
+        taken = draw("the bar of time", lambda: height_of_timeline(session, bench.interface, look), 0.0)
         above = (*area[:3], area[3] - taken)
         found = self.finite
-        draw("what is not finite", lambda: draw_not_finite(found, actions, look, above), None)
-        draw("the list of errors", lambda: draw_errors(actions, look, above), None)
+        draw("what is not finite", lambda: draw_not_finite(found, session, look, above), None)
+        errors = ErrorsList(bench.problems, bench.files, session, bench.interface)
+        draw("the list of errors", lambda: errors.draw(look, above), None)
         if picture is None and session.error is None:
             subject, seconds = session.drafts.checking or (session.path.name, 0.0)
-            draw_waiting(trial_text(subject, seconds), look, area)
+            draw_waiting(checking_text(subject, seconds), area)
         else:
-            draw_trial(session, look, area)
+            draw_checking(session, look, area)
         if picture is not None and session.sketch is not None and session.view.map is None:
-            parted, free = session.sketch, below_bar(actions, look, area)
+            parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
-        view = actions, picture, look, area, self.window.density
-        draw("what is shown beside the picture", lambda: draw_see(*view), None)
-        draw("the notices", lambda: draw_notices(actions, look, area), None)
-        draw("what was dropped", lambda: draw_drops(actions, look), None)
-        draw("the key map", lambda: draw_keymap(actions, look), None)
-        actions.capture.look(actions)
-        draw("the capture's window", lambda: draw_capture(actions.capture, actions, look), None)
+        view = bench, picture, look, area, self.window.density
+        draw("what is shown besides the picture", lambda: draw_inspection(*view), None)
+        draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
+        draw("what was dropped", lambda: self.drops.draw(look), None)
+        draw("the key map", lambda: draw_keymap(bench.interface, look), None)
+        bench.captures.poll()
+        draw("the capture's window", lambda: draw_capture(bench.captures, look), None)
 
     def _show(self, picture: moderngl.Texture | None, area: tuple[int, int, int, int]) -> None:
         """Put the picture on the screen, under all that was drawn."""
@@ -372,8 +379,8 @@ class Live:
         window.screen.use()
         window.screen.viewport = (0, 0, *window.pixels)
         window.ctx.clear(0.06, 0.065, 0.07, 1.0)
-        compare = self.actions.see.compare
-        if picture is not None and not paint_both(compare, picture, window.screen, area, self.actions.now()):
+        compare, now = self.bench.inspection.compare, self.bench.notices.now()
+        if picture is not None and not paint_both(compare, picture, window.screen, area, now):
             self.painter.paint(picture, window.screen, area)
 
     def _follow_up(self) -> None:
@@ -381,8 +388,8 @@ class Live:
         rests = self._settling == 0 and not self.session.drafts.testing
         if rests:
             self.warnings.look()
-        self.status.write(self.actions, self.finite.found)
-        self.lessons.turn(idle=rests and not imgui.is_mouse_down(0))
+        self.status.write(self.bench, self.finite.found)
+        self.lessons.update(idle=rests and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:
         stands = self.place.geometry()
@@ -400,6 +407,6 @@ class Live:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None and self.lessons.reading.stage.own is None:
-                self.actions.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
+            if self._reloads is not None and self.lessons.reading.figure.own is None:
+                self.bench.notices.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

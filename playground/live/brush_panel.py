@@ -1,4 +1,4 @@
-"""The brush in the panel: which layer it paints, how wide, how strongly; strokes taken back."""
+"""The brush in the panel: which layer it paints, how wide, how strongly; strokes undone."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
+from playground.live.draw import button, choose
 from playground.live.panel_rows import row
 from playground.live.sliders import slide
 from playground.workbench.brush import ERASER
@@ -27,11 +28,9 @@ def draw_paintbox(painting: Painting) -> None:
         return
     brush = painting.brush
     with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
-        if imgui.begin_combo("##layer", _LAYERS[brush.layer]):
-            for layer, name in _LAYERS.items():
-                if imgui.selectable(name, brush.layer == layer)[0]:
-                    brush = replace(brush, layer=layer)
-            imgui.end_combo()
+        layer = choose("##layer", _LAYERS[brush.layer], _LAYERS, brush.layer, name=_LAYERS.__getitem__)
+        if layer is not None:
+            brush = replace(brush, layer=layer)
     side = painting.side
     with row("Radius", "The brush's, on the ground", fixed=True):
         ends = NARROWEST * side, WIDEST * side
@@ -48,21 +47,15 @@ def draw_paintbox(painting: Painting) -> None:
             brush = replace(brush, softness=softness)
     painting.brush = brush
     canvas = painting.canvas
-    imgui.begin_disabled(canvas is None or not canvas.can_undo)
-    if imgui.button("Undo stroke"):
+    undoes, redoes = (canvas.can_undo, canvas.can_redo) if canvas is not None else (False, False)
+    if button("Undo stroke", "Ctrl+Z, while painting", enabled=undoes):
         painting.undo()
-    imgui.end_disabled()
-    imgui.set_item_tooltip("Ctrl+Z, while the brush is in the hand")
     imgui.same_line()
-    imgui.begin_disabled(canvas is None or not canvas.can_redo)
-    if imgui.button("Redo stroke"):
+    if button("Redo stroke", "Ctrl+Shift+Z or Ctrl+Y, while painting", enabled=redoes):
         painting.redo()
-    imgui.end_disabled()
-    imgui.set_item_tooltip("Ctrl+Shift+Z or Ctrl+Y, while the brush is in the hand")
     imgui.same_line()
-    if imgui.button("Clear"):
+    if button("Clear", "Remove all paint; that can be undone"):
         painting.clear()
-    imgui.set_item_tooltip("Take all paint away; that can be undone")
     if canvas is not None:
         imgui.text_disabled(canvas.path.name)
         imgui.set_item_tooltip(str(canvas.path))

@@ -5,69 +5,55 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET
+from playground.capture.job_process import JobProcess
 from playground.capture.video import QUALITIES
 from playground.images.extensions import VIDEO_ENDINGS
 from playground.live import theme
+from playground.live.draw import POPUP_COLOUR, QUIET, button, choose, disabled, styled, wrapped
 from playground.live.panel_rows import row
 from playground.live.theme import Theme
 from playground.paths import shown
-from playground.workbench.actions import Actions
-from playground.workbench.captures import (
-    MULTIPLES,
-    Capturing,
-    Wish,
-    open_folder,
-    parts_of,
-    summary,
-    sweep_text,
-)
+from playground.workbench.captures import MULTIPLES, Captures, Wish, open_folder, parts_of, sweep_text
+from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Listing
 
 _NAMES = {PICTURE: "Picture", PICTURES: "Numbered pictures", FILM: "Film", SHEET: "Sheet of a sweep"}
-_ENDINGS = list(VIDEO_ENDINGS)
 
 
-def draw_capture(state: Capturing, actions: Actions, look: Theme) -> None:
-    """Draw the window, while it is asked for."""
-    if not state.shown:
+def draw_capture(captures: Captures, look: Theme) -> None:
+    """Draw the window, while it is open."""
+    if not captures.shown:
         return
     room = imgui.get_main_viewport().size
     imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
     imgui.set_next_window_size(ImVec2(min(430 * look.scale, room.x - 16), 0))
-    imgui.push_style_color(imgui.Col_.window_bg, theme.colour((0.125, 0.135, 0.145), 0.98))
-    flags = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_nav_inputs
-    shows, stays = imgui.begin("Capture###capture", True, flags)
-    state.shown = bool(stays)
-    if shows:
-        imgui.begin_disabled(state.working is not None)
-        _wish(state.wish, actions)
-        imgui.end_disabled()
-        imgui.separator()
-        if state.working is not None:
-            _at_work(state, look)
-        else:
-            _at_rest(state, actions)
-    imgui.end()
-    imgui.pop_style_color()
+    flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_resize
+    with styled({imgui.Col_.window_bg: POPUP_COLOUR}):
+        visible, stays = imgui.begin("Capture###capture", True, flags)
+        captures.shown = bool(stays)
+        if visible:
+            with disabled(captures.working is not None):
+                _wish(captures.wish, captures.session.shown)
+            imgui.separator()
+            if captures.working is not None:
+                _progress(captures.working, look)
+            else:
+                _result(captures)
+        imgui.end()
 
 
-def _wish(wish: Wish, actions: Actions) -> None:
-    with row("What", "From the sketch as it stands, with all that is set by hand"):
-        if imgui.begin_combo("##kind", _NAMES[wish.kind]):
-            for kind in KINDS:
-                if imgui.selectable(_NAMES[kind], kind == wish.kind)[0]:
-                    wish.kind = kind
-            imgui.end_combo()
+def _wish(wish: Wish, draft: Draft | None) -> None:
+    with row("What", "From the sketch as it is now, with all edits"):
+        kind = choose("##kind", _NAMES[wish.kind], KINDS, wish.kind, name=_NAMES.__getitem__)
+        wish.kind = kind or wish.kind
     of = "320 pixels wide" if wish.kind == SHEET else "the window's"
+
+    def named(multiple: int) -> str:
+        return f"{multiple} × {of}" if multiple else "typed"
+
     with row("Size", "A picture larger than a texture is drawn in parts"):
-        named = f"{wish.multiple} × {of}" if wish.multiple else "typed"
-        if imgui.begin_combo("##multiple", named):
-            for multiple in (*MULTIPLES, 0):
-                text = f"{multiple} × {of}" if multiple else "typed"
-                if imgui.selectable(text, multiple == wish.multiple)[0]:
-                    wish.multiple = multiple
-            imgui.end_combo()
+        multiple = choose("##multiple", named(wish.multiple), (*MULTIPLES, 0), wish.multiple, name=named)
+        wish.multiple = wish.multiple if multiple is None else multiple
     if not wish.multiple:
         with row("Pixels", "Width and height"):
             changed, size = imgui.input_int2("##pixels", list(wish.size))
@@ -77,7 +63,7 @@ def _wish(wish: Wish, actions: Actions) -> None:
         _film(wish)
     if wish.kind == SHEET:
         for number in range(2):
-            _sweep(wish, number, actions)
+            _sweep(wish, number, draft)
 
 
 def _film(wish: Wish) -> None:
@@ -92,28 +78,22 @@ def _film(wish: Wish) -> None:
         wish.fps = min(max(fps, 1), 1000)
     if wish.kind == FILM:
         with row("Format", "By PyAV"):
-            if imgui.begin_combo("##ending", VIDEO_ENDINGS[wish.ending]):
-                for ending in _ENDINGS:
-                    if imgui.selectable(f"{ending}  {VIDEO_ENDINGS[ending]}", ending == wish.ending)[0]:
-                        wish.ending = ending
-                imgui.end_combo()
+            shown_ending, endings = VIDEO_ENDINGS[wish.ending], list(VIDEO_ENDINGS)
+            ending = choose(
+                "##ending", shown_ending, endings, wish.ending, name=lambda e: f"{e}  {VIDEO_ENDINGS[e]}"
+            )
+            wish.ending = ending or wish.ending
         with row("Quality", "The better, the larger"):
-            if imgui.begin_combo("##quality", wish.quality):
-                for quality in QUALITIES:
-                    if imgui.selectable(quality, quality == wish.quality)[0]:
-                        wish.quality = quality
-                imgui.end_combo()
+            wish.quality = choose("##quality", wish.quality, QUALITIES, wish.quality) or wish.quality
 
 
-def _sweep(wish: Wish, number: int, actions: Actions) -> None:
+def _sweep(wish: Wish, number: int, draft: Draft | None) -> None:
     note = "A parameter and its values, as light.gain=0.5..3,9 or light.gain=1,2,4"
     with row("Sweep" if number == 0 else "And down", note):
-        wide = imgui.calc_item_width() - imgui.get_frame_height()
-        imgui.set_next_item_width(wide)
+        imgui.set_next_item_width(imgui.calc_item_width() - imgui.get_frame_height())
         hint = "a parameter" if number == 0 else "a second, for a grid"
         _, wish.sweeps[number] = imgui.input_text_with_hint(f"##sweep{number}", hint, wish.sweeps[number])
         imgui.same_line(0, 0)
-        draft = actions.session.shown
         if imgui.begin_combo(f"##swept{number}", "", imgui.ComboFlags_.no_preview):
             sections = Listing().sections(draft) if draft is not None else ()
             for item in (item for section in sections for item in section.items):
@@ -124,32 +104,25 @@ def _sweep(wish: Wish, number: int, actions: Actions) -> None:
             imgui.end_combo()
 
 
-def _at_work(state: Capturing, look: Theme) -> None:
-    assert state.working is not None
-    done, of = state.working.progress
+def _progress(working: JobProcess, look: Theme) -> None:
+    done, of = working.progress
     text = f"{done} of {of}" if of else "beginning …"
     imgui.progress_bar(done / of if of else 0.0, ImVec2(-90 * look.scale, 0), text)
     imgui.same_line()
-    imgui.begin_disabled(state.working.stopping)
-    if imgui.button("Cancel", ImVec2(-1, 0)):
-        state.working.stop()
-    imgui.end_disabled()
+    if button("Cancel", enabled=not working.stopping, wide=-1):
+        working.stop()
 
 
-def _at_rest(state: Capturing, actions: Actions) -> None:
-    if imgui.button("Capture"):
-        state.start(actions)
+def _result(captures: Captures) -> None:
+    if button("Capture"):
+        captures.start()
     imgui.same_line()
-    imgui.text_disabled(summary(state.wish, actions))
-    if state.failed:
-        imgui.push_text_wrap_pos(0)
-        imgui.text_colored(theme.colour(theme.ALARM), state.failed)
-        imgui.pop_text_wrap_pos()
-    elif state.last is not None:
-        imgui.push_text_wrap_pos(0)
-        imgui.text_unformatted(f"saved {shown(state.last)}")
-        imgui.pop_text_wrap_pos()
-        if imgui.button("Open folder"):
-            complaint = open_folder(state.last)
-            if complaint:
-                actions.say(complaint)
+    imgui.text_disabled(captures.summary())
+    if captures.failed:
+        with wrapped():
+            imgui.text_colored(theme.colour(theme.ALARM), captures.failed)
+    elif captures.made is not None:
+        with wrapped():
+            imgui.text_unformatted(f"saved {shown(captures.made)}")
+        if button("Open folder") and (complaint := open_folder(captures.made)):
+            captures.notices.say(complaint)

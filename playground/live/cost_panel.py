@@ -1,89 +1,85 @@
 """What the pictures cost: milliseconds of each pass over time, texels, triangles, compiling.
 
-Folded at first. While it is folded or off the screen nothing is timed and nothing kept.
+Folded at first. While it is folded or off the screen nothing is timed and nothing recorded.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from playground.live import theme
+from playground.live.draw import table
 from playground.live.inspect import plots
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
 from playground.sketch.model import Sketch
 from playground.sketch.variants import any_variants
-from playground.workbench.actions import Actions
 from playground.workbench.inspect.frame_costs import Record
+from playground.workbench.inspect.toggles import Inspection
+from playground.workbench.session import Session
 
 _MOST = 6  # passes with a line of their own
 _HIGH = 110.0  # of a plot
+_TABLE = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
 
 
-def draw_costs(sketch: Sketch, actions: Actions, look: Theme) -> None:
+def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: Theme) -> None:
     """Draw the plots, then the table of what ran, how often and how long."""
-    session, engine = actions.session, actions.session.engine
+    engine, record = session.engine, inspection.record
     imgui.spacing()
     with look.font(look.bold):
         opened = imgui.collapsing_header("Cost###costs")
     if not opened:
         return
-    actions.see.costs_shown = True
-    record = actions.see.record
+    inspection.costs_shown = True
     imgui.text_disabled(f"by {engine.clock}")
     imgui.set_item_tooltip(
         "By the wall clock each pass waits for the one before, so pictures take a little longer"
     )
     if record.pictures:
         _plots(record, look)
-    paths = [path for path in engine.runs if path.partition(".")[0] in {p.name for p in sketch.graph.passes}]
     if any_variants(sketch.graph):
         changed, plain = imgui.checkbox("Plain form", session.drafts.plain)
         imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
         if changed:
             session.drafts.run_plain(plain)
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
-    if imgui.begin_table("costs", 3, flags):
-        for path in paths:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            ran = path in engine.ran
-            imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
-            imgui.table_next_column()
-            imgui.text_disabled(f"{engine.runs[path]} ×")
-            imgui.table_next_column()
-            spent = session.times.get(path)
-            imgui.text("" if spent is None else f"{spent:.2f} ms")
-        imgui.end_table()
+    own = {spec.name for spec in sketch.graph.passes}
+    ran, idle = theme.colour(theme.ACCENT), theme.colour(theme.INK)
+    rows = [
+        (
+            partial(imgui.text_colored, ran if path in engine.ran else idle, path),
+            partial(imgui.text_disabled, f"{runs} ×"),
+            partial(imgui.text, f"{session.times[path]:.2f} ms" if path in session.times else ""),
+        )
+        for path, runs in engine.runs.items()
+        if path.partition(".")[0] in own
+    ]
+    table("costs", 3, rows, _TABLE)
     compiled = session.last_reload
     if compiled is not None:
-        imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms")
-        if compiled.sandbox:
-            imgui.same_line(0, 0)
-            imgui.text_disabled(f", {compiled.sandbox * 1e3:.0f} of them the sandbox")
+        sandbox = f", {compiled.sandbox * 1e3:.0f} of them the sandbox" if compiled.sandbox else ""
+        imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms{sandbox}")
     _compiling(engine.runner.compile_times)
 
 
 def _plots(record: Record, look: Theme) -> None:
-    """Draw each dear pass over the last pictures, and what was computed and drawn for them."""
-    plots.begin()
+    """Draw each expensive pass over the last pictures, and what was computed and drawn for them."""
     size = ImVec2(-1, _HIGH * look.scale)
     axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
     held = len(record.whole.values)
     across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
     dear = record.dearest(_MOST)
-    implot.push_style_var(implot.StyleVar_.plot_padding, ImVec2(4, 4))
-    if implot.begin_plot("##ms", size, plots.PLAIN | implot.Flags_.no_legend.value):
-        implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
-        implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
-        for number, path in enumerate(dear):
-            implot.plot_line(path, across, record.passes[path].values.copy(), plots.line(number))
-        implot.end_plot()
-    implot.pop_style_var()
+    with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
+        if drawn:
+            implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
+            implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
+            for number, path in enumerate(dear):
+                implot.plot_line(path, across, record.passes[path].values.copy(), plots.line(number))
     draw, side = imgui.get_window_draw_list(), imgui.get_font_size() * 0.6
     for number, path in enumerate(dear):
         values = record.passes[path].values
@@ -107,16 +103,16 @@ def _plots(record: Record, look: Theme) -> None:
 
 
 def _compiling(times: Mapping[str, float]) -> None:
-    """Draw how long the programs took that the driver compiled, dearest first."""
+    """Draw how long the programs took that the driver compiled, most expensive first."""
     if not times or not imgui.tree_node_ex(f"Compiling: {sum(times.values()):.0f} ms###compiling"):
         return
-    if imgui.begin_table("compiled", 2, imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop):
-        for path, spent in sorted(times.items(), key=lambda item: -item[1]):
-            imgui.table_next_row()
-            imgui.table_next_column()
-            imgui.text_unformatted(Path(path).name)
-            imgui.set_item_tooltip(path)
-            imgui.table_next_column()
-            imgui.text(f"{spent:.1f} ms")
-        imgui.end_table()
+
+    def name(path: str) -> None:
+        imgui.text_unformatted(Path(path).name)
+        imgui.set_item_tooltip(path)
+
+    dearest = sorted(times.items(), key=lambda item: -item[1])
+    table(
+        "compiled", 2, [(partial(name, p), partial(imgui.text, f"{ms:.1f} ms")) for p, ms in dearest], _TABLE
+    )
     imgui.tree_pop()

@@ -1,7 +1,8 @@
-"""What becomes of a file that is dropped on the window: a sketch opens, an image is put where it fits."""
+"""Files dropped on the window: a sketch opens, an image is put into a parameter that takes one."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
@@ -13,33 +14,14 @@ from playground.sketch.allowed_files import SHADERS
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
-from playground.workbench.actions import Actions
+from playground.workbench.commands import Commands
 from playground.workbench.parameter_list import Listing
 
 _TITLE = "dropped"
 
 
-def take_dropped(actions: Actions, paths: list[Path]) -> None:
-    """Do what files dropped on the window ask for: the first sketch opens, images wait for a choice."""
-    for path in paths:
-        if is_pack(path) and path.is_file():
-            _open_pack(actions, path)
-            return
-        if (path / "sketch.toml").is_file() or path.suffix == ".toml" or path.suffix in SHADERS:
-            actions.open(path)
-            return
-    images = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
-    for path in paths:
-        if path not in images:
-            actions.say(f"{path.name} is neither a sketch, a shader nor an image")
-    if images and not feeds(actions):
-        actions.say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
-    elif images:
-        actions.dropped, actions.opening = images, _TITLE
-
-
 def opened_from(sketch: Path) -> tuple[Path, str]:
-    """Return the file of a sketch to be worked on, and what is to be said of it: a zip is unpacked beside it.
+    """Return the file of a sketch to work on, and a notice for it: a zip is unpacked beside it.
 
     Raises ``SketchError`` or ``DataError`` for one that cannot be opened.
     """
@@ -47,57 +29,81 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
     return unpacked_beside(path) if is_pack(path) and path.is_file() else (find(sketch), "")
 
 
-def _open_pack(actions: Actions, path: Path) -> None:
-    try:
-        file, sentence = unpacked_beside(path)
-    except PlaygroundError as error:
-        actions.say(str(error))
-        return
-    actions.say(sentence)
-    actions.open(file)
+@dataclass
+class Drops:
+    """The files that were dropped on one window."""
 
+    commands: Commands
+    waiting: list[Path] = field(default_factory=list)  # images that the user is to choose a parameter for
+    _asks: bool = False  # the choice is still to be shown
 
-def feeds(actions: Actions) -> list[tuple[str, Parameter, Value]]:
-    """Return the parameters that a file can be put into, those a technique shows before those inside.
+    def take(self, paths: list[Path]) -> None:
+        """Take in dropped files: the first sketch opens, images wait for a choice."""
+        say = self.commands.notices.say
+        for path in paths:
+            if is_pack(path) and path.is_file():
+                self._open_pack(path)
+                return
+            if (path / "sketch.toml").is_file() or path.suffix == ".toml" or path.suffix in SHADERS:
+                self.commands.open(path)
+                return
+        images = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
+        for path in paths:
+            if path not in images:
+                say(f"{path.name} is neither a sketch, a shader nor an image")
+        if images and not self.parameters():
+            say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
+        elif images:
+            self.waiting, self._asks = images, True
 
-    Each with its path and the file that it has now.
-    """
-    draft = actions.session.shown
-    if draft is None:
-        return []
-    listing = Listing()
-    items = [item for section in listing.sections(draft) for item in section.items]
-    values = listing.values(draft).of
-    found = [item for item in items if item.parameter.widget.kind == "file"]
-    found.sort(key=lambda item: not item.exported)
-    return [(item.path, item.parameter, values[item.path]) for item in found]
+    def parameters(self) -> list[tuple[str, Parameter, Value]]:
+        """Return the parameters that take a file, those a technique exports first.
 
+        Each with its path and the file that it has now.
+        """
+        draft = self.commands.session.shown
+        if draft is None:
+            return []
+        listing = Listing()
+        items = [item for section in listing.sections(draft) for item in section.items]
+        values = listing.values(draft).of
+        found = [item for item in items if item.parameter.widget.kind == "file"]
+        found.sort(key=lambda item: not item.exported)
+        return [(item.path, item.parameter, values[item.path]) for item in found]
 
-def put(actions: Actions, path: str) -> None:
-    """Put the file that waits into a parameter."""
-    file, *actions.dropped = actions.dropped
-    actions.opening = _TITLE if actions.dropped else ""
-    actions.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
+    def put(self, path: str) -> None:
+        """Put the file that waits into a parameter."""
+        file, *self.waiting = self.waiting
+        self._asks = bool(self.waiting)
+        self.commands.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
 
+    def draw(self, look: Theme) -> None:
+        """Draw the choice of what the file that waits is for."""
+        if self._asks:
+            self._asks = False
+            imgui.open_popup(_TITLE)
+        if not self.waiting:
+            return
+        room = imgui.get_main_viewport().size
+        imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
+        if not imgui.begin_popup(_TITLE):
+            self.waiting = []  # a click beside it
+            return
+        with look.font(look.bold):
+            imgui.text_unformatted(f"Put {self.waiting[0].name} where?")
+        for path, parameter, now in self.parameters():
+            if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
+                self.put(path)
+                break
+            if now:
+                imgui.set_item_tooltip(f"now {now}")
+        imgui.end_popup()
 
-def draw_drops(actions: Actions, look: Theme) -> None:
-    """Draw the choice of what the file that waits is for."""
-    if actions.opening == _TITLE:
-        actions.opening = ""
-        imgui.open_popup(_TITLE)
-    if not actions.dropped:
-        return
-    room = imgui.get_main_viewport().size
-    imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    if not imgui.begin_popup(_TITLE):
-        actions.dropped = []  # a click beside it
-        return
-    with look.font(look.bold):
-        imgui.text_unformatted(f"Put {actions.dropped[0].name} where?")
-    for path, parameter, now in feeds(actions):
-        if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
-            put(actions, path)
-            break
-        if now:
-            imgui.set_item_tooltip(f"now {now}")
-    imgui.end_popup()
+    def _open_pack(self, path: Path) -> None:
+        try:
+            file, sentence = unpacked_beside(path)
+        except PlaygroundError as error:
+            self.commands.notices.say(str(error))
+            return
+        self.commands.notices.say(sentence)
+        self.commands.open(file)

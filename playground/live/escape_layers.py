@@ -9,7 +9,7 @@ from functools import partial
 from imgui_bundle import imgui
 
 from playground.live.code_window import ask_to_close, stay
-from playground.workbench.actions import Actions
+from playground.workbench.bench import Bench
 
 
 @dataclass(frozen=True)
@@ -20,46 +20,46 @@ class Layer:
     close: Callable[[], None]
 
 
-def close_one(actions: Actions) -> None:
+def close_one(bench: Bench) -> None:
     """Close what is topmost; where nothing is open, say how to quit."""
-    top = next(_open(actions), None)
+    top = next(_open(bench), None)
     if top is None:
-        actions.say("nothing is open that Esc could close; Ctrl+Q quits")
+        bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
     else:
         top.close()
 
 
-def open_layers(actions: Actions) -> list[str]:
+def open_layers(bench: Bench) -> list[str]:
     """Return the names of what is open, topmost first."""
-    return [layer.name for layer in _open(actions)]
+    return [layer.name for layer in _open(bench)]
 
 
-def _open(actions: Actions) -> Iterator[Layer]:
-    see = actions.see
+def _open(bench: Bench) -> Iterator[Layer]:
+    inspection = bench.inspection
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
-        yield Layer("popup", lambda: _close_popup(actions))
-    if actions.keymap_shown:
-        yield Layer("keys", actions.toggle_keymap)
-    if actions.capture.shown:
-        yield Layer("capture", lambda: setattr(actions.capture, "shown", False))
-    for editing in reversed(actions.editing):
-        yield Layer(f"editor {editing.text.path.name}", partial(ask_to_close, editing, actions))
-    if see.graph.on:
-        yield Layer("graph", see.graph.toggle)
-    if see.inspector.on:
-        yield Layer("inspector", see.inspector.toggle)
-    if actions.painting.on:
-        yield Layer("brush", actions.painting.toggle)
-    if see.compare.on:
-        yield Layer("A/B", see.compare.toggle)
-    if actions.fills_screen():
-        yield Layer("full screen", actions.full_screen)
-    if actions.lesson_shown():
-        yield Layer("lesson", actions.toggle_lessons)
+        yield Layer("popup", lambda: _close_popup(bench))
+    if bench.interface.keymap_shown:
+        yield Layer("keys", bench.interface.toggle_keymap)
+    if bench.captures.shown:
+        yield Layer("capture", bench.captures.toggle)
+    for editing in reversed(bench.files.editing):
+        yield Layer(f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files))
+    if inspection.graph.on:
+        yield Layer("graph", inspection.graph.toggle)
+    if inspection.inspector.on:
+        yield Layer("inspector", inspection.inspector.toggle)
+    if bench.painting.on:
+        yield Layer("brush", bench.painting.toggle)
+    if inspection.compare.on:
+        yield Layer("A/B", inspection.compare.toggle)
+    if bench.window.is_full():
+        yield Layer("full screen", bench.window.toggle_full)
+    if bench.lessons.is_shown():
+        yield Layer("lesson", bench.lessons.toggle)
 
 
-def _close_popup(actions: Actions) -> None:
+def _close_popup(bench: Bench) -> None:
     """Close the innermost popup; one that asks something is answered by leaving all as it is."""
-    stay(actions)
+    stay(bench.files)
     depth = len(imgui.get_current_context().open_popup_stack)
     imgui.internal.close_popup_to_level(max(depth - 1, 0), True)

@@ -30,11 +30,12 @@ from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
 from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
+from playground.live.keys import pressed_sign
 from playground.live.status import VARIABLE
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
-from playground.workbench.interface_size import remembered_size
+from playground.workbench.interface import remembered_size
 from playground.workbench.last_frame import Painter
 
 MAKING = 0.005  # [s] of each picture for parts
@@ -82,7 +83,6 @@ def run(
         prefer_software()
     with ExitStack() as stack:
         window = stack.enter_context(Window(f"{sketch.name} – flight", size))
-        window.zoom = remembered_size().size
         engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
         header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
         # A processor draws four samples in four times the time of one.
@@ -127,6 +127,8 @@ class Fly:
         self.replay = replay
         self.saves = saves
         self.painter = Painter(window.ctx)
+        self.size = remembered_size()
+        window.zoom = self.size.size
         self.instruments = Instruments(recording=recorder is not None, replaying=replay is not None)
         self.paused = False
         self.draws = 0
@@ -261,8 +263,11 @@ class Fly:
             fresh = {n for n, b in enumerate(held) if b and not (self._buttons[n : n + 1] or (0,))[0]}
             self._buttons = held
             pressed |= {name for number, name in _PAD.items() if number in fresh}
-        if self.paused and "quit" in pressed and (imgui.get_io().key_ctrl or imgui.get_io().key_super):
+        ctrl = imgui.get_io().key_ctrl or imgui.get_io().key_super
+        if self.paused and "quit" in pressed and ctrl:
             self.window.ask_to_close()
+        if ctrl:
+            self._resize("0" if imgui.is_key_pressed(imgui.Key._0) else self._sign())
         if "leave" in pressed:
             self._leave()
         if "help" in pressed:
@@ -278,6 +283,17 @@ class Fly:
                 asked = self.flight.hour if self._hour is None else self._hour
                 self._hour = (asked + hours) % 24.0
                 self.paused = False
+
+    def _sign(self) -> str:
+        return pressed_sign(lambda: self.window.sign_held)
+
+    def _resize(self, key: str) -> None:
+        """Draw text larger, smaller or as large as the screen says, and remember it for every window."""
+        if key == "0":
+            self.size.choose(1.0)
+        elif key:
+            self.size.step(1 if key == "+" else -1)
+        self.window.zoom = self.size.size
 
     def _leave(self) -> None:
         """Put the help away; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
@@ -298,6 +314,7 @@ class Fly:
             "ready": self._ready,
             "paused": self.paused,
             "help": self.instruments.help,
+            "zoom": self.window.zoom,
             "hour": self.flight.hour,
             "steps": craft.steps,
             "up": craft.up,

@@ -25,7 +25,8 @@ HELP: tuple[tuple[str, str], ...] = (
     ("P or Space", "pause (gamepad: Start)"),
     ("R", "back to the start (gamepad: Back)"),
     ("?", "this help (also F1)"),
-    ("Esc", "put this help away; pause"),
+    ("Ctrl +,  Ctrl -,  Ctrl 0", "text larger, smaller, at its first size"),
+    ("Esc", "close this help; pause"),
     ("Ctrl+Q", "quit, while it is paused"),
 )
 

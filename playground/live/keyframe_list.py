@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
+from playground.live.draw import button, choose, pushed_id
 from playground.live.panel_rows import cross, slot
 from playground.live.theme import Theme
 from playground.sketch.keyframes import EASES
-from playground.workbench import keyframe_edits as keying
-from playground.workbench.actions import Actions
+from playground.workbench.keyframe_edits import STEP, KeyframeEdits, summary
 from playground.workbench.parameter_list import Listing
 
 
@@ -19,77 +19,43 @@ class KeyframeList:
     """What is chosen for the next keyframe."""
 
     camera: bool = True
-    changed: bool = True  # what is set by hand
+    changed: bool = True  # every edited parameter
     paths: list[str] = field(default_factory=list)  # parameters besides
 
-    def wanted(self, actions: Actions) -> list[str]:
+    def wanted(self, edits: KeyframeEdits) -> list[str]:
         """Return the parameters that the next keyframe takes."""
-        found = keying.changed_paths(actions) if self.changed else []
-        return list(dict.fromkeys([*found, *self.paths]))
+        return list(dict.fromkeys([*(edits.changed_paths if self.changed else []), *self.paths]))
 
-    def draw(self, actions: Actions, look: Theme) -> None:
+    def draw(self, edits: KeyframeEdits, look: Theme) -> None:
         """Draw the list, folded unless there is a keyframe."""
-        known = keying.keyframes_of(actions)
+        known = edits.keyframes
         imgui.spacing()
-        flags = imgui.TreeNodeFlags_.default_open if known else 0
         with look.font(look.bold):
+            flags = imgui.TreeNodeFlags_.default_open if known else 0
             opened = imgui.collapsing_header("Keyframes###keyframes", flags)
         if not opened:
             return
-        imgui.push_id("keyframes")
-        for index in range(len(known)):
-            imgui.push_id(index)
-            drawn = self._line(index, actions)
-            imgui.pop_id()
-            if not drawn:  # the list is another from here on
-                break
-        self._adding(actions, look)
-        imgui.pop_id()
+        with pushed_id("keyframes"):
+            for index in range(len(known)):
+                with pushed_id(index):
+                    changed = _line(index, edits)
+                if changed:  # the list is another from here on
+                    break
+            self._adding(edits, look)
 
-    def _line(self, index: int, actions: Actions) -> bool:
-        keyframe = keying.keyframes_of(actions)[index]
-        here = abs(actions.session.clock.time - keyframe.time) < keying.STEP / 2
-        if imgui.radio_button("##go", here):
-            actions.seek(keyframe.time)
-            actions.session.clock.playing = False
-        imgui.set_item_tooltip(f"Go to {keyframe.time:g} s\nsets {keying.said(keyframe)}")
-        imgui.same_line()
-        rest = imgui.get_content_region_avail().x - slot() - 2 * imgui.get_style().item_spacing.x
-        imgui.set_next_item_width(rest * 0.5)
-        enter = imgui.InputTextFlags_.enter_returns_true
-        entered, time = imgui.input_float("##time", keyframe.time, 0.0, 0.0, "%.2f s", enter)
-        imgui.set_item_tooltip("Its time; Enter moves it")
-        imgui.same_line()
-        imgui.set_next_item_width(rest * 0.5)
-        chosen = ""
-        if imgui.begin_combo("##ease", keyframe.ease):
-            for ease in EASES:
-                if imgui.selectable(ease, ease == keyframe.ease)[0] and ease != keyframe.ease:
-                    chosen = ease
-            imgui.end_combo()
-        imgui.set_item_tooltip("How values go from here to the next")
-        imgui.same_line()
-        if cross("##delete", f"Delete the keyframe at {keyframe.time:g} s", imgui.get_frame_height()):
-            return not keying.delete(actions, index)
-        if entered and time != keyframe.time:
-            return not keying.move(actions, index, time)
-        return not (chosen and keying.set_ease(actions, index, chosen))
-
-    def _adding(self, actions: Actions, look: Theme) -> None:
-        clock, count = actions.session.clock, len(keying.changed_paths(actions))
+    def _adding(self, edits: KeyframeEdits, look: Theme) -> None:
+        clock, draft = edits.session.clock, edits.session.shown
         _, self.camera = imgui.checkbox("Camera", self.camera)
         imgui.same_line()
-        _, self.changed = imgui.checkbox(f"Changed values ({count})", self.changed)
-        imgui.set_item_tooltip("Every parameter that is set by hand")
-        draft = actions.session.shown
+        _, self.changed = imgui.checkbox(f"Changed values ({len(edits.changed_paths)})", self.changed)
+        imgui.set_item_tooltip("Every parameter that was edited")
         imgui.set_next_item_width(-1)
         also = ", ".join(self.paths)
         if imgui.begin_combo("##also", f"and {also}" if also else "and further parameters"):
             for section in Listing().sections(draft) if draft is not None else ():
                 for item in section.items:
                     picked = item.path in self.paths
-                    flags = imgui.SelectableFlags_.no_auto_close_popups
-                    if imgui.selectable(item.path, picked, flags)[0]:
+                    if imgui.selectable(item.path, picked, imgui.SelectableFlags_.no_auto_close_popups)[0]:
                         (self.paths.remove if picked else self.paths.append)(item.path)
             imgui.end_combo()
         imgui.set_next_item_width(96 * look.scale)
@@ -97,8 +63,33 @@ class KeyframeList:
         imgui.set_item_tooltip("The time of the next keyframe, and of the picture")
         if changed:
             clock.playing = False
-            actions.seek(time)
+            edits.undo.seek(time)
         imgui.same_line()
-        if imgui.button("Add keyframe here", ImVec2(-1, 0)):
+        if button("Add keyframe here", wide=-1):
             clock.playing = False
-            keying.add_here(actions, self.wanted(actions), camera=self.camera)
+            edits.add_here(self.wanted(edits), camera=self.camera)
+
+
+def _line(index: int, edits: KeyframeEdits) -> bool:
+    """Draw a keyframe; return whether the list has changed."""
+    keyframe, clock = edits.keyframes[index], edits.session.clock
+    if imgui.radio_button("##go", abs(clock.time - keyframe.time) < STEP / 2):
+        edits.undo.seek(keyframe.time)
+        clock.playing = False
+    imgui.set_item_tooltip(f"Go to {keyframe.time:g} s\nsets {summary(keyframe)}")
+    imgui.same_line()
+    rest = imgui.get_content_region_avail().x - slot() - 2 * imgui.get_style().item_spacing.x
+    imgui.set_next_item_width(rest * 0.5)
+    enter = imgui.InputTextFlags_.enter_returns_true
+    entered, time = imgui.input_float("##time", keyframe.time, 0.0, 0.0, "%.2f s", enter)
+    imgui.set_item_tooltip("Its time; Enter moves it")
+    imgui.same_line()
+    imgui.set_next_item_width(rest * 0.5)
+    ease = choose("##ease", keyframe.ease, EASES, keyframe.ease)
+    imgui.set_item_tooltip("How values go from here to the next")
+    imgui.same_line()
+    if cross("##delete", f"Delete the keyframe at {keyframe.time:g} s", imgui.get_frame_height()):
+        return edits.delete(index)
+    if entered and time != keyframe.time:
+        return edits.move(index, time)
+    return ease is not None and ease != keyframe.ease and edits.set_ease(index, ease)

@@ -9,14 +9,8 @@ from imgui_bundle import imgui
 
 from playground.live.escape_layers import close_one
 from playground.live.text_field import keeps_keys, left_a_field
-from playground.workbench.actions import Actions
-from playground.workbench.open_source import edit_problem
-from playground.workbench.save_commands import save_values
-
-
-def toggle_capture(actions: Actions) -> None:
-    """Show the capture's window, or no longer."""
-    actions.capture.shown = not actions.capture.shown
+from playground.workbench.bench import Bench
+from playground.workbench.interface import resize
 
 
 @dataclass(frozen=True)
@@ -26,64 +20,64 @@ class Key:
     key: imgui.Key
     name: str
     meaning: str
-    brief: str  # in the panel's last line; empty: not there
-    act: Callable[[Actions], None]
+    act: Callable[[Bench], None]
     ctrl: bool = False
     shift: bool = False
     sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
+    brief: str = ""  # in the panel's last line; empty: not there
     letter: str = ""  # what it types, for one that is elsewhere on every keyboard
 
 
+_K = imgui.Key
+_INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
+_HELP = "show or hide these keys"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 KEYS: tuple[Key, ...] = (
-    Key(imgui.Key.space, "Space", "play or pause", "", lambda a: a.session.clock.toggle()),
-    Key(imgui.Key.none, ",", "a frame of time back", "", lambda a: a.step_time(-1), letter=","),
-    Key(imgui.Key.none, ".", "a frame of time on", "", lambda a: a.step_time(1), letter="."),
-    Key(imgui.Key.l, "L", "time goes round, or no longer", "", lambda a: a.toggle_loop()),
-    Key(imgui.Key._0, "0", "time to 0", "", lambda a: a.rewind()),
-    Key(imgui.Key.r, "R", "reset the view", "view", lambda a: a.session.drafts.set_camera(None)),
-    Key(imgui.Key.m, "M", "map from above", "map", lambda a: a.toggle_map()),
-    Key(
-        imgui.Key.i,
-        "I",
-        "every pass's number at a pixel; Shift: of those inside, too",
-        "",
-        lambda a: a.see.inspector.toggle(),
-    ),
-    Key(imgui.Key.a, "A", "keep this as A and compare; or no longer", "", lambda a: a.see.compare.toggle()),
-    Key(imgui.Key.g, "G", "the passes as a graph, or no longer", "", lambda a: a.see.graph.toggle()),
-    Key(imgui.Key.b, "B", "take the brush, or put it down", "", lambda a: a.painting.toggle()),
-    Key(imgui.Key.s, "S", "save a PNG", "save", lambda a: a.save_picture()),
-    Key(imgui.Key.c, "C", "capture: large pictures, films, sheets", "", toggle_capture),
-    Key(imgui.Key.tab, "Tab", "hide the panel", "hide", lambda a: a.toggle_panel()),
-    Key(imgui.Key.f2, "F2", "show the lessons, or no longer", "", lambda a: a.toggle_lessons()),
-    Key(imgui.Key.page_down, "PgDn", "a page of the lesson on", "", lambda a: a.turn_page(1)),
-    Key(imgui.Key.page_up, "PgUp", "a page of the lesson back", "", lambda a: a.turn_page(-1)),
-    Key(imgui.Key.none, "/", "search the parameters", "", lambda a: a.search(), letter="/"),
-    Key(imgui.Key.f11, "F11", "fill the screen, or no longer", "", lambda a: a.full_screen()),
-    Key(imgui.Key.none, "?", "show or hide these keys", "keys", lambda a: a.toggle_keymap(), letter="?"),
-    Key(imgui.Key.f1, "F1", "show or hide these keys", "", lambda a: a.toggle_keymap()),
-    Key(imgui.Key.f8, "F8, Shift+F8", "next error, previous error", "", lambda a: _step(a)),
-    Key(imgui.Key.e, "E", "edit the file of the error looked at", "", edit_problem),
-    Key(imgui.Key.z, "Ctrl+Z", "undo", "", lambda a: a.undo(), ctrl=True),
-    Key(imgui.Key.z, "Ctrl+Shift+Z", "redo", "", lambda a: a.redo(), ctrl=True, shift=True),
-    Key(imgui.Key.y, "Ctrl+Y", "redo", "", lambda a: a.redo(), ctrl=True),
-    Key(imgui.Key.s, "Ctrl+S", "save values into the sketch", "", save_values, ctrl=True),
-    Key(imgui.Key.none, "Ctrl++", _SIZE_KEYS, "", lambda a: a.resize(1), ctrl=True, sign="+"),
-    Key(imgui.Key.none, "Ctrl+-", _SIZE_KEYS, "", lambda a: a.resize(-1), ctrl=True, sign="-"),
-    Key(imgui.Key._0, "Ctrl+0", _SIZE_KEYS, "", lambda a: a.resize(0), ctrl=True),
-    Key(imgui.Key.escape, "Esc", "close what is open, one thing at a time", "", close_one),
-    Key(imgui.Key.q, "Ctrl+Q", "quit", "quit", lambda a: a.quit(), ctrl=True),
+    Key(_K.space, "Space", "play or pause", lambda b: b.session.clock.toggle()),
+    Key(_K.none, ",", "a frame of time back", lambda b: b.undo.step_time(-1), letter=","),
+    Key(_K.none, ".", "a frame of time on", lambda b: b.undo.step_time(1), letter="."),
+    Key(_K.l, "L", "loop time, or no longer", lambda b: b.undo.toggle_loop()),
+    Key(_K._0, "0", "time to 0", lambda b: b.undo.seek(0.0)),
+    Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
+    Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
+    Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
+    Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
+    Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
+    Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
+    Key(_K.s, "S", "save a PNG", lambda b: b.captures.save_picture(), brief="save"),
+    Key(_K.c, "C", "capture: large pictures, films, sheets", lambda b: b.captures.toggle()),
+    Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
+    Key(_K.f2, "F2", "show the lessons, or no longer", lambda b: b.lessons.toggle()),
+    Key(_K.page_down, "PgDn", "a page of the lesson on", lambda b: b.lessons.turn_page(1)),
+    Key(_K.page_up, "PgUp", "a page of the lesson back", lambda b: b.lessons.turn_page(-1)),
+    Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
+    Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
+    Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
+    Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
+    Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
+    Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
+    Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
+    Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
+    Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
+    Key(_K.s, "Ctrl+S", "save values into the sketch", lambda b: b.commands.save_values(), ctrl=True),
+    Key(_K.none, "Ctrl++", _SIZE_KEYS, lambda b: _resize(b, 1), ctrl=True, sign="+"),
+    Key(_K.none, "Ctrl+-", _SIZE_KEYS, lambda b: _resize(b, -1), ctrl=True, sign="-"),
+    Key(_K._0, "Ctrl+0", _SIZE_KEYS, lambda b: _resize(b, 0), ctrl=True),
+    Key(_K.escape, "Esc", "close what is open, one thing at a time", close_one),
+    Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
 )
 
 
-def _sign(actions: Actions) -> str:
-    """Return "+" or "-" where a key for it was pressed since the last frame; else nothing."""
-    for key in _SIGN_KEYS:
+def pressed_sign(sign_held: Callable[[], str]) -> str:
+    """Return "+" or "-" where a key for it was pressed since the last frame; else nothing.
+
+    ``sign_held`` says which of the two a key that is down types on this keyboard.
+    """
+    for key, sign in _SIGN_KEYS.items():
         if imgui.is_key_pressed(key, repeat=True):
-            # In a slow turn it may be up again: then it is taken for what it is on an English keyboard.
-            return actions.sign_held() or _SIGN_KEYS[key]
+            # In a slow frame it may be up again: then it is taken for what it is on an English keyboard.
+            return sign_held() or sign
     return ""
 
 
@@ -98,42 +92,46 @@ _SIGN_KEYS: dict[imgui.Key, str] = {
 }
 
 
-def _step(actions: Actions) -> None:
+def _resize(bench: Bench, by: int) -> None:
+    resize(bench.interface.size, by, bench.notices)
+
+
+def _step(bench: Bench) -> None:
     io = imgui.get_io()
-    actions.problems.step(-1 if io.key_shift or imgui.is_key_released(imgui.Key.mod_shift) else 1)
+    bench.problems.step(-1 if io.key_shift or imgui.is_key_released(imgui.Key.mod_shift) else 1)
 
 
-def act_on_keys(actions: Actions) -> None:
+def act_on_keys(bench: Bench) -> None:
     """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu.
 
     Two belong to neither: Esc, unless it leaves the field itself, and what quits.
     """
     io = imgui.get_io()
-    # In a slow turn Ctrl may come up again together with the key that it was held for.
+    # In a slow frame Ctrl may come up again together with the key that it was held for.
     ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
     shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
     if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
-        actions.quit()
+        bench.window.quit()
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
         if not left_a_field():
-            close_one(actions)
+            close_one(bench)
         return
-    if keeps_keys(actions) or io.want_text_input or io.key_alt:
+    if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
     typed = {chr(letter) for letter in io.input_queue_characters}
-    sign = _sign(actions) if ctrl else ""
+    sign = pressed_sign(bench.window.sign_held) if ctrl else ""
     for key in KEYS:
         if key.sign:
             if key.sign == sign:
-                key.act(actions)
+                key.act(bench)
             continue
         if key.letter:
             if key.letter in typed and not ctrl:
-                key.act(actions)
+                key.act(bench)
             continue
         fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
         if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
-            key.act(actions)
+            key.act(bench)

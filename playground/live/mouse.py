@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.dividers import divider_at, moved
-from playground.live.overlay import Area
+from playground.live.draw import Area
 from playground.workbench.camera_drag import Gesture
 from playground.workbench.framing import moved as moved_by
 from playground.workbench.painting import Painting
@@ -18,8 +18,8 @@ _ROUND = 48  # corners of the circle that shows a brush
 
 
 @dataclass
-class Hand:
-    """The mouse, and what it holds."""
+class PictureMouse:
+    """The mouse over one session's picture."""
 
     session: Session
     painting: Painting

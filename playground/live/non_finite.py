@@ -6,14 +6,13 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.engine.non_finite import NotFinite
 from playground.live import theme
+from playground.live.draw import OVERLAY, Area, button, window, wrapped
 from playground.live.theme import Theme
-from playground.workbench.actions import Actions
-from playground.workbench.non_finite import FiniteWatch, said
+from playground.workbench.non_finite import FiniteWatch, summary
+from playground.workbench.session import Session
 
 _MAGENTA = (1.0, 0.42, 1.0)  # readable on dark ground; the texels themselves are as the map has them
 _RING = 14.0  # [units of scale 1] radius of the mark around the first texel
-
-Area = tuple[float, float, float, float]  # x, y from above, width, height, in the window's units
 
 
 def ref_of(first: NotFinite) -> str:
@@ -31,13 +30,13 @@ def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
     return x + east, y + high - north
 
 
-def draw_not_finite(watch: FiniteWatch, actions: Actions, look: Theme, area: Area) -> None:
+def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Area) -> None:
     """Draw the sentence in the picture's upper left corner; a click goes to the texture and back."""
     if not watch.found:
         return
-    session, first = actions.session, watch.found[0]
+    first, shown = watch.found[0], session.view.map
     ref = ref_of(first)
-    shows = session.view.map is not None and session.view.map.ref == ref
+    shows = shown is not None and shown.ref == ref
     if shows:
         centre = ImVec2(*place_in(first, area))
         draw = imgui.get_background_draw_list()
@@ -47,26 +46,14 @@ def draw_not_finite(watch: FiniteWatch, actions: Actions, look: Theme, area: Are
     imgui.set_next_window_pos(ImVec2(area[0] + margin, area[1] + margin))
     widest = max(min(area[2] - 2 * margin, 460 * look.scale), 80.0)
     imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(widest, area[3]))
-    imgui.push_style_var(imgui.StyleVar_.window_rounding, 6 * look.scale)
-    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.92))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_nav_inputs
-    flags |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
-    flags |= imgui.WindowFlags_.no_focus_on_appearing
-    imgui.begin("not finite", None, flags)
-    imgui.push_text_wrap_pos(widest - 2 * imgui.get_style().window_padding.x)
-    imgui.text_colored(theme.colour(_MAGENTA), said(watch.found))
-    imgui.pop_text_wrap_pos()
-    if len(watch.found) > 1:
+    ground = theme.colour(theme.GROUND, 0.92)
+    with window("not finite", OVERLAY, ground=ground, rounding=6 * look.scale):
+        with wrapped(widest - 2 * imgui.get_style().window_padding.x):
+            imgui.text_colored(theme.colour(_MAGENTA), summary(watch.found))
         imgui.set_item_tooltip("\n".join(map(str, watch.found)))
-    else:
-        imgui.set_item_tooltip(str(first))
-    if shows:
-        if imgui.small_button("Back to the picture"):
-            actions.show(None)
-    elif session.can_show(ref):
-        if imgui.small_button("Show it"):
-            actions.show(ref)
-        imgui.set_item_tooltip("That texture from above, those texels in magenta")
-    imgui.end()
-    imgui.pop_style_color()
-    imgui.pop_style_var()
+        if shows:
+            if button("Back to the picture", small=True):
+                session.show(None)
+        elif session.can_show(ref):
+            if button("Show it", "That texture from above, those texels in magenta", small=True):
+                session.show(ref)

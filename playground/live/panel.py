@@ -15,6 +15,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.live import theme
 from playground.live.brush_panel import draw_paintbox
 from playground.live.cost_panel import draw_costs
+from playground.live.draw import SIDE_PANEL, wrapped
 from playground.live.inspect.map_panel import draw_spread
 from playground.live.keyframe_list import KeyframeList
 from playground.live.keys import KEYS
@@ -25,7 +26,9 @@ from playground.live.pass_sections import Sections
 from playground.live.text_field import await_field
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
-from playground.workbench.actions import Actions
+from playground.workbench.bench import Bench
+from playground.workbench.inspect.toggles import Inspection
+from playground.workbench.session import Session
 
 
 @dataclass
@@ -39,7 +42,7 @@ class Panel:
         self._sections = Sections(self.memory)
         self._keyframes = KeyframeList()
 
-    def draw(self, actions: Actions, look: Theme, left: float = 0.0) -> float:
+    def draw(self, bench: Bench, look: Theme, left: float = 0.0) -> float:
         """Draw the panel over the window's left side; return the width it takes, in the window's units.
 
         ``left``: what is taken there already.
@@ -52,28 +55,25 @@ class Panel:
         imgui.set_next_window_size_constraints(
             ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
         )
-        flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_collapse
-        flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
-        flags |= imgui.WindowFlags_.no_nav_inputs | imgui.WindowFlags_.no_scrollbar
-        imgui.begin("panel", None, flags)
-        if actions.searching:
-            actions.searching, self.memory.focus_search = False, True
-            await_field(actions)
-        draw_head(self.memory, actions, look)
-        sketch = actions.session.sketch
+        imgui.begin("panel", None, SIDE_PANEL)
+        if bench.interface.searching:
+            bench.interface.searching, self.memory.focus_search = False, True
+            await_field(bench.interface.ahead)
+        draw_head(self.memory, bench, look)
+        sketch = bench.session.sketch
         if sketch is not None:
-            draw_paintbox(actions.painting)
-            draw_search(self.memory, actions)
-        footer = _footer_lines(actions.session.orbits)
+            draw_paintbox(bench.painting)
+            draw_search(self.memory, bench.interface.ahead)
+        footer = _footer_lines(bench.session.orbits)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
         imgui.begin_child("sections", ImVec2(0, -_footer_height(footer, look)), 0, bar)
         if sketch is not None:
             if not self.memory.filter:
-                _map(actions, look)
-            self._sections.draw(sketch, actions, look)
+                _map(bench.session, bench.inspection, look)
+            self._sections.draw(sketch, bench, look)
             if not self.memory.filter:
-                self._keyframes.draw(actions, look)
-                draw_costs(sketch, actions, look)
+                self._keyframes.draw(bench.keyframes, look)
+                draw_costs(sketch, bench.session, bench.inspection, look)
         imgui.end_child()
         _footer(footer, look)
         width = imgui.get_window_size().x
@@ -83,20 +83,20 @@ class Panel:
         return width
 
 
-def _map(actions: Actions, look: Theme) -> None:
+def _map(session: Session, inspection: Inspection, look: Theme) -> None:
     """Draw how the map is shown, while there is one."""
-    session = actions.session
-    if session.view.map is None:
+    shown = session.view.map
+    if shown is None:
         return
-    for parameter in session.view.map.kernel.parameters:
-        path, value = f"map.{parameter.name}", session.view.map.value(parameter.name)
+    for parameter in shown.kernel.parameters:
+        path, value = f"map.{parameter.name}", shown.value(parameter.name)
         with row(parameter.title, explanation(parameter, path)):
             changed = draw_value(parameter, value, Place(f"##{path}", look.scale, Path()))
         if changed is not None:
             session.view.set_map(parameter.name, changed)
     if imgui.button("Fit to the values"):
         session.fit_map()
-    draw_spread(actions, look)
+    draw_spread(session, inspection, look)
 
 
 def _footer_lines(orbits: bool) -> tuple[str, str]:
@@ -115,7 +115,6 @@ def _footer_height(lines: tuple[str, str], look: Theme) -> float:
 def _footer(lines: tuple[str, str], look: Theme) -> None:
     imgui.separator()
     with look.font(look.text, theme.SMALL):
-        imgui.push_text_wrap_pos(0)
-        for line in lines:
-            imgui.text_disabled(line)
-        imgui.pop_text_wrap_pos()
+        with wrapped():
+            for line in lines:
+                imgui.text_disabled(line)

@@ -1,4 +1,4 @@
-"""What the panel remembers between two turns: what is searched for, typed, open."""
+"""What the panel remembers between two frames: what is searched for, typed, open."""
 
 from __future__ import annotations
 
@@ -14,15 +14,19 @@ class Memory:
 
     listing: Listing = field(default_factory=Listing)
     filter: Filter = field(default_factory=Filter)
-    focus_search: bool = False  # the keys go to the search from the next turn on
+    focus_search: bool = False  # the search gets the keys in the next frame
     entry: str = ""  # the label of the parameter whose value is typed
     entry_text: str = ""
-    entry_opens: bool = False  # its field has to take the keys
-    held: tuple[str, bool, Value] = ("", False, 0)  # the widget last clicked on: path, by hand, value before
+    entry_opens: bool = False  # its field is to get the keys
+    clicked: tuple[str, bool, Value] = (
+        "",
+        False,
+        0,
+    )  # last clicked on: path, edited, value before
     menu: str = ""  # the label of the parameter whose menu is open
     menu_opens: bool = False
     heights: dict[tuple[str, float], float] = field(default_factory=dict)  # of each row, by path and scale
-    seed: int = 1  # of the next values by chance
+    seed: int = 1  # of the next random values
     strength: float = 0.1  # of a mutation
     everything: bool = False  # random values are for every parameter, not the shape's alone
     preset: str = ""  # the one last chosen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
@@ -14,8 +15,10 @@ from playground.live.text_field import await_field, letters, with_typed_ahead
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
 from playground.sketch.values import write
-from playground.workbench.actions import Actions
+from playground.workbench.interface import TypedAhead
+from playground.workbench.notices import Notices
 from playground.workbench.parameter_list import Item, Values
+from playground.workbench.session import Session
 from playground.workbench.typed_values import read_typed
 
 TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
@@ -25,112 +28,119 @@ _MENU = "parameter"
 _PRESSED = imgui.HoveredFlags_.allow_when_blocked_by_active_item.value  # as while the lock is pressed
 
 
-def draw_parameter(
-    item: Item, values: Values, folder: Path, memory: Memory, actions: Actions, look: Theme
-) -> None:
-    """Draw a parameter, and hand on what a hand made of it; ``folder`` is the sketch's own."""
-    session, path, parameter = actions.session, item.path, item.parameter
-    value, changed = values.of[path], path in values.changed
-    end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
-    top = imgui.get_cursor_screen_pos()
-    with row(item.title, lambda: explanation(parameter, path), edited=changed):
-        if memory.entry == item.label:
-            _entry(item, memory, actions)
-        else:
-            new = draw_value(parameter, value, Place(item.label, look.scale, folder))
-            if parameter.widget.kind in TYPED and imgui.is_item_hovered() and imgui.is_mouse_clicked(0):
-                if _typing(item, values, memory, actions):
+@dataclass(frozen=True)
+class Rows:
+    """What every row of parameters in one frame uses."""
+
+    session: Session
+    notices: Notices
+    memory: Memory
+    ahead: TypedAhead
+    values: Values
+    look: Theme
+
+    def draw(self, item: Item, folder: Path) -> None:
+        """Draw a parameter, and set what the user makes of it; ``folder`` is the sketch's own."""
+        drafts, path, parameter = self.session.drafts, item.path, item.parameter
+        value, changed = self.values.of[path], path in self.values.changed
+        end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
+        top = imgui.get_cursor_screen_pos()
+        with row(item.title, lambda: explanation(parameter, path), edited=changed):
+            if self.memory.entry == item.label:
+                self._entry(item)
+            else:
+                new = draw_value(parameter, value, Place(item.label, self.look.scale, folder))
+                clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
+                if parameter.widget.kind in TYPED and clicked and self._is_typing(item):
                     new = None
-            if new is not None:
-                session.drafts.set(path, new)
-    locked = path in values.locked
-    mouse = imgui.get_mouse_pos()
-    here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered(_PRESSED)
-    if locked or here:
-        imgui.same_line(end - 2 * slot() - 2)
-        if _lock(path, locked, look):
-            session.drafts.lock(path, not locked)
-    if changed:
-        imgui.same_line(end - slot())
-        if cross(f"{item.label}-reset", "Back to the file's value"):
-            session.drafts.unset(path)
-    if here and imgui.is_mouse_clicked(1):
-        memory.menu, memory.menu_opens = item.label, True
+                if new is not None:
+                    drafts.set(path, new)
+        locked = path in self.values.locked
+        mouse = imgui.get_mouse_pos()
+        here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered(_PRESSED)
+        if locked or here:
+            imgui.same_line(end - 2 * slot() - 2)
+            if _lock(path, locked, self.look):
+                drafts.lock(path, not locked)
+        if changed:
+            imgui.same_line(end - slot())
+            if cross(f"{item.label}-reset", "Back to the file's value"):
+                drafts.unset(path)
+        if here and imgui.is_mouse_clicked(1):
+            self.memory.menu, self.memory.menu_opens = item.label, True
 
+    def draw_menu(self, items: dict[str, Item]) -> None:
+        """Draw the menu of the parameter that was right-clicked; ``items`` by their labels."""
+        if self.memory.menu_opens:
+            self.memory.menu_opens = False
+            imgui.open_popup(_MENU)
+        item = items.get(self.memory.menu)
+        if not imgui.begin_popup(_MENU):
+            return
+        if item is not None:
+            drafts, path = self.session.drafts, item.path
+            locked = path in self.values.locked
+            imgui.text_disabled(path)
+            if imgui.menu_item_simple("Type a value", "double click"):
+                self.open_entry(item)
+            if imgui.menu_item_simple("Reset", "", False, path in self.values.changed):
+                drafts.unset(path)
+            if imgui.menu_item_simple("Unlock" if locked else "Lock"):
+                drafts.lock(path, not locked)
+            if imgui.menu_item_simple("Copy as --set"):
+                text = f"--set {path}={write(item.parameter, self.values.of[path])}"
+                imgui.set_clipboard_text(text)
+                self.notices.say(f"copied {text}")
+        imgui.end_popup()
 
-def draw_menu(items: dict[str, Item], values: Values, memory: Memory, actions: Actions) -> None:
-    """Draw the menu of the parameter that was clicked on with the right button; ``items`` by their labels."""
-    if memory.menu_opens:
-        memory.menu_opens = False
-        imgui.open_popup(_MENU)
-    item = items.get(memory.menu)
-    if not imgui.begin_popup(_MENU):
-        return
-    if item is not None:
-        session, path = actions.session, item.path
-        locked = path in values.locked
-        imgui.text_disabled(path)
-        if imgui.menu_item_simple("Type a value", "double click"):
-            open_entry(item, values, memory, actions)
-        if imgui.menu_item_simple("Reset", "", False, path in values.changed):
-            session.drafts.unset(path)
-        if imgui.menu_item_simple("Unlock" if locked else "Lock"):
-            session.drafts.lock(path, not locked)
-        if imgui.menu_item_simple("Copy as --set"):
-            text = write(item.parameter, values.of[path])
-            imgui.set_clipboard_text(f"--set {path}={text}")
-            actions.say(f"copied --set {path}={text}")
-    imgui.end_popup()
+    def open_entry(self, item: Item) -> None:
+        """Begin to type a parameter's value."""
+        await_field(self.ahead)
+        self.memory.entry, self.memory.entry_opens = item.label, True
+        self.memory.entry_text = write(item.parameter, self.values.of[item.path])
 
+    def _is_typing(self, item: Item) -> bool:
+        """Take in a click on a widget; return whether it opens a field to type in.
 
-def open_entry(item: Item, values: Values, memory: Memory, actions: Actions) -> None:
-    """Begin to type a parameter's value."""
-    await_field(actions)
-    memory.entry, memory.entry_opens = item.label, True
-    memory.entry_text = write(item.parameter, values.of[item.path])
+        The first click of a double click has moved the slider already: that is undone.
+        """
+        session, path, ctrl = self.session, item.path, imgui.get_io().key_ctrl
+        if not ctrl and not imgui.is_mouse_double_clicked(0):
+            edited = session.shown is not None and session.shown.edits.has(path)
+            self.memory.clicked = path, edited, self.values.of[path]
+            return False
+        clicked, edited, before = self.memory.clicked
+        self.open_entry(item)
+        if not ctrl and clicked == path:
+            if edited:
+                session.drafts.set(path, before)
+            else:
+                session.drafts.unset(path)
+            self.memory.entry_text = write(item.parameter, before)
+        return True
 
-
-def _typing(item: Item, values: Values, memory: Memory, actions: Actions) -> bool:
-    """Take in a click on a widget; say whether it asks for a field to type in.
-
-    The first click of a double click has moved the slider already: that is taken back.
-    """
-    session, path = actions.session, item.path
-    if not imgui.get_io().key_ctrl and not imgui.is_mouse_double_clicked(0):
-        by_hand = session.shown is not None and session.shown.edits.has(path)
-        memory.held = path, by_hand, values.of[path]
-        return False
-    held, by_hand, before = memory.held
-    open_entry(item, values, memory, actions)
-    if not imgui.get_io().key_ctrl and held == path:
-        if by_hand:
-            session.drafts.set(path, before)
-        else:
-            session.drafts.unset(path)
-        memory.entry_text = write(item.parameter, before)
-    return True
-
-
-def _entry(item: Item, memory: Memory, actions: Actions) -> None:
-    """Draw the field; Enter takes the value, Esc leaves it."""
-    if memory.entry_opens:
-        imgui.set_keyboard_focus_here()
-    flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
-    imgui.set_next_item_width(imgui.calc_item_width())
-    typed = letters()
-    entered, text = imgui.input_text(f"{item.label}-typed", memory.entry_text, flags)
-    memory.entry_text = with_typed_ahead(actions, text, memory.entry_text, typed)
-    opened, memory.entry_opens = memory.entry_opens, False
-    if opened:
-        return
-    left = imgui.is_item_deactivated()
-    if entered or (left and not imgui.is_key_pressed(imgui.Key.escape)):
-        try:
-            actions.session.drafts.set(item.path, read_typed(item.parameter, memory.entry_text, item.path))
-        except ParameterError as error:
-            actions.say(str(error))
-    if entered or left:
-        memory.entry = ""
+    def _entry(self, item: Item) -> None:
+        """Draw the field; Enter takes the value, Esc leaves it."""
+        memory = self.memory
+        if memory.entry_opens:
+            imgui.set_keyboard_focus_here()
+        flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
+        imgui.set_next_item_width(imgui.calc_item_width())
+        typed = letters()
+        entered, text = imgui.input_text(f"{item.label}-typed", memory.entry_text, flags)
+        memory.entry_text = with_typed_ahead(self.ahead, text, memory.entry_text, typed)
+        opened, memory.entry_opens = memory.entry_opens, False
+        if opened:
+            return
+        left = imgui.is_item_deactivated()
+        if entered or (left and not imgui.is_key_pressed(imgui.Key.escape)):
+            try:
+                value = read_typed(item.parameter, memory.entry_text, item.path)
+                self.session.drafts.set(item.path, value)
+            except ParameterError as error:
+                self.notices.say(str(error))
+        if entered or left:
+            memory.entry = ""
 
 
 def _lock(path: str, locked: bool, look: Theme) -> bool:
@@ -140,8 +150,8 @@ def _lock(path: str, locked: bool, look: Theme) -> bool:
     clicked = imgui.invisible_button(f"lock {path}", ImVec2(side, high))
     hovered = imgui.is_item_hovered()
     if hovered:
-        what = "Locked: chance, presets, resets and reloads leave it. Click to unlock"
-        imgui.set_tooltip(what if locked else "Lock: chance, presets, resets and reloads leave it")
+        what = "Locked: randomising, presets, resets and reloads leave it. Click to unlock"
+        imgui.set_tooltip(what if locked else "Lock: randomising, presets, resets and reloads leave it")
     ink = theme.WARM if locked else theme.INK if hovered else theme.DIM
     unit, draw = look.scale, imgui.get_window_draw_list()
     x, y = corner.x + side / 2, corner.y + high / 2

@@ -14,7 +14,7 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.overlay import Area
+from playground.live.draw import Area
 from playground.live.theme import Theme
 from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,35 +10,43 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import counted
 from playground.live import theme
+from playground.live.draw import choose, inked, pushed_id
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import cross, fitting_choice, row, slot
-from playground.live.parameter_row import draw_menu, draw_parameter
+from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.sketch.model import PassSpec, Sketch, kernels_of
 from playground.sketch.replace_technique import choices
-from playground.workbench.actions import Actions
-from playground.workbench.open_source import editor_name, open_source
-from playground.workbench.parameter_list import Group, Item, Section, Values, in_words
+from playground.workbench.bench import Bench
+from playground.workbench.commands import Commands
+from playground.workbench.edits import Draft
+from playground.workbench.open_files import OpenFiles, editor_name
+from playground.workbench.parameter_list import Group, Item, Section, in_words
+from playground.workbench.session import Session
+
+_TALL = imgui.ComboFlags_.height_large.value
 
 
 @dataclass
 class Sections:
-    """The list of passes; what may fill each is worked out once."""
+    """The list of passes; what may fill each is computed once."""
 
     memory: Memory
     _choices: dict[str, list[str]] = field(default_factory=dict)
     _choices_of: Sketch | None = None
 
-    def draw(self, sketch: Sketch, actions: Actions, look: Theme) -> None:
+    def draw(self, sketch: Sketch, bench: Bench, look: Theme) -> None:
         """Draw every pass, or what a search has found of them."""
-        draft, memory = actions.session.shown, self.memory
+        session, memory = bench.session, self.memory
+        draft = session.shown
         if draft is None:
             return
         values, found = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
         if memory.filter and not found:
             imgui.text_disabled("no parameter is like that")
-        drawing = _Drawing(Path(sketch.folder), values, memory, actions, look)
+        rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look)
+        drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files)
         main = memory.listing.main(draft) if not memory.filter else ()
         if main:
             drawing.main(main)
@@ -46,57 +55,58 @@ class Sections:
             if memory.filter and section is None:
                 continue
             imgui.spacing()
-            imgui.push_id(spec.name)
-            revealed = actions.reveal == spec.name
-            if revealed:
-                actions.reveal = ""
-                imgui.set_scroll_here_y(0.0)
-            if memory.filter or revealed:
-                imgui.set_next_item_open(True)
-            if drawing.header(spec, section, opened=not sketch.main):
-                if not memory.filter:
-                    self._technique(spec, actions)
-                    _steps(spec, actions)
-                if section is not None:
-                    drawing.section(section)
-            imgui.pop_id()
+            with pushed_id(spec.name):
+                revealed = bench.interface.reveal == spec.name
+                if revealed:
+                    bench.interface.reveal = ""
+                    imgui.set_scroll_here_y(0.0)
+                if memory.filter or revealed:
+                    imgui.set_next_item_open(True)
+                if drawing.header(spec, section, opened=not sketch.main):
+                    if not memory.filter:
+                        self._technique(spec, draft, session)
+                        _steps(spec, session)
+                    if section is not None:
+                        drawing.section(section)
         if memory.menu:
             items = {item.label: item for section in found.values() for item in section.items}
-            items |= {item.label: item for item in main}
-            draw_menu(items, values, memory, actions)
+            rows.draw_menu(items | {item.label: item for item in main})
 
-    def _technique(self, spec: PassSpec, actions: Actions) -> None:
-        draft = actions.session.shown
-        chosen = draft is not None and any(n == spec.name for n, _ in draft.edits.techniques)
+    def _technique(self, spec: PassSpec, draft: Draft, session: Session) -> None:
+        chosen = any(name == spec.name for name, _ in draft.edits.techniques)
         title = spec.technique.title
         note = f"What fills this pass\n{title}" if title else "What fills this pass"
         with row("Technique", note, edited=chosen):
-            # Only an open list is worked out: it reads every technique there is.
-            if imgui.begin_combo("##use", _use_name(spec.use), imgui.ComboFlags_.height_large):
-                for use in self._choices_for(spec.name, actions):
-                    if imgui.selectable(use, use == spec.use)[0]:
-                        actions.session.drafts.choose(spec.name, use)
-                imgui.end_combo()
+            # The options are computed in an open list only: that reads every technique there is.
+            options = (use for use in self._choices_for(spec.name, draft))
+            use = choose("##use", _use_name(spec.use), options, spec.use, flags=_TALL)
+            if use is not None:
+                session.drafts.choose(spec.name, use)
 
-    def _choices_for(self, name: str, actions: Actions) -> list[str]:
-        draft = actions.session.shown
-        assert draft is not None
+    def _choices_for(self, name: str, draft: Draft) -> Iterator[str]:
         if self._choices_of is not draft.base:
             self._choices_of, self._choices = draft.base, {}
         if name not in self._choices:
             self._choices[name] = choices(draft.base, name)
-        return self._choices[name]
+        yield from self._choices[name]
 
 
 @dataclass
 class _Drawing:
-    """What every row of one turn needs."""
+    """What every section in one frame uses."""
 
     folder: Path
-    values: Values
-    memory: Memory
-    actions: Actions
-    look: Theme
+    rows: Rows
+    commands: Commands
+    files: OpenFiles
+
+    @property
+    def memory(self) -> Memory:
+        return self.rows.memory
+
+    @property
+    def look(self) -> Theme:
+        return self.rows.look
 
     def main(self, items: tuple[Item, ...]) -> None:
         """Draw the parameters that the sketch is about, under a bar of their own."""
@@ -114,7 +124,8 @@ class _Drawing:
 
         ``opened``: whether it is open as long as nobody has clicked on it.
         """
-        engine, look = self.actions.session.engine, self.look
+        session, look = self.rows.session, self.look
+        engine = session.engine
         mine = [path for path in engine.runs if path == spec.name or path.startswith(f"{spec.name}.")]
         ran = any(path in mine for path in engine.ran)
         flags = imgui.TreeNodeFlags_.allow_overlap
@@ -124,8 +135,7 @@ class _Drawing:
             unfolded = imgui.collapsing_header(f"{in_words(spec.name)}###pass", flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text = counted(sum(engine.runs[path] for path in mine), "run")
-        times = self.actions.session.times
-        spent = [times[path] for path in mine if path in times]
+        spent = [session.times[path] for path in mine if path in session.times]
         if engine.profiling and spent:
             text = f"{sum(spent):.1f} ms    {text}"
         size = imgui.calc_text_size(text)
@@ -136,7 +146,7 @@ class _Drawing:
             imgui.set_tooltip(
                 "How often its kernels ran; green: for this very picture\nRight click: its files"
             )
-        _files(spec, self.actions)
+        _files(spec, self.files)
         if section is not None:
             self._reset(spec.name, section.items)
         return bool(unfolded)
@@ -167,78 +177,74 @@ class _Drawing:
                 imgui.set_next_item_open(True)
             flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
             flags |= imgui.TreeNodeFlags_.allow_overlap | imgui.TreeNodeFlags_.no_tree_push_on_open
-            imgui.push_style_color(imgui.Col_.text, theme.colour(theme.DIM))
-            opened = imgui.tree_node_ex(f"{group.name}###{where} {group.name}", flags)
-            imgui.pop_style_color()
+            with inked(theme.DIM):
+                opened = imgui.tree_node_ex(f"{group.name}###{where} {group.name}", flags)
             self._reset(group.name, group.items)
             if opened:
                 self._rows(group)
 
     def _rows(self, group: Group) -> None:
-        """Draw parameters. One that is out of sight leaves only its room, unless a hand holds something."""
-        heights, held = self.memory.heights, imgui.is_any_item_active()
+        """Draw parameters. One that is scrolled away leaves only its room, unless a widget is in use."""
+        heights, used = self.memory.heights, imgui.is_any_item_active()
         top = imgui.get_window_pos().y
         bottom = top + imgui.get_window_height()
         for item in group.items:
             y = imgui.get_cursor_screen_pos().y
             high = heights.get((item.path, self.look.scale))
-            if high is not None and not held and (y > bottom or y + high < top):
+            if high is not None and not used and (y > bottom or y + high < top):
                 imgui.dummy(ImVec2(1, high))
                 continue
-            draw_parameter(item, self.values, self.folder, self.memory, self.actions, self.look)
+            self.rows.draw(item, self.folder)
             gap = imgui.get_style().item_spacing.y
             heights[item.path, self.look.scale] = imgui.get_cursor_screen_pos().y - y - gap
 
     def _reset(self, name: str, items: tuple[Item, ...]) -> None:
         """Draw a reset at the end of the line, where one of the parameters is changed."""
-        paths = [item.path for item in items if item.path in self.values.changed]
+        paths = [item.path for item in items if item.path in self.rows.values.changed]
         if not paths:
             return
         high = imgui.get_item_rect_size().y
         imgui.same_line(imgui.get_window_width() - imgui.get_style().scrollbar_size - slot())
         note = f"{counted(len(paths), 'parameter')} back to the file's values"
         if cross(f"##reset {name}", note, high):
-            self.actions.reset(name, paths)
+            self.commands.reset(name, paths)
 
 
-def _files(spec: PassSpec, actions: Actions) -> None:
+def _files(spec: PassSpec, files: OpenFiles) -> None:
     """Draw the menu of a pass, under its bar: its files, to be opened in an editor."""
     if not imgui.begin_popup_context_item("files"):
         return
     imgui.text_disabled(f"Files of {spec.name}")
     for file in dict.fromkeys(f for _, kernel in kernels_of(spec.technique) for f in kernel.files if f):
-        imgui.push_id(file)
-        if imgui.menu_item_simple(f"Edit {Path(file).name}", editor_name()):
-            open_source(actions, Path(file))
-        imgui.set_item_tooltip(file)
-        if editor_name() and imgui.menu_item_simple(f"Edit {Path(file).name} here"):
-            open_source(actions, Path(file), here=True)
-        imgui.pop_id()
+        with pushed_id(file):
+            if imgui.menu_item_simple(f"Edit {Path(file).name}", editor_name()):
+                files.open(Path(file))
+            imgui.set_item_tooltip(file)
+            if editor_name() and imgui.menu_item_simple(f"Edit {Path(file).name} here"):
+                files.open(Path(file), here=True)
     imgui.end_popup()
 
 
-def _steps(spec: PassSpec, actions: Actions) -> None:
-    """Draw a slider over the turns of each repeat in a pass."""
-    session = actions.session
+def _steps(spec: PassSpec, session: Session) -> None:
+    """Draw a slider over the steps of each repeat in a pass."""
+    steps = session.view.steps
     mine = {
         path: whole
         for path, whole in session.repeats.items()
         if whole > 0 and (path == spec.name or path.startswith(f"{spec.name}."))
     }
     for path, whole in mine.items():
-        turn = session.view.steps.get(path, whole)
         label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
-        note = f"How many of its {counted(whole, 'turn')} {path} has taken; Ctrl+click to type a number"
-        with row(label, note, edited=path in session.view.steps):
+        note = f"How many of its {counted(whole, 'step')} {path} has run; Ctrl+click to type a number"
+        with row(label, note, edited=path in steps):
 
-            def words(now: int, last: int = whole) -> str:
+            def text(now: int, last: int = whole) -> str:
                 return f"all {now}" if now == last else str(now)
 
-            chosen = slide_whole(f"##steps of {path}", turn, (0, whole), words)
+            chosen = slide_whole(f"##steps of {path}", steps.get(path, whole), (0, whole), text)
             if chosen is not None:
                 session.stop_at(path, chosen)
-    stopped = any(path in session.view.steps for path in mine)
-    if stopped and any(k.between for _, k in kernels_of(spec.technique)):
+    if any(path in steps for path in mine) and any(k.between for _, k in kernels_of(spec.technique)):
         with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
             changed, on = imgui.checkbox("##interpolated", session.view.interpolated)
             if changed:

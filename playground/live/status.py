@@ -19,7 +19,8 @@ from playground.engine.non_finite import NotFinite
 from playground.live.code_window import typing
 from playground.live.escape_layers import open_layers
 from playground.live.overlay import PATIENCE
-from playground.workbench.actions import Actions
+from playground.workbench.bench import Bench
+from playground.workbench.session import Session
 from playground.workbench.text_file import unsaved
 
 VARIABLE = "PLAYGROUND_STATUS"
@@ -38,41 +39,41 @@ class Status:
         """Return the status that the environment asks for."""
         return cls(os.environ.get(VARIABLE))
 
-    def write(self, actions: Actions, not_finite: Sequence[NotFinite] = ()) -> None:
+    def write(self, bench: Bench, not_finite: Sequence[NotFinite] = ()) -> None:
         """Add a line if anything is new."""
         if self.path is None:
             return
-        session = actions.session
+        session = bench.session
         checking = session.drafts.checking or ("", 0.0)
         now = {
             "draws": session.draws,
-            "picture": self._hash(actions),
+            "picture": self._hash(bench.session),
             "error": str(session.error) if session.error else "",
             "stage": session.drafts.stage.name,
-            "notices": [n.text for n in actions.notices],
+            "notices": [n.text for n in bench.notices.items],
             "playing": session.clock.playing,
-            "typing": typing(actions),
+            "typing": typing(bench.files.editing),
             "takes_text": imgui.get_io().want_text_input,
-            "unsaved": unsaved(actions.editing),
+            "unsaved": unsaved(bench.files.editing),
             "map": session.view.map.ref if session.view.map else "",
             "steps": dict(session.view.steps),
-            "saved": str(actions.saved or ""),
+            "saved": str(bench.captures.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(found) for found in not_finite],
             "runs": dict(session.engine.runs),
             "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": checking[0] if checking[1] >= PATIENCE else "",
-            "layers": open_layers(actions),
+            "layers": open_layers(bench),
         }
         if now != self._last:
             self._last = now
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(now) + "\n")
 
-    def _hash(self, actions: Actions) -> str:
-        draws = actions.session.draws
+    def _hash(self, session: Session) -> str:
+        draws = session.draws
         if self._hashed[0] != draws:
-            frame = actions.session.read()
+            frame = session.read()
             digest = hashlib.blake2b(frame.array.tobytes(), digest_size=8).hexdigest() if frame else ""
             self._hashed = (draws, digest)
         return self._hashed[1]

@@ -12,8 +12,11 @@ TEXT_SIZE = 15.0
 SMALL = 13.0
 PANEL_WIDTH = 330.0
 
+Rgb = tuple[float, float, float]
+"""A display-encoded colour, 0..1."""
+
 ACCENT = (0.47, 0.71, 0.47)  # the green of a meadow: what is set, what is active
-WARM = (0.93, 0.72, 0.38)  # what was changed by hand
+WARM = (0.93, 0.72, 0.38)  # what the user has edited
 ALARM = (0.98, 0.52, 0.45)
 DIM = (0.56, 0.60, 0.62)
 INK = (0.88, 0.90, 0.92)
@@ -65,12 +68,12 @@ def _font(first: Path, *others: Path) -> imgui.ImFont:
     return font
 
 
-def colour(rgb: tuple[float, float, float], alpha: float = 1.0) -> ImVec4:
+def colour(rgb: Rgb, alpha: float = 1.0) -> ImVec4:
     """Return a display-encoded colour, as imgui takes it."""
     return ImVec4(*rgb, alpha)
 
 
-def packed(rgb: tuple[float, float, float], alpha: float = 1.0) -> int:
+def packed(rgb: Rgb, alpha: float = 1.0) -> int:
     """Return a display-encoded colour, as imgui's draw lists take it."""
     return int(imgui.color_convert_float4_to_u32(ImVec4(*rgb, alpha)))
 

@@ -1,4 +1,4 @@
-"""A sketch laid flat: its passes, their texts, and what is set; written out as files it is a sketch again.
+"""A sketch inlined: its passes, their texts, and what is set; written out as files it is a sketch again.
 
 What a text no longer declares is neither set nor wired, and a pass that nothing leads to
 is not written, so any line may be taken out of a text without touching the rest.
@@ -35,8 +35,8 @@ class Pass:
     variant: str = ""  # text of the compute variant that runs in its place
     inputs: tuple[tuple[str, str], ...] = ()  # input → "pass:output"
     values: tuple[tuple[str, Value], ...] = ()  # parameter → value
-    size: tuple[int, int] | None = None  # texels; None: the land's
-    repeat: int = 0  # turns of a pass that feeds itself; 0: it does not
+    size: tuple[int, int] | None = None  # texels; None: the terrain's
+    repeat: int = 0  # steps of a pass that feeds itself; 0: it does not
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     suffix: str = ".glsl"
 
@@ -65,7 +65,7 @@ class Case:
 
     passes: tuple[Pass, ...]
     target: str  # the pass that is looked at; "view": it is the picture itself
-    size: tuple[int, int] = (33, 33)  # [texels] of the land
+    size: tuple[int, int] = (33, 33)  # [texels] of the terrain
     extent: tuple[float, float] | None = None  # [m]
     relief: float | None = None  # [m]
     base_elevation: float | None = None  # [m]
@@ -153,7 +153,7 @@ class Case:
         if self.time:
             lines.append(f"time = {spelt(self.time)}")
         names = {one.name for one in self.live}
-        steps = [f"{path} = {turns}" for path, turns in self.steps if path in names]
+        steps = [f"{path} = {steps}" for path, steps in self.steps if path in names]
         if steps:
             lines.append(f"steps = {{ {', '.join(steps)} }}")
         return "\n".join(lines) + "\n"

@@ -33,7 +33,7 @@ LITERALS_WITHOUT_ZERO = ("1.0", "1", "true", "false")
 Edit = tuple[int, int, tuple[str, ...]]
 """From which token to which, and what takes their place."""
 
-_ASKED_FOR = frozenset("kernel visit vertex fragment main".split())
+_ENTRY_POINTS = frozenset("kernel visit vertex fragment main".split())
 _TYPES = frozenset(
     "void bool int uint float vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4"
     " mat2 mat3 mat4 const in out inout struct sampler2D flat highp mediump lowp precise".split()
@@ -264,7 +264,12 @@ def parameters_of_functions(text: str) -> Iterator[str]:
     for index in range(1, len(tokens) - 1):
         name, close = tokens[index], pairs.get(index + 1, -1)
         defined = tokens[index + 1] == "(" and close > 0 and tokens[close + 1 : close + 2] == ["{"]
-        if not defined or not is_word(name) or not is_word(tokens[index - 1]) or name in _ASKED_FOR | CONTROL:
+        if (
+            not defined
+            or not is_word(name)
+            or not is_word(tokens[index - 1])
+            or name in _ENTRY_POINTS | CONTROL
+        ):
             continue
         count = len(_arguments(tokens, index + 1, pairs))
         places = [i for i in range(len(tokens) - 1) if tokens[i] == name and tokens[i + 1] == "("]
@@ -280,7 +285,7 @@ def parameters_of_functions(text: str) -> Iterator[str]:
 
 
 def headers(text: str) -> Iterator[str]:
-    """Yield the text with one option less in its pragma, one turn in place of many, or less annotation."""
+    """Yield the text with one option less in its pragma, one step in place of many, or less annotation."""
     lines = text.split("\n")
     for number, line in enumerate(lines):
         for shorter in _shorter_header(line):
@@ -293,8 +298,8 @@ def _shorter_header(line: str) -> Iterator[str]:
             if match.group(1) not in ("output", "mesh"):
                 yield line[: match.start()] + line[match.end() :]
             if match.group(1) == "repeat" and match.group(2) not in ('"1"', '"2"'):
-                for turns in ("1", "2"):
-                    yield f'{line[: match.start(2)]}"{turns}"{line[match.end(2) :]}'
+                for steps in ("1", "2"):
+                    yield f'{line[: match.start(2)]}"{steps}"{line[match.end(2) :]}'
     found = _UNIFORM.match(line)
     if found is None:
         return

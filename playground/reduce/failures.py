@@ -1,6 +1,6 @@
 """What counts as failing, and as failing in the same way.
 
-A candidate that fails in another way is no smaller form of what was asked about: taking
+A candidate that fails in another way is no smaller form of the failure in question: taking
 out a line that kept a divisor from zero makes a NaN of its own. So each failure says of
 what came of a candidate what it found there, and whether that is the same.
 """

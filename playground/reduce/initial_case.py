@@ -30,7 +30,7 @@ from playground.reduce.failures import (
     Refused,
     Side,
 )
-from playground.reduce.inline import lay_flat
+from playground.reduce.inline import inline_sketch
 from playground.reduce.probe import Probe
 from playground.shots.compare import TOLERANCE
 from playground.shots.suite import ShotCase, check
@@ -42,7 +42,7 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """What fails, as it was asked."""
+    """What fails, as it was question."""
 
     sketch: Sketch
     kind: str = ""  # one of KINDS
@@ -64,7 +64,7 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
+class InitialCase:
     """A case that fails, and what tries others."""
 
     case: Case
@@ -83,27 +83,31 @@ class CandidateBench:
         self.processes: list[CandidateProcess] = []
 
     def __enter__(self) -> CandidateBench:
-        asked = self.question
+        question = self.question
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="playground-reduce-")))
-        make = {"software": asked.software, "limit": asked.limit}
-        self.processes = [self._stack.enter_context(CandidateProcess(device=asked.device, **make))]  # type: ignore[arg-type]
-        if asked.kind == "against":
-            device = asked.device if asked.other_device is None else asked.other_device
-            other = CandidateProcess(device=device, environment=asked.environment, **make)  # type: ignore[arg-type]
+        make = {"software": question.software, "limit": question.limit}
+        self.processes = [self._stack.enter_context(CandidateProcess(device=question.device, **make))]  # type: ignore[arg-type]
+        if question.kind == "against":
+            device = question.device if question.other_device is None else question.other_device
+            other = CandidateProcess(device=device, environment=question.environment, **make)  # type: ignore[arg-type]
             self.processes.append(self._stack.enter_context(other))
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def begin(self) -> Beginning:
+    def begin(self) -> InitialCase:
         """Return the case to shrink; raise ``DataError`` where nothing fails, or only sometimes."""
-        asked = self.question
-        sketch = asked.sketch.for_shot(asked.sketch.shot(asked.shot)) if asked.shot else asked.sketch
-        case = lay_flat(sketch, frame=asked.frame, time=asked.time, steps=dict(asked.steps))
+        question = self.question
+        sketch = (
+            question.sketch.for_shot(question.sketch.shot(question.shot))
+            if question.shot
+            else question.sketch
+        )
+        case = inline_sketch(sketch, frame=question.frame, time=question.time, steps=dict(question.steps))
         refused = ""
         for failure, candidate in self._possible(case):
-            probe = Probe(failure, self.processes, self._folder, asked.limit)
+            probe = Probe(failure, self.processes, self._folder, question.limit)
             finding = probe.find(candidate)
             refused = refused or probe.refused
             if finding is None:
@@ -112,23 +116,23 @@ class CandidateBench:
             again = probe.find(candidate)
             if again is None or not failure.same(finding, again):
                 raise DataError(f"it fails only sometimes ({finding.kind}): one try proves nothing")
-            if asked.kind == "command":
-                return Beginning(candidate, finding, probe, ())
+            if question.kind == "command":
+                return InitialCase(candidate, finding, probe, ())
             renderers = tuple(self.processes[number].info for number in range(len(self.processes)))
-            return Beginning(candidate, finding, probe, renderers)
+            return InitialCase(candidate, finding, probe, renderers)
         if refused:
-            raise DataError(f"{asked.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
-        raise DataError(_nothing(asked))
+            raise DataError(f"{question.sketch.name} cannot be drawn, and so cannot be judged: {refused}")
+        raise DataError(_nothing(question))
 
     def _possible(self, case: Case) -> Iterator[tuple[FailureKind, Case]]:
         """Yield what may be the failure, and where, in the order in which it is looked for."""
-        asked = self.question
-        if asked.kind == "command":
-            yield Commanded(asked.command), self._chosen(case)[-1]
-        elif asked.kind == "shot":
+        question = self.question
+        if question.kind == "command":
+            yield Commanded(question.command), self._chosen(case)[-1]
+        elif question.kind == "shot":
             yield self._off_reference(), case
-        elif asked.kind:
-            for failure in self._failures(asked.kind):
+        elif question.kind:
+            for failure in self._failures(question.kind):
                 yield from ((failure, one) for one in self._chosen(case))
         else:
             # A pass may fail in any way before the next is drawn, which may take long.
@@ -137,7 +141,7 @@ class CandidateBench:
             yield from ((failure, one) for failure in self._failures("drivers") for one in self._chosen(case))
 
     def _chosen(self, case: Case) -> list[Case]:
-        """Return the case looking at each pass in turn, or at the one that was asked for."""
+        """Return the case looking at each pass in turn, or at the one that was named."""
         names = [one.name for one in case.passes]
         if not self.question.path:
             return [case.looking_at(name) for name in names]
@@ -148,39 +152,42 @@ class CandidateBench:
         return [case.looking_at(name) for name in inside]
 
     def _failures(self, kind: str) -> list[FailureKind]:
-        asked = self.question
+        question = self.question
         if kind == "against":
-            driver = asked.driver or "auto"
-            names = ("here", " ".join(f"{k}={v}" for k, v in asked.environment.items()) or "the other device")
-            return [Differs((Side(0, driver), Side(1, driver)), names, asked.tolerance)]
+            driver = question.driver or "auto"
+            names = (
+                "here",
+                " ".join(f"{k}={v}" for k, v in question.environment.items()) or "the other device",
+            )
+            return [Differs((Side(0, driver), Side(1, driver)), names, question.tolerance)]
         compute = self.processes[0].info.compute
         if kind == "drivers":
             if not compute:
-                if asked.kind:
+                if question.kind:
                     opengl = self.processes[0].info.opengl
                     raise DataError(f"this context is {opengl}; the compute driver needs 4.3")
                 return []
             sides = (Side(0, FRAGMENT), Side(0, COMPUTE))
-            return [Differs(sides, (FRAGMENT, COMPUTE), asked.tolerance)]
-        drivers = [asked.driver] if asked.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
+            return [Differs(sides, (FRAGMENT, COMPUTE), question.tolerance)]
+        drivers = [question.driver] if question.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
         if kind == "nan":
-            return [NotFinite(driver, asked.anywhere) for driver in drivers]
+            return [NotFinite(driver, question.anywhere) for driver in drivers]
         if kind == "error":
-            return [Refused(asked.pattern, driver) for driver in drivers]
-        word = kind if asked.kind else ""  # a hang counts too where nothing was asked for
+            return [Refused(question.pattern, driver) for driver in drivers]
+        word = kind if question.kind else ""  # a hang counts too where no kind was named
         return [Died(word, driver) for driver in drivers]
 
     def _off_reference(self) -> FailureKind:
-        asked = self.question
-        shot = asked.sketch.shot(asked.shot)
+        question = self.question
+        shot = question.sketch.shot(question.shot)
         process = self.processes[0]
-        shown = asked.sketch.for_shot(shot)
-        steps = tuple(asked.steps.items())
+        shown = question.sketch.for_shot(shot)
+        steps = tuple(question.steps.items())
         result = process.draw(
             DrawTask(
                 sketch=shown,
                 ref="",
-                driver=asked.driver or "auto",
+                driver=question.driver or "auto",
                 frame=shot.size,
                 time=shot.time,
                 steps=steps,
@@ -188,8 +195,8 @@ class CandidateBench:
         )
         if result.values is None:
             raise DataError(f"shot '{shot.name}' gives no picture: {result.details.splitlines()[0]}")
-        case = ShotCase(asked.sketch, shot)
-        outcome = check(case, Frame(result.values, asked.sketch.name, shot.time), process.info)
+        case = ShotCase(question.sketch, shot)
+        outcome = check(case, Frame(result.values, question.sketch.name, shot.time), process.info)
         if outcome.reference is None:
             raise DataError(
                 f"shot '{shot.name}' has no reference for {process.info.slug}: nothing to differ from"
@@ -199,16 +206,16 @@ class CandidateBench:
         failure = OffReference(result.values, [outcome.reference.pixels], TOLERANCE)
         if not failure.wrong.any():
             raise DataError(f"shot '{shot.name}' fails, but no pixel is off by more than {TOLERANCE} of 255")
-        failure.sides = (Side(0, asked.driver or "auto"),)
+        failure.sides = (Side(0, question.driver or "auto"),)
         return failure
 
 
-def _nothing(asked: Question) -> str:
-    """Say that nothing fails, in the words of what was asked."""
-    name = asked.sketch.name
-    if asked.kind == "shot":
+def _nothing(question: Question) -> str:
+    """Say that nothing fails, in the words of what was question."""
+    name = question.sketch.name
+    if question.kind == "shot":
         return (
-            f"shot '{asked.shot}' of {name} is off its reference, but not once its techniques are laid flat;"
+            f"shot '{question.shot}' of {name} is off its reference, but not once its techniques are inlined;"
             " a compute shader that stands for a whole technique may be the cause: try --driver fragment"
         )
     nothing = {
@@ -216,9 +223,9 @@ def _nothing(asked: Question) -> str:
         "drivers": "both drivers give the same",
         "against": "both sides give the same",
         "nan": "every value of every pass is finite",
-        "error": f"the compiler refuses nothing with a message that {asked.pattern!r} finds",
+        "error": f"the compiler refuses nothing with a message that {question.pattern!r} finds",
         "crash": "the driver does not crash",
-        "hang": f"nothing takes longer than {asked.limit:g} s",
+        "hang": f"nothing takes longer than {question.limit:g} s",
         "command": "the command says that all is well",
-    }[asked.kind]
+    }[question.kind]
     return f"{name} does not fail: {nothing}"

@@ -1,4 +1,4 @@
-"""Lay a loaded sketch flat: techniques of several passes become passes, includes become text."""
+"""Inline a loaded sketch: techniques of several passes become passes, includes become text."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
 _CONDITION = re.compile(r"\s*#\s*(if|ifdef|ifndef|else|elif|endif)\b")
 
 
-def lay_flat(
+def inline_sketch(
     sketch: Sketch, *, frame: tuple[int, int], time: float = 0.0, steps: dict[str, int] | None = None
 ) -> Case:
     """Return the sketch as a case that looks at its picture.
 
     Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and
-    ``SketchError`` for a loop of several passes, which has no place in a flat sketch.
+    ``SketchError`` for a loop of several passes, which has no place in an inlined sketch.
     """
     plan = make_plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     if len(leaves) == 1 and leaves[0].kernel.kind.startswith("plain"):
         return _plain(leaves[0], plan)
-    maker = _Maker(plan, leaves[-1].path)
-    passes = tuple(maker.one(node) for node in plan.nodes)
+    inliner = _Inliner(plan, leaves[-1].path)
+    passes = tuple(inliner.one(node) for node in plan.nodes)
     land = plan.terrain
     assert land.size is not None and land.extent is not None
     return Case(
@@ -49,8 +49,8 @@ def lay_flat(
         samples=sketch.samples,
         frame=frame,
         time=time,
-        steps=tuple((maker.name(path), turns) for path, turns in plan.steps.items()),
-        files=tuple(maker.files.items()),
+        steps=tuple((inliner.name(path), steps) for path, steps in plan.steps.items()),
+        files=tuple(inliner.files.items()),
     )
 
 
@@ -62,7 +62,7 @@ def _plain(step: Step, plan: Plan) -> Case:
     return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)
 
 
-class _Maker:
+class _Inliner:
     def __init__(self, plan: Plan, last: str) -> None:
         self.plan = plan
         self.last = last
@@ -78,32 +78,32 @@ class _Maker:
         repeat = 0
         feedback: tuple[tuple[str, str], ...] = ()
         step = node
-        firsts: dict[str, Source | None] = {}
+        initial: dict[str, Source | None] = {}
         if isinstance(node, LoopStep):
             inside = node.body[0]
             if len(node.body) != 1 or isinstance(inside, LoopStep):
                 raise SketchError(
-                    f"pass '{node.path}' is a loop of several passes, which cannot be laid flat;"
+                    f"pass '{node.path}' is a loop of several passes, which cannot be inlined;"
                     " reduce one of its kernels alone"
                 )
             repeat, step = node.repeat, inside
             feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
-            firsts = {name: first for name, first, _ in node.feedback}
+            initial = {name: first for name, first, _ in node.feedback}
         assert isinstance(step, Step)
         variant = standing(step.kernel, ("compute",))
         text = written(step.kernel)
-        beside = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
+        variant_text = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
         inputs = []
         for name, source in step.inputs:
-            first = firsts.get(name, source)
+            first = initial.get(name, source)
             if isinstance(first, Ref):
                 inputs.append((name, f"{self.name(first.path)}:{first.output}"))
             elif not name.startswith("initial"):
-                text, beside = unwired(text, name), unwired(beside, name)
+                text, variant_text = unwired(text, name), unwired(variant_text, name)
         return Pass(
             name=self.name(step.path),
             text=text,
-            variant=beside,
+            variant=variant_text,
             inputs=tuple(inputs),
             values=tuple(
                 (name, self._value(step.kernel, name, value)) for name, value in step.values.items()
@@ -146,7 +146,7 @@ def _lines(source: SourceText) -> list[str]:
 def _without_guards(lines: list[str]) -> list[str]:
     """Leave out include guards, and what they keep from standing twice."""
     found: list[str] = []
-    results: set[str] = set()
+    guards: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
     skip_define = ""
     for index, line in enumerate(lines):
@@ -158,12 +158,12 @@ def _without_guards(lines: list[str]) -> list[str]:
         guard = _IFNDEF.match(line)
         following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
         if word.startswith("if"):
-            if guard and guard.group(1) in results:
+            if guard and guard.group(1) in guards:
                 stack.append("twice")
                 continue
             if guard and following and following.group(1) == guard.group(1):
                 stack.append("guard")
-                results.add(guard.group(1))
+                guards.add(guard.group(1))
                 skip_define = guard.group(1)
                 continue
             stack.append("other")

@@ -33,7 +33,7 @@ RECORD = "reduced.json"
 class Account:
     """What the text in the folder says."""
 
-    asked: str  # the command line
+    command_line: str
     sketch: str
     before: Case
     after: Case
@@ -127,7 +127,7 @@ def readme_text(account: Account) -> str:
         lines += [f"{name}:", f"    {info.renderer}", f"    {info.version}", f"    {info.vendor}"]
         environment = account.environments[index] if index < len(account.environments) else {}
         lines += [f"    {key}={value}" for key, value in environment.items()]
-    lines += ["", f"Made by terrain-shader-playground {__version__}:", f"    {account.asked}", ""]
+    lines += ["", f"Made by terrain-shader-playground {__version__}:", f"    {account.command_line}", ""]
     return "\n".join(lines)
 
 

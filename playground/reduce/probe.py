@@ -96,6 +96,6 @@ class Probe:
 def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> DrawTask:
     """Return the task to draw a case that is in a file."""
     names = {one.name for one in case.live}
-    steps = tuple((path, turns) for path, turns in case.steps if path in names)
+    steps = tuple((path, steps) for path, steps in case.steps if path in names)
     ref = "" if as_picture else "view" if case.file != "sketch.toml" else case.target
     return DrawTask(sketch=sketch, ref=ref, driver=driver, frame=case.frame, time=case.time, steps=steps)

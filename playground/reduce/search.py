@@ -64,7 +64,7 @@ class Search:
         *,
         seconds: float = 0.0,
         tries: int = 0,
-        tell: Callable[[State], None] = lambda state: None,
+        progress: Callable[[State], None] = lambda state: None,
     ) -> None:
         self.best = case
         self.finding = finding  # of the best
@@ -72,7 +72,7 @@ class Search:
         self.tries = self.repeated = 0
         self._probe = probe
         self._limit, self._most = seconds, tries  # 0: none
-        self._tell = tell
+        self._progress = progress
         self._known: dict[bytes, bool] = {}
         self._start = time.monotonic()
         self._what = ""
@@ -124,7 +124,7 @@ class Search:
             if resized:
                 self.finding = finding
             self.best = case
-        self._tell(self.state)
+        self._progress(self.state)
         return holds
 
     def confirmed(self) -> Finding | None:
@@ -140,7 +140,7 @@ class Search:
         self._begin("sizes")
         self._sizes()
         self._begin("passes")
-        self._stand_ins()
+        self._simplify_inputs()
         self._begin("settings")
         self._settings()
         for name in [one.name for one in reversed(self.best.live)]:
@@ -151,9 +151,9 @@ class Search:
 
     def _begin(self, what: str) -> None:
         self._what = what
-        self._tell(self.state)
+        self._progress(self.state)
 
-    def _stand_ins(self) -> None:
+    def _simplify_inputs(self) -> None:
         """Put something plain in the place of each pass that the target reads, the nearest first."""
         for one in reversed(self.best.live[:-1]):
             if any(live.name == one.name for live in self.best.live):
@@ -189,8 +189,8 @@ class Search:
         return edits.constants(one.text, values)
 
     def _sizes(self) -> None:
-        """Halve the land, the passes of other sizes with it, then the picture, as often as it goes."""
-        for halved in (_smaller_land, _smaller_frame):
+        """Halve the terrain, the passes of other sizes with it, then the picture, as often as it goes."""
+        for halved in (_smaller_terrain, _smaller_frame):
             smallest = self.best
             while (smaller := halved(smallest)) != smallest:
                 smallest = smaller
@@ -278,7 +278,7 @@ def _undefined_in(text: str) -> frozenset[str]:
 
 
 def _with_settings(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
-    """Return the case with these settings alone: (pass, parameter), or the land's own as ("", name)."""
+    """Return the case with these settings alone: (pass, parameter), or the terrain's own as ("", name)."""
     passes = tuple(
         replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in kept))
         for one in case.passes
@@ -323,7 +323,7 @@ def _half(number: int) -> int:
     return (number - 1) // 2 + 1 if number % 2 else number // 2
 
 
-def _smaller_land(case: Case) -> Case:
+def _smaller_terrain(case: Case) -> Case:
     size = (_half(case.size[0]), _half(case.size[1]))
     passes = tuple(
         one

@@ -23,9 +23,9 @@ def record_text(pairs: Mapping[str, tuple[str, str]]) -> str:
     return written({name: contents for name, contents in found.items() if contents is not None})
 
 
-def _contents(name: str, text: str, beside: str) -> Verified | None:
+def _contents(name: str, text: str, variant_text: str) -> Verified | None:
     try:
-        plain, variant = _kernel("case.glsl", text), _kernel(name, beside)
+        plain, variant = _kernel("case.glsl", text), _kernel(name, variant_text)
     except PlaygroundError:
         return None
     if plain is None or variant is None:

@@ -1,6 +1,6 @@
 """Comparing the pictures that sketches promise with their references, by hand or in pytest.
 
-    names.py        folders, and what tests tell the plugin
+    names.py        folders, and what tests report to the plugin
     compare.py      two arrays → a verdict, how much, how many, where; flip.py: as an eye sees it
     fingerprint.py  what a picture comes from
     references.py   where references live; reading, writing, finding those that nothing uses

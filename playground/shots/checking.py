@@ -1,4 +1,4 @@
-"""Check shots for pytest in one process: draw, compare, write what is asked, say it in words.
+"""Check shots for pytest in one process: render, compare, write references if wanted, explain.
 
 Nothing passes in silence. A picture that is missing, broken or not the one expected fails the
 test and is shown; one that gives no picture fails in its own word, ``crash``, ``hang`` or
@@ -11,9 +11,10 @@ from __future__ import annotations
 import os
 import shlex
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeVar
 
 import numpy as np
 import pytest
@@ -30,12 +31,14 @@ from playground.errors import (
 )
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
-from playground.shots.names import LEFT, REFERENCE_RENDERER, SAID, UNCOMPARED
+from playground.shots.plugin_constants import REFERENCE_RENDERER, SUMMARY_LINE, UNCHANGED, UNCOMPARED
 from playground.shots.recording import Recorder, typed
 from playground.shots.references import write_reference
 from playground.shots.renderer_process import RendererProcess
 from playground.shots.results import NEVER_ACCEPTED
-from playground.shots.suite import Outcome, ShotCase, Taken, check
+from playground.shots.suite import Outcome, RenderedShot, ShotCase, check
+
+Result = TypeVar("Result")
 
 _ENDS = {SandboxCrash: "crash", SandboxTimeout: "hang", OpenGLFault: "gl-error"}
 """The words for what gives no picture; anything else that a sentence explains is an "error"."""
@@ -48,9 +51,9 @@ def word_of(error: PlaygroundError) -> str:
 
 @dataclass(frozen=True)
 class _Raised:
-    """What a test has been told instead of being given a picture."""
+    """What was raised in a test instead of an image."""
 
-    told: PlaygroundError
+    error: PlaygroundError
     word: str
     sentence: str
     case: ShotCase
@@ -94,49 +97,31 @@ class Checker:
         case = replace(case, sketch=case.sketch.plainly(self.plain))
         renderer = self.renderer(node, case)
         self._say_plain_forms(node, case, renderer)
-        taken: Taken | PlaygroundError
-        try:
-            taken = self.renderer_process.render(case)
-        except PlaygroundError as error:
-            taken = error  # failing here would show it twice
+        rendered = _result_or_error(lambda: self.renderer_process.render(case))
         self.show_what_was_printed(node)
-        if isinstance(taken, PlaygroundError):
-            self._gave_none(node, case, taken, start)
-        self.hold(node, case, taken, renderer, start)
+        if isinstance(rendered, PlaygroundError):
+            self._gave_none(node, case, rendered, start)
+        self.hold(node, case, rendered, renderer, start)
 
     def hold(
-        self, node: pytest.Item, case: ShotCase, frame: Taken, renderer: ContextInfo, start: float
+        self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo, start: float
     ) -> None:
         """Fail the test unless a reference matches, or ``--shots-update`` writes one.
 
         ``start`` is when drawing began, of `time.perf_counter`.
         """
-        outcome: Outcome | PlaygroundError
-        try:
-            outcome = self._check(case, frame, renderer)
-            if outcome.ok and self.updating:
-                node.user_properties.append((LEFT, str(case)))
-            elif self.updating and outcome.word not in NEVER_ACCEPTED:
-                self._write(node, outcome)
-                outcome = self._check(case, frame, renderer)  # what was written is what will be read
-        except PlaygroundError as error:
-            outcome = error
+        outcome = _result_or_error(lambda: self._compare(node, case, frame, renderer))
         if isinstance(outcome, PlaygroundError):
             self._gave_none(node, case, outcome, start)
         command = self.accepting(node, outcome)
-        unkept = self.recorder.record(node, outcome, time.perf_counter() - start, command)
+        unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command)
         if not outcome.ok:
-            lines = [self._explained(node, outcome), *([f"    {unkept}"] if unkept else [])]
-            pytest.fail("\n".join(lines), pytrace=False)
+            _fail(self._explained(node, outcome), unrecorded)
 
     def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
         """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
-        found: ContextInfo | PlaygroundError
         start = time.perf_counter()
-        try:
-            found = self.renderer_process.renderer
-        except PlaygroundError as error:
-            found = error
+        found = _result_or_error(lambda: self.renderer_process.renderer)
         if isinstance(found, ContextError):
             self._without(node, case, str(found))
         if isinstance(found, PlaygroundError):
@@ -154,7 +139,7 @@ class Checker:
         """Say, once in this process, which fast variants do not run."""
         if self._plain_forms is None:
             self._plain_forms = PlainForms(silent, renderer.compute)
-        self._plain_forms.notice = lambda sentence: node.user_properties.append((SAID, sentence))
+        self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
         self._plain_forms.tell(case.sketch)
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
@@ -178,21 +163,21 @@ class Checker:
 
     def fail(self, node: pytest.Item, case: ShotCase, message: str) -> NoReturn:
         """Fail a test in which no picture was compared, with a record that says so."""
-        unkept = self.recorder.record_none(node, case, "error", message, 0.0)
-        pytest.fail("\n".join([message, *([f"    {unkept}"] if unkept else [])]), pytrace=False)
+        unrecorded = self.recorder.record_none(node, case, "error", message, 0.0)
+        _fail(message, unrecorded)
 
     def raised(self, node: pytest.Item, case: ShotCase, error: PlaygroundError) -> PlaygroundError:
         """Return what a test is to raise for a mistake, with its word; it is recorded if the test fails."""
         word, sentence = word_of(error), str(error)
-        told = error if word == "error" else type(error)(f"{word}: {sentence}")
-        node.stash[_RAISED] = _Raised(told, word, sentence, case)
-        return told.with_traceback(None)
+        raised = error if word == "error" else type(error)(f"{word}: {sentence}")
+        node.stash[_RAISED] = _Raised(raised, word, sentence, case)
+        return raised.with_traceback(None)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:
         """Leave the record of a test that failed for what `raised` gave it."""
         raised = item.stash.get(_RAISED, None)
-        if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.told:
+        if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.error:
             self.recorder.forget_earlier(item, raised.case)
             self.recorder.record_none(item, raised.case, raised.word, raised.sentence, call.duration)
 
@@ -206,12 +191,22 @@ class Checker:
     def _gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> NoReturn:
         """Fail the test for a shot of which there is no picture, or that cannot be compared."""
         word = word_of(error)
-        unkept = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
+        unrecorded = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
         message = f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}"
-        pytest.fail("\n".join([message, *([f"    {unkept}"] if unkept else [])]), pytrace=False)
+        _fail(message, unrecorded)
 
-    def _check(self, case: ShotCase, frame: Taken, renderer: ContextInfo) -> Outcome:
-        return check(case, frame, renderer, self.expected if self.any_renderer else renderer.slug)
+    def _compare(
+        self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo
+    ) -> Outcome:
+        """Compare a frame with its references, which are written first if that is wanted and needed."""
+        reference_renderer = self.expected if self.any_renderer else renderer.slug
+        outcome = check(case, frame, renderer, reference_renderer)
+        if outcome.ok and self.updating:
+            node.user_properties.append((UNCHANGED, str(case)))
+        elif self.updating and outcome.word not in NEVER_ACCEPTED:
+            self._write(node, outcome)
+            return check(case, frame, renderer, reference_renderer)  # what was written is what will be read
+        return outcome
 
     def _write(self, node: pytest.Item, outcome: Outcome) -> None:
         case, pixels = outcome.case, outcome.frame.array
@@ -225,10 +220,10 @@ class Checker:
             case.sketch, case.shot.name, outcome.renderer, pixels, outcome.fingerprint.drawn
         )
         self._written[written] = (node.nodeid, pixels)
-        node.user_properties.append((SAID, f"wrote {shown(written)}  ({outcome.sentence})"))
+        node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.sentence})"))
         for other in removed:
             line = f"removed {shown(other)}  (it let the picture before this one pass)"
-            node.user_properties.append((SAID, line))
+            node.user_properties.append((SUMMARY_LINE, line))
 
     def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
         lines = [f"{outcome.case}: {outcome.sentence}"]
@@ -241,3 +236,16 @@ class Checker:
         if command:
             lines.append(f"    accept it   {command}")
         return "\n".join(lines)
+
+
+def _result_or_error(function: Callable[[], Result]) -> Result | PlaygroundError:
+    """Return the error that a function raises: a test that failed while it is handled would show it twice."""
+    try:
+        return function()
+    except PlaygroundError as error:
+        return error
+
+
+def _fail(message: str, unrecorded: str) -> NoReturn:
+    """Fail a test; ``unrecorded`` says why its result could not be recorded, if it could not."""
+    pytest.fail(f"{message}\n    {unrecorded}" if unrecorded else message, pytrace=False)

@@ -61,10 +61,10 @@ class SketchFile(pytest.File):
         yield last
 
     def _failing(self, message: str) -> Iterator[pytest.Item]:
-        """Yield the test that says what is wrong, under each name that was asked for."""
-        asked = [arg.partition("::") for arg in self.config.args]
+        """Yield the test that says what is wrong, under each name that was given."""
+        arguments = [arg.partition("::") for arg in self.config.args]
         here = self.config.invocation_params.dir
-        names = [name for file, _, name in asked if name and here / file == self.path]
+        names = [name for file, _, name in arguments if name and here / file == self.path]
         for name in dict.fromkeys(names or ["sketch"]):
             item = FailingItem.from_parent(self, name=name, message=message)
             item.add_marker("shots")
@@ -91,7 +91,7 @@ class ShotItem(pytest.Item):
 
 
 class ReferencesItem(pytest.Item):
-    """The test that no reference is there in vain."""
+    """The test that finds unused references."""
 
     def __init__(self, *, sketch: Sketch, **named: object) -> None:
         super().__init__(**named)  # type: ignore[arg-type]

@@ -11,6 +11,7 @@ It reads no files, and does not judge what an eye would see: a level is a level.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,3 +178,18 @@ def _colour(array: NDArray[np.uint8], x: int, y: int) -> Colour:
 def _four(values: NDArray[np.uint8]) -> Colour:
     red, green, blue, alpha = (int(v) for v in values)
     return red, green, blue, alpha
+
+
+def worst_window(values: NDArray[Any], side: int) -> tuple[float, tuple[int, int], tuple[int, int]]:
+    """Return the largest sum over any window of ``side`` × ``side`` pixels, by a summed-area table.
+
+    With x and y of its top left corner, and its width and height, which are less in a small image.
+    """
+    height, width = (min(side, length) for length in values.shape)
+    sums = np.zeros([length + 1 for length in values.shape], np.float64)
+    np.cumsum(values, axis=0, dtype=np.float64, out=sums[1:, 1:])
+    np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
+    windows = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width]
+    windows += sums[:-height, :-width]
+    y, x = divmod(int(windows.argmax()), windows.shape[1])
+    return float(windows[y, x]), (x, y), (width, height)

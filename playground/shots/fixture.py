@@ -24,8 +24,8 @@ from playground.errors import DataError, PlaygroundError
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture
 from playground.shots.checking import checker_of
-from playground.shots.names import USED
-from playground.shots.suite import ShotCase, Taken
+from playground.shots.plugin_constants import USED
+from playground.shots.suite import RenderedShot, ShotCase
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Shot, Sketch
@@ -71,10 +71,10 @@ class ShotFixture:
         own = self._case(re.sub(r"[./\\\0]", "-", self._node.name))
         mistake: PlaygroundError
         try:
-            found = sketch if isinstance(sketch, Sketch) else load(self._beside(sketch))
+            found = sketch if isinstance(sketch, Sketch) else load(self._find(sketch))
             begun = found.shot(shot) if shot else Shot(self._node.name)
             prepared = found.for_shot(begun).with_values(values or {})
-            asked = Shot(
+            wanted = Shot(
                 shot or "render",
                 size or begun.size,
                 begun.time if time is None else float(time),
@@ -82,7 +82,7 @@ class ShotFixture:
             )
             renderer = self._checker.renderer(self._node, own)
             self._begin(own)
-            frame = self._checker.renderer_process.render(ShotCase(prepared, asked))
+            frame = self._checker.renderer_process.render(ShotCase(prepared, wanted))
         except PlaygroundError as error:
             mistake = error
         else:
@@ -114,10 +114,10 @@ class ShotFixture:
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
         self._checker.hold(self._node, case, _drawn_by(picture, by), info, start)
 
-    def _beside(self, sketch: str | Path) -> Path:
+    def _find(self, sketch: str | Path) -> Path:
         """Return where a sketch is: beside the test file, or where a command would find it."""
-        beside = self._node.path.parent / Path(sketch).expanduser()
-        return find(beside if beside.exists() else sketch)
+        neighbour = self._node.path.parent / Path(sketch).expanduser()
+        return find(neighbour if neighbour.exists() else sketch)
 
     def _refuse_name(self, name: str) -> None:
         if not re.fullmatch(r"[\w-]+", name):
@@ -158,23 +158,23 @@ class ShotFixture:
         return self._checker.expect(self._node, case, info)
 
 
-def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> Taken:
+def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> RenderedShot:
     """Return a picture as the renderer process gives it, with all that is known of how it was drawn."""
-    taken = _taken(picture)
+    rendered = _rendered(picture)
     if by is None:  # drawn by the renderer process, which has looked
-        return taken
-    taken = replace(taken, gl_error=_error_left(by))
+        return rendered
+    rendered = replace(rendered, gl_error=_error_left(by))
     if not isinstance(by, Engine):
-        return taken
+        return rendered
     last = _last_picture(by)
-    if last is not None and np.array_equal(last, taken.array):
-        return replace(taken, not_finite=str(by.not_finite() or ""), drawn=by.drawn())
+    if last is not None and np.array_equal(last, rendered.array):
+        return replace(rendered, not_finite=str(by.not_finite() or ""), drawn=by.drawn())
     if isinstance(picture, Frame):
         raise ValueError(
             "this is not the last frame of its engine, so what went into it cannot be looked at any more: "
             "check each frame before the engine draws the next one or is released"
         )
-    return taken
+    return rendered
 
 
 def _last_picture(engine: Engine) -> NDArray[np.uint8] | None:
@@ -197,12 +197,12 @@ def _error_left(by: By) -> str:
     return "" if error == "GL_NO_ERROR" else error
 
 
-def _taken(picture: Frame | NDArray[Any]) -> Taken:
+def _rendered(picture: Frame | NDArray[Any]) -> RenderedShot:
     """Return a picture as the renderer process gives it, with what is wrong with its numbers."""
-    if isinstance(picture, Taken):
+    if isinstance(picture, RenderedShot):
         return picture
     if isinstance(picture, Frame):
-        return Taken(picture.array, picture.sketch, picture.time)
+        return RenderedShot(picture.array, picture.sketch, picture.time)
     array = np.asarray(picture)
     if array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
         raise DataError(f"a picture is an array (height, width, 3 or 4); found {array.shape}")
@@ -217,4 +217,4 @@ def _taken(picture: Frame | NDArray[Any]) -> Taken:
         raise DataError(f"a picture is of uint8, or of floats from 0 to 1; found {array.dtype}")
     if array.shape[2] == 3:
         array = np.concatenate([array, np.full((*array.shape[:2], 1), 255, np.uint8)], axis=2)
-    return Taken(np.ascontiguousarray(array), not_finite=wrong)
+    return RenderedShot(np.ascontiguousarray(array), not_finite=wrong)

@@ -6,7 +6,7 @@ ACM on Computer Graphics and Interactive Techniques 3(2)), section 4; the number
 paper's. Both pictures are blurred as far as the eye blurs, colours are compared where equal
 distances look equally different, and the result grows where edges or points come or go.
 
-Alpha: both pictures are laid over black and over white, and the larger difference counts. So
+Alpha: both pictures are composited over black and over white, and the larger difference counts. So
 a difference in alpha counts as much as it can be seen, and colours that full transparency
 hides count for nothing.
 """
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.shots.compare import worst_window
 
 Floats = NDArray[np.float32]
 
@@ -28,7 +29,7 @@ PIXELS_PER_DEGREE = 0.7 * (3840 / 0.7) * math.pi / 180
 """Of the observer's view: a monitor 0.7 m wide of 3840 pixels, 0.7 m away."""
 
 TILE = 32
-"""[pixels] Side of the tiles of which the worst is told."""
+"""[pixels] Side of the tiles of which the worst is reported."""
 
 # Contrast sensitivity as Gaussians (a, b) of each channel: achromatic, red-green, blue-yellow.
 _CONTRAST = (((1.0, 0.0047),), ((1.0, 0.0053),), ((34.1, 0.04), (13.5, 0.025)))
@@ -57,14 +58,8 @@ class Flip:
 
     def worst_tile(self) -> tuple[float, tuple[int, int]]:
         """Return the worst tile's mean, and x and y [pixels] of its top left corner."""
-        height, width = (min(TILE, side) for side in self.difference.shape)
-        sums = np.zeros([side + 1 for side in self.difference.shape], np.float64)
-        np.cumsum(self.difference, axis=0, dtype=np.float64, out=sums[1:, 1:])
-        np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
-        tiles = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width]
-        tiles += sums[:-height, :-width]
-        y, x = divmod(int(tiles.argmax()), tiles.shape[1])
-        return max(float(tiles[y, x]), 0.0) / (width * height), (x, y)
+        total, place, (width, height) = worst_window(self.difference, TILE)
+        return max(total, 0.0) / (width * height), place
 
 
 def flip(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> Flip:
@@ -82,7 +77,9 @@ def flip(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> Flip:
     with np.errstate(under="ignore"):
         if min(int(actual[..., 3].min()), int(expected[..., 3].min())) == 255:
             return Flip(_difference(actual[..., :3], expected[..., :3]))
-        over = [_difference(_laid_over(actual, ground), _laid_over(expected, ground)) for ground in (0, 255)]
+        over = [
+            _difference(_composited(actual, ground), _composited(expected, ground)) for ground in (0, 255)
+        ]
         return Flip(np.maximum(*over))
 
 
@@ -122,10 +119,10 @@ c43c75 de4968 f1605d fa7f5e fe9f6d febf84 fddea0 fcfdbf
 """
 
 
-def _laid_over(picture: NDArray[np.uint8], ground: int) -> NDArray[np.uint8]:
+def _composited(picture: NDArray[np.uint8], grey: int) -> NDArray[np.uint8]:
     """Return a picture's colours over a grey ground, mixed as encoded, as screens do."""
     alpha = picture[..., 3:].astype(np.float32) / np.float32(255)
-    mixed = picture[..., :3] * alpha + np.float32(ground) * (1 - alpha)
+    mixed = picture[..., :3] * alpha + np.float32(grey) * (1 - alpha)
     return np.asarray(mixed + np.float32(0.5), np.uint8)
 
 

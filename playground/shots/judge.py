@@ -25,7 +25,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.shots.compare import TOLERANCE, Comparison, compare
+from playground.shots.compare import TOLERANCE, Comparison, compare, worst_window
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.flip import TILE, flip
 from playground.shots.references import Reference
@@ -87,7 +87,7 @@ class Crowd:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class Perceived:
     """How different another renderer's picture looks, by FLIP: 0 alike, 1 as different as can be."""
 
     mean: float  # over the picture
@@ -106,7 +106,7 @@ class Judgement:
     fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
     differences: tuple[str, ...] = ()  # how its origin differs from the reference's, in words
     crowd: Crowd | None = None  # of another build's picture, where pixels differ
-    seen: Seen | None = None  # of another renderer's
+    perceived: Perceived | None = None  # of another renderer's
 
     @property
     def ok(self) -> bool:
@@ -155,13 +155,8 @@ def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str)
 
 def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
     """Return the window of ``side`` × ``side`` pixels, at any place, in which the most of a mask are set."""
-    height, width = min(side, over.shape[0]), min(side, over.shape[1])
-    sums = np.zeros((over.shape[0] + 1, over.shape[1] + 1), np.int32)
-    np.cumsum(over, axis=0, out=sums[1:, 1:])
-    np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
-    counts = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width] + sums[:-height, :-width]
-    y, x = divmod(int(counts.argmax()), counts.shape[1])
-    return Crowd(int(counts[y, x]), (x, y), (width, height))
+    count, place, size = worst_window(over, side)
+    return Crowd(round(count), place, size)
 
 
 def _nearest(
@@ -171,8 +166,8 @@ def _nearest(
     others: Sequence[Reference],
 ) -> tuple[Judgement, Reference | None]:
     if not references and others:
-        seen = [(_judged_by_eye(actual, fingerprint, other), other) for other in others]
-        return min(seen, key=lambda pair: _distance(pair[0]))
+        perceived = [(_judged_by_eye(actual, fingerprint, other), other) for other in others]
+        return min(perceived, key=lambda pair: _distance(pair[0]))
     if not references:
         comparison = compare(actual, None)
         return Judgement(
@@ -188,7 +183,7 @@ def _nearest(
 
 def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
     found = judgement.comparison
-    by_eye = judgement.seen.mean if judgement.seen else 0.0
+    by_eye = judgement.perceived.mean if judgement.perceived else 0.0
     return not judgement.ok, found.verdict == "size", by_eye, found.over, found.most
 
 
@@ -229,8 +224,10 @@ def _judged(
             found, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
         )
     passed = replace(comparison, verdict="same")
-    told = f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
-    return replace(found, word="same", comparison=passed, sentence=told)
+    sentence = (
+        f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
+    )
+    return replace(found, word="same", comparison=passed, sentence=sentence)
 
 
 def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference) -> Judgement:
@@ -247,22 +244,22 @@ def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, referenc
     )
     if comparison.verdict in ("blank", "size"):
         return replace(found, tier="")
-    if comparison.verdict == "same":  # to within one level: nothing is left to be seen
+    if comparison.verdict == "same":  # to within one level: nothing is left to be perceived
         return found
     difference = flip(actual, reference.pixels)
     tile, place = difference.worst_tile()
-    seen = Seen(difference.mean, tile, place)
+    perceived = Perceived(difference.mean, tile, place)
     measured = (
-        f"FLIP {seen.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {place[0]}, "
+        f"FLIP {perceived.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {place[0]}, "
     )
     measured += f"y = {place[1]} from the top left"
-    if seen.mean > FLIP_MEAN or tile > FLIP_TILE:
+    if perceived.mean > FLIP_MEAN or tile > FLIP_TILE:
         bounds = f"at most {FLIP_MEAN:g} and {FLIP_TILE:g} may be between renderers"
         sentence = f"structure: {measured}; {bounds}"
-        return replace(found, word="structure", sentence=sentence, seen=seen)
+        return replace(found, word="structure", sentence=sentence, perceived=perceived)
     passed = replace(comparison, verdict="same")
     sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
-    return replace(found, word="same", comparison=passed, sentence=sentence, seen=seen)
+    return replace(found, word="same", comparison=passed, sentence=sentence, perceived=perceived)
 
 
 def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.bool_]:

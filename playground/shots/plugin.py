@@ -26,15 +26,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 from playground.shots import unused_references as used
-from playground.shots.names import (
+from playground.shots.plugin_constants import (
     CHECKED,
-    LEFT,
-    LOOSE,
     REFERENCE_RENDERER,
     REPORT,
-    SAID,
+    STRUCTURE_COMPARED,
+    SUMMARY_LINE,
+    UNCHANGED,
     UNCOMPARED,
-    UNKEPT,
+    UNRECORDED,
 )
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type=Path,
         default=REPORT,
         help=f"where results go: a record of each shot, pictures of those that fail, the report "
-        f"(default: {REPORT}, which git is told to ignore)",
+        f"(default: {REPORT}, which git ignores)",
     )
     group.addoption(
         "--shots-report",
@@ -176,7 +176,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "shot" in getattr(item, "fixturenames", ()):
             item.add_marker("shots")
-    used.tell(config, items)
+    used.count_tests(config, items)
 
 
 @pytest.fixture
@@ -192,7 +192,7 @@ def shot(request: pytest.FixtureRequest) -> ShotFixture:
 
 
 class Results:
-    """Gathers what tests said, here or in workers of xdist; judges, writes and prints it at the end."""
+    """Gathers what tests report, here or in workers of xdist; judges, writes and prints it at the end."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
@@ -200,8 +200,8 @@ class Results:
         self.left = 0  # references that --shots-update left alone
         self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
         self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
-        self.unkept: dict[str, None] = {}  # why results could not be kept
-        self.seen = self.failed = False  # whether a shot was checked, and whether one failed
+        self.unrecorded: dict[str, None] = {}  # why results could not be kept
+        self.checked = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -210,16 +210,16 @@ class Results:
             return
         self.uses.add(report)
         for name, value in report.user_properties:
-            if name == SAID:
+            if name == SUMMARY_LINE:
                 self.lines.append(str(value))
-            self.left += name == LEFT
-            if name == LOOSE:
+            self.left += name == UNCHANGED
+            if name == STRUCTURE_COMPARED:
                 self.loose[str(value)] += 1
             if name == UNCOMPARED:
                 self.uncompared[str(value)] += 1
-            if name == UNKEPT:
-                self.unkept[str(value)] = None
-            self.seen = self.seen or name in (CHECKED, UNCOMPARED)
+            if name == UNRECORDED:
+                self.unrecorded[str(value)] = None
+            self.checked = self.checked or name in (CHECKED, UNCOMPARED)
             self.failed = self.failed or (name == CHECKED and value != "same")
 
     @pytest.hookimpl(wrapper=True)
@@ -231,17 +231,17 @@ class Results:
                 from playground.shots.recording import record_stale
 
                 path = self.config.rootpath / node.partition("::")[0]
-                told = record_stale(self.config, path, message)
+                properties = record_stale(self.config, path, message)
                 place = (node.partition("::")[0], None, "references")
                 report = pytest.TestReport(
-                    node, place, {"shots": 1}, "failed", message, "call", user_properties=told
+                    node, place, {"shots": 1}, "failed", message, "call", user_properties=properties
                 )
                 self.config.hook.pytest_runtest_logreport(report=report)
         return result
 
     def pytest_sessionfinish(self) -> None:
-        """Write the report, where there is something to look at or it is asked for."""
-        if not self.seen or hasattr(self.config, "workerinput"):
+        """Write the report, where there is something to look at or it is wanted."""
+        if not self.checked or hasattr(self.config, "workerinput"):
             return
         if self.left:
             self.lines.append(f"left {self.left} as they were, for they match")
@@ -252,8 +252,8 @@ class Results:
         for why, count in self.uncompared.items():
             shots = "1 shot was" if count == 1 else f"{count} shots were"
             self.lines.append(f"{shots} not compared: {why}")
-        self.lines += self.unkept
-        if self.unkept:
+        self.lines += self.unrecorded
+        if self.unrecorded:
             return
         from playground.shots.recording import finish
 

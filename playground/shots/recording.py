@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.paths import shown
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
-from playground.shots.names import CHECKED, LOOSE, SCREENSHOTS, UNKEPT
+from playground.shots.plugin_constants import CHECKED, SCREENSHOTS, STRUCTURE_COMPARED, UNRECORDED
 from playground.shots.references import accepted, home_of, reference_texts
 from playground.shots.report import NAME, write_report
 from playground.shots.result_paths import clean, drop, file_of, place_of, records_in
@@ -54,7 +54,7 @@ class Recorder:
 
         Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
         """
-        found, seen, reference = outcome.comparison, outcome.judgement.seen, outcome.reference
+        found, perceived, reference = outcome.comparison, outcome.judgement.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
         record = replace(
@@ -64,7 +64,7 @@ class Recorder:
             catches=_CATCHES.get(outcome.tier, ""),
             size=found.size,
             expected_size=found.expected_size,
-            place=seen.place if seen else found.place,
+            place=perceived.place if perceived else found.place,
             numbers=_numbers(outcome),
             texts=reference_texts(outcome.fingerprint, outcome.case.sketch.name, name),
             expected_texts=reference.text if reference else {},
@@ -74,14 +74,14 @@ class Recorder:
             command=command,
         )
         if outcome.tier == OTHER_RENDERER:
-            node.user_properties.append((LOOSE, own))
-        return self._keep(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
+            node.user_properties.append((STRUCTURE_COMPARED, own))
+        return self._write(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
         """Leave the record of a shot of which there is no picture; returns what `record` does."""
         first, _, rest = sentence.partition("\n")
         record = replace(self._begun(node, case, word, first, seconds), error=rest)
-        return self._keep(node, case, record, {})
+        return self._write(node, case, record, {})
 
     def forget(self, node: pytest.Item, case: ShotCase) -> None:
         """Remove the record of what failed without a picture, if there is one: it is not so any more."""
@@ -90,7 +90,7 @@ class Recorder:
             before = self._before(self._place(case), case.shot.name)
             if before:
                 drop(self.folder, before)
-        except (DataError, OSError):  # nothing to be kept, nothing to be removed
+        except (DataError, OSError):  # nothing can be written or removed
             pass
 
     def forget_earlier(self, node: pytest.Item, case: ShotCase) -> None:
@@ -117,7 +117,7 @@ class Recorder:
             if path.exists():
                 yield word, path
 
-    def _keep(
+    def _write(
         self, node: pytest.Item, case: ShotCase, record: Record, pictures: dict[str, NDArray[np.uint8]]
     ) -> str:
         node.user_properties.append((CHECKED, record.word))
@@ -132,9 +132,9 @@ class Recorder:
                 record = replace(record, sentence=f"{record.sentence}; {before.node} failed as well")
             write_result(self.folder, record, pictures)
         except (DataError, OSError) as error:
-            said = _unkept(error)
-            node.user_properties.append((UNKEPT, said))
-            return said
+            message = _unrecorded(error)
+            node.user_properties.append((UNRECORDED, message))
+            return message
         return ""
 
     def _before(self, place: str, shot: str) -> Record | None:
@@ -186,7 +186,7 @@ def typed(node: pytest.Item) -> str:
 
 
 def references_name(shots: Collection[str]) -> str:
-    """Return the name of the test that no reference is there in vain, beside shots of those names."""
+    """Return the name of the test that finds unused references, which is none of these shots'."""
     return "references" if "references" not in shots else "references of all shots"
 
 
@@ -209,13 +209,13 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     }
     if judgement.crowd is not None:
         numbers["pixels in the most crowded window"] = judgement.crowd.count
-    if judgement.seen is not None:
-        numbers |= {"FLIP, mean": judgement.seen.mean, "FLIP, worst tile": judgement.seen.tile}
+    if judgement.perceived is not None:
+        numbers |= {"FLIP, mean": judgement.perceived.mean, "FLIP, worst tile": judgement.perceived.tile}
     return numbers
 
 
 def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:
-    """Leave a record that a test file has references in vain; return what its report is to carry."""
+    """Leave a record that a test file has unused references; return the user properties of its report."""
     recorder = Recorder(config)
     home = str(path.parent / SCREENSHOTS)
     root = recorder.root
@@ -240,7 +240,7 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
         )
         write_result(recorder.folder, record, {})
     except (DataError, OSError) as error:
-        return [(CHECKED, "error"), (UNKEPT, _unkept(error))]
+        return [(CHECKED, "error"), (UNRECORDED, _unrecorded(error))]
     return [(CHECKED, "error")]
 
 
@@ -260,12 +260,12 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
             page.unlink(missing_ok=True)
             return []
     except OSError as error:
-        return [_unkept(error)]
+        return [_unrecorded(error)]
     lines = report(recorder.folder)
     return lines if wanted else []
 
 
-def _unkept(error: Exception) -> str:
+def _unrecorded(error: Exception) -> str:
     return f"no results are kept: {error}; --shots-output names another folder"
 
 

@@ -23,7 +23,7 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.images.files import read_png, write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
-from playground.shots.names import SCREENSHOTS
+from playground.shots.plugin_constants import SCREENSHOTS
 from playground.sketch.model import Sketch
 
 FOLDER = SCREENSHOTS

@@ -10,7 +10,7 @@ from playground.engine.plain_forms import silent
 from playground.errors import ContextError
 from playground.gpu.context import context_info, open_context
 from playground.process.child import Parent, Service
-from playground.shots.suite import take
+from playground.shots.suite import render_shot
 
 if TYPE_CHECKING:
     import moderngl
@@ -20,7 +20,7 @@ def open_service(parent: Parent, renderer: str) -> Service:
     """Open a context and an engine on it."""
     context = _open(renderer)
     engine = Engine(context, owns_context=True, notice=silent)
-    return Service(partial(take, engine), context_info(context))
+    return Service(partial(render_shot, engine), context_info(context))
 
 
 def _open(renderer: str) -> moderngl.Context:

@@ -6,13 +6,12 @@ it ended, with what it printed. The next shot is rendered all the same.
 
 from __future__ import annotations
 
-from types import TracebackType
 from typing import Self
 
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
 from playground.process.worker import START_SECONDS, Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
-from playground.shots.suite import ShotCase, Taken
+from playground.shots.suite import RenderedShot, ShotCase
 
 LIMIT = 120.0
 """[s] A render may take that long: far beyond any shot on a slow machine with a cold shader cache."""
@@ -40,9 +39,7 @@ class RendererProcess:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     @property
@@ -65,7 +62,7 @@ class RendererProcess:
         """Return, once, what the worker printed."""
         return self._workers.printed()
 
-    def render(self, case: ShotCase) -> Taken:
+    def render(self, case: ShotCase) -> RenderedShot:
         """Render one shot in the worker.
 
         Raises what `playground.shots.suite.take` raises, ``SandboxCrash`` where the worker died,
@@ -78,7 +75,7 @@ class RendererProcess:
             raise self._stopped(died, f"drawing {case}", self.limit) from None
         except MemoryError:
             raise ContextError(f"drawing {case} ran out of memory") from None
-        assert isinstance(frame, Taken)
+        assert isinstance(frame, RenderedShot)
         return frame
 
     def close(self) -> None:

@@ -24,7 +24,7 @@ from playground.shots.page.shot import Setting
 from playground.shots.results import FOLDER, Record, read_results
 
 NAME = "index.html"
-"""The report's file in the folder of results, unless another is asked for."""
+"""The report's file in the folder of results, unless another is named."""
 
 EMBEDDED = 96 * 2**20
 """[bytes] Of pictures that a report holds at most: about 80 failures of 640 × 360."""
@@ -69,7 +69,7 @@ class _Pictures:
     folder: Path
     left: int  # [bytes]
     urls: dict[str, str] = field(default_factory=dict)
-    beside: int = 0  # how many failures are linked to instead
+    linked: int = 0  # how many failures are linked to instead
     gone: list[str] = field(default_factory=list)
 
     def take(self, record: Record) -> None:
@@ -85,7 +85,7 @@ class _Pictures:
         size = sum(map(len, found.values()))
         if size > self.left:
             self.left = 0  # else smaller ones further down would have theirs, for no reason that one sees
-            self.beside += 1
+            self.linked += 1
             return
         self.left -= size
         self.urls |= found
@@ -97,9 +97,9 @@ class _Pictures:
     def notes(self) -> list[str]:
         """Say what is not inside."""
         found = []
-        if self.beside:
+        if self.linked:
             found.append(
-                f"The pictures of {counted(self.beside, 'failure')} are not in this file, which would be too"
+                f"The pictures of {counted(self.linked, 'failure')} are not in this file, which would be too"
                 " large to open; they are links to the files beside it."
             )
         if self.gone:

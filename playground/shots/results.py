@@ -32,13 +32,13 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.files import encode_png, replacing
 from playground.json_text import read_json
-from playground.shots.names import REPORT
+from playground.shots.plugin_constants import REPORT
 
 FORMAT = 1
 """What a record's ``format`` says; a record of another is refused in words."""
 
 FOLDER = REPORT
-"""Where results go unless something else is asked for."""
+"""Where results go unless another folder is named."""
 
 PICTURES = ("actual", "expected", "difference", "flip")
 """The pictures a record can have, in the order in which they are shown."""
@@ -141,9 +141,9 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
         try:
             values[name] = reader(value)
         except (TypeError, ValueError):
-            said = json.dumps(value, ensure_ascii=False)
-            said = said if len(said) < 60 else said[:57] + "…"
-            raise DataError(f"'{name}' in a record is {expected}; found {said}", file=file) from None
+            text = json.dumps(value, ensure_ascii=False)
+            text = text if len(text) < 60 else text[:57] + "…"
+            raise DataError(f"'{name}' in a record is {expected}; found {text}", file=file) from None
     record = Record(**values)
     for word, name in record.pictures.items():
         if name != _picture_name(record, word):
@@ -289,16 +289,13 @@ def _number(value: object) -> float:
     return value
 
 
-def _texts(value: object) -> dict[str, str]:
-    if not isinstance(value, dict):
-        raise TypeError
-    return {_text(key): _text(text) for key, text in value.items()}
+def _object_of(read: Callable[[object], Any]) -> Callable[[object], dict[str, Any]]:
+    def read_all(value: object) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            raise TypeError
+        return {_text(key): read(entry) for key, entry in value.items()}
 
-
-def _numbers(value: object) -> dict[str, float]:
-    if not isinstance(value, dict):
-        raise TypeError
-    return {_text(key): _number(number) for key, number in value.items()}
+    return read_all
 
 
 def _lines(value: object) -> tuple[str, ...]:
@@ -321,27 +318,25 @@ def _pair(lowest: int) -> Callable[[object], tuple[int, int] | None]:
 
 
 def _pictures(value: object) -> dict[str, str]:
-    found = _texts(value)
+    found = _object_of(_text)(value)
     if not found.keys() <= set(PICTURES):
         raise ValueError
     return found
 
 
-_READERS: dict[str, tuple[str, Callable[[object], Any]]] = {
+_READERS_OF_TYPES: dict[str, tuple[str, Callable[[object], Any]]] = {
+    "str": ("a text", _text),
+    "float": ("a number", _number),
+    "dict[str, str]": ("an object of texts", _object_of(_text)),
+    "dict[str, float]": ("an object of numbers", _object_of(_number)),
+    "tuple[str, ...]": ("a list of texts", _lines),
+    "tuple[int, int] | None": ("two numbers of pixels", _pair(1)),
+}
+_READERS = {f.name: _READERS_OF_TYPES[str(f.type)] for f in fields(Record)} | {
     "sketch": ("the name of a sketch", _matching(_SKETCH)),
     "shot": ("the name of a shot", _matching(_SHOT)),
     "folder": ("the name of a folder", _matching(re.compile(f"(?:{_SKETCH.pattern})?"))),
-    "numbers": ("an object of numbers", _numbers),
-    "size": ("two numbers of pixels", _pair(1)),
-    "expected_size": ("two numbers of pixels", _pair(1)),
     "place": ("x and y of a pixel", _pair(0)),
-    "texts": ("an object of texts", _texts),
-    "expected_texts": ("an object of texts", _texts),
-    "fingerprint": ("a list of texts", _lines),
-    "references": ("an object of texts", _texts),
     "pictures": (f"an object of files, of {', '.join(PICTURES)}", _pictures),
-    "seconds": ("a number", _number),
-    "when": ("a number", _number),
 }
-_READERS |= {f.name: ("a text", _text) for f in fields(Record) if f.name not in _READERS}
 _REQUIRED = {f.name for f in fields(Record) if f.default is MISSING and f.default_factory is MISSING}

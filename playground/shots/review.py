@@ -11,7 +11,7 @@ same browser can send one. So:
 * only the few paths below are known, and no part of one becomes the name of a file: a
   picture is looked up among those that the records name;
 * all this is looked at before a request's body is read, and that is bounded;
-* the page's policy lets nothing run, and nothing be asked for, but its own.
+* the page's policy lets nothing run, and nothing be fetched, but its own.
 
 A request names the result it means by its stamp. Where the tests have run again since, or a
 reference has changed, it is refused in words; all changes are made one after the other.
@@ -29,14 +29,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 from urllib.parse import unquote
 
 from playground.errors import DataError, PlaygroundError
 from playground.json_text import read_json
 from playground.shots.page.document import policy_of
-from playground.shots.session import Session
+from playground.shots.review_session import Session
 
 LARGEST_REQUEST = 2**20
 """[bytes] What a request may hold: the names of thousands of shots."""
@@ -101,9 +100,7 @@ class Review:
     def __enter__(self) -> Review:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._server.server_close()
 
     def get(self, path: str) -> Answer:
@@ -126,9 +123,9 @@ class Review:
         if path != "act":
             return _refusal(404, "there is no such page")
         try:
-            asked: Any = read_json(body)
-            action = asked["action"]
-            shots = [(str(shot["name"]), str(shot["stamp"])) for shot in asked["shots"]]
+            request: Any = read_json(body)
+            action = request["action"]
+            shots = [(str(shot["name"]), str(shot["stamp"])) for shot in request["shots"]]
             if action not in ("accept", "also", "undo"):
                 raise ValueError
         except (ValueError, TypeError, KeyError):
@@ -168,7 +165,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         length = int(self.headers["Content-Length"])
         body = self.rfile.read(length)
-        if len(body) < length:  # whoever asked has gone
+        if len(body) < length:  # the client has gone
             self.close_connection = True
             return
         self._answer(self._tried(lambda path: self.served.post(path, body)))
@@ -236,7 +233,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.end_headers()
             self.wfile.write(answer.body)
             self.wfile.flush()
-        finally:  # also where whoever asked has gone
+        finally:  # also where the client has gone
             if answer.last:
                 self.served.end()
 

@@ -23,7 +23,7 @@ from playground.shots.compare import Comparison, difference_picture
 from playground.shots.fingerprint import Fingerprint, fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
-from playground.shots.names import REFERENCE_RENDERER
+from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
     accepted,
@@ -47,7 +47,7 @@ class ShotCase:
 
 
 @dataclass(frozen=True, eq=False)
-class Taken(Frame):
+class RenderedShot(Frame):
     """A frame, with what is known of how it was drawn."""
 
     drawn: str = ""  # hash of what was drawn
@@ -108,7 +108,7 @@ class Outcome:
 
     @property
     def other_build(self) -> str:
-        """Say who drew the reference, if that was another build of the renderer; else ""."""
+        """Say what drew the reference, if that was another build of the renderer; else ""."""
         before = self.reference.drawn_by if self.reference else ""
         return before if before != drawn_by(self.renderer) else ""
 
@@ -122,10 +122,10 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
     return [ShotCase(sketch, shot) for sketch in loaded for shot in sketch.shots]
 
 
-def take(engine: Engine, case: ShotCase) -> Taken:
+def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
-    An OpenGL error left behind is told in the frame: whatever that looks like, it is not to be
+    An OpenGL error left behind is recorded in the frame: whatever that looks like, it is not to be
     trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass
     fails and there is no frame.
     """
@@ -135,7 +135,7 @@ def take(engine: Engine, case: ShotCase) -> Taken:
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
     found = engine.not_finite()
-    return Taken(
+    return RenderedShot(
         frame.array,
         frame.sketch,
         frame.time,
@@ -148,7 +148,7 @@ def take(engine: Engine, case: ShotCase) -> Taken:
 def check(
     case: ShotCase, frame: Frame, renderer: ContextInfo, reference_renderer: str = REFERENCE_RENDERER
 ) -> Outcome:
-    """Judge a frame by the references of its renderer; any may match, else the nearest is told.
+    """Judge a frame by the references of its renderer; any may match, else the nearest decides.
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
     a reference that is not there is missing, whatever others have drawn. A frame that `take`
@@ -156,7 +156,7 @@ def check(
     """
     name = case.shot.name
     drawn, not_finite, gl_error = "", "", ""
-    if isinstance(frame, Taken):
+    if isinstance(frame, RenderedShot):
         drawn, not_finite, gl_error = frame.drawn, frame.not_finite, frame.gl_error
     fingerprint = fingerprint_of(renderer, frame.size, drawn)
     path = reference_path(case.sketch, name, renderer.slug)

@@ -2,8 +2,8 @@
 
 A run knows which references the tests of a file use only if it had all of its tests, and
 every one of them passed: under ``-k``, ``--lf``, ``-x``, with a node id, or where a test was
-skipped or failed, nothing is said. Of the references, only those of renderers that drew in
-this run are judged. The tests may have run in several processes; what they tell of themselves
+skipped or failed, nothing is reported. Of the references, only those of renderers that drew in
+this run are judged. The tests may have run in several processes; what they report
 is gathered where their reports come together.
 
 It reads no pictures, and is loaded with every pytest: it imports next to nothing.
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.shots.names import SCREENSHOTS, TESTS, USED
+from playground.shots.plugin_constants import SCREENSHOTS, TESTS, USED
 
 _COUNTS: pytest.StashKey[Counter[Path]] = pytest.StashKey()
 
@@ -27,8 +27,8 @@ def count(item: pytest.Item) -> None:
     item.config.stash.setdefault(_COUNTS, Counter())[item.path] += 1
 
 
-def tell(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let each test that may use references tell how many tests its file has."""
+def count_tests(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Attach to each test that may use references how many tests its file has."""
     narrowed = any("::" in arg for arg in config.args) or any(
         getattr(config.option, name, False) for name in ("lf", "stepwise")
     )
@@ -50,7 +50,7 @@ class _File:
     tests: int = 0  # in the file; 0: not known
     passed: set[str] = field(default_factory=set)  # node ids
     used: set[str] = field(default_factory=set)  # "renderer/name"
-    vain: bool = False  # whether there are references that none of them uses
+    unused: bool = False  # whether there are references that none of them uses
 
 
 class Uses:
@@ -78,13 +78,13 @@ class Uses:
         """
         return {
             self._root / name: {used.rpartition("/")[2] for used in file.used}
-            | ({"references"} if file.vain else set())
+            | ({"references"} if file.unused else set())
             for name, file in self._files.items()
             if file.tests and len(file.passed) == file.tests
         }
 
     def stale(self) -> dict[str, str]:
-        """Return, by the node id of a test that would have found it, what is there in vain, in words."""
+        """Return, by the node id of a test that would have found it, the unused references, as a sentence."""
         from playground.errors import counted
         from playground.paths import shown
 
@@ -99,7 +99,7 @@ class Uses:
                 pictures = sorted((folder / renderer).glob("*.png"))
                 stale += [p for p in pictures if f"{renderer}/{p.name.partition('.')[0]}" not in file.used]
             stale += _of_files_that_are_gone(folder.parent)
-            file.vain = bool(stale)
+            file.unused = bool(stale)
             if stale:
                 files = "".join(f"\n    {shown(path)}" for path in stale)
                 found[f"{name}::references"] = (

@@ -1,4 +1,4 @@
-"""Make a fresh sketch folder from the files in ``new/``; it never overwrites anything."""
+"""Make a new sketch folder from the files in ``new/``; it never overwrites anything."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _TITLE = "@TITLE@"
 def make_sketch(folder: Path) -> Path:
     """Make the folder with ``sketch.toml`` and a kernel, and return it.
 
-    Its last part is the sketch's name; the folder it lies in must exist. Raises
-    ``SketchError`` where the name cannot be one, or something is there already.
+    Its last part is the sketch's name; the folder around it must exist. Raises
+    ``SketchError`` where the name is not valid, or something is there already.
     """
     name = folder.name
     if not _NAME.fullmatch(name):

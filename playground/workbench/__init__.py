@@ -1,23 +1,24 @@
 """A live session without a window: drafts, user edits, history, painting, inspection, lessons.
 
-    clock.py            the sketch's own time: runs, rests, never jumps
-    dependencies.py     which files a sketch depends on
-    watcher.py          which of them have changed
-    edit_merge.py       whether the user's value or the file's counts
-    edits.py            user edits, and how they survive a change of the files
-    last_frame.py       the last good picture, and a texture put on a screen
-    maps.py             any texture of a sketch, shown from above
-    resume.py           edits of an earlier session, over the files of now
-    reload_stages.py    the stages that a saved sketch goes through, and who tries it
-    drafts.py           what the files say, what was changed, what is wrong; draws nothing
-    session.py          the sketch as it is shown: its picture, a map, time
-    reload.py           a session and its files kept together
-    memory.py           the file that remembers one sketch
-    autosave.py         what a session shows, remembered as one goes
+    session.py          the sketch as it is shown: it has the four below
+      drafts.py         what the files say, the user's edits, what is wrong
+      view.py           a map instead of the sketch's own view, repeats stopped early
+      clock.py          the sketch's own time
+      data_files.py     which data files have been drawn with
+    edits.py, edit_merge.py, resume.py   user edits over files that change, and over a restart
+    reload_stages.py    the stages that a saved sketch goes through, and its errors
+    dependencies.py, watcher.py, reload.py   the files of a sketch, and what changes in them
+    notices.py          sentences on the screen
+    history.py, undo.py   steps, and applying them
+    commands.py, sketch_file.py, keyframe_edits.py   presets, resets, saving, keyframes
+    open_files.py, editors.py, text_file.py   files open in an editor
+    captures.py         PNGs, large pictures, films
     brush.py, painted_mask.py, painting.py   strokes on a mask, its file, the brush over the picture
-    actions.py          what a button or a key asks for that is more than one call of the session
+    interface.py        which panels are shown, and how large
+    memory.py, autosave.py   the file that remembers one sketch, written as one goes
     inspect/            numbers, costs, comparisons, the pass graph, time
     lesson/             a reader and the lessons
+    bench.py            all of it put together
 
 Nothing here imports a window: a test, a notebook or another interface can drive all of it.
 """

@@ -1,6 +1,6 @@
-"""Capture from the window: what is asked for, the job at work, and what came of it.
+"""Capture from the window: what is wished for, the job at work, and its result.
 
-The pictures are drawn in another process from the sketch as it stands, so that the window
+The pictures are drawn in another process from the sketch as it is now, so that the window
 goes on; one job at a time.
 """
 
@@ -13,9 +13,8 @@ import time
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob
 from playground.capture.job_process import JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
@@ -24,9 +23,9 @@ from playground.errors import DataError, ParameterError, PlaygroundError, counte
 from playground.paths import shown
 from playground.sketch.model import LARGEST_PICTURE, LARGEST_SIDE, Parameter, Sketch
 from playground.sketch.values import is_whole, length_of
-
-if TYPE_CHECKING:
-    from playground.workbench.actions import Actions
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+from playground.workbench.snapshot import save_new
 
 MULTIPLES = (1, 2, 4, 8)
 _PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
@@ -48,131 +47,146 @@ class Wish:
     sweeps: list[str] = field(default_factory=lambda: ["", ""])
 
 
-@dataclass
-class Capturing:
-    """The capture's state in one window."""
+@dataclass(kw_only=True)
+class Captures:
+    """The captures of one session: PNGs at once, anything larger in another process."""
 
+    session: Session
+    notices: Notices
+    folder: Path  # where pictures go
     wish: Wish = field(default_factory=Wish)
-    shown: bool = False
+    shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
-    last: Path | None = None  # the file or folder that was made last
+    saved: Path | None = None  # the last picture
+    made: Path | None = None  # the file or folder that was captured last
     failed: str = ""  # why the last one was not made
 
-    def start(self, actions: Actions) -> None:
-        """Begin what is wished for; what cannot be done is said."""
+    def toggle(self) -> None:
+        """Show the capture's window, or no longer."""
+        self.shown = not self.shown
+
+    def save_picture(self) -> None:
+        """Save the picture as a PNG that is new in the folder, and say where."""
+        frame = self.session.read()
+        if frame is None:
+            self.notices.say("there is no picture to save yet")
+            return
+        try:
+            self.saved = save_new(frame, self.folder, frame.sketch)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        width, height = frame.size
+        self.notices.say(f"saved {shown(self.saved)}, {width} x {height} pixels, in {self.folder}")
+
+    def start(self) -> None:
+        """Begin what is wished for; what cannot be done becomes a notice."""
         if self.working is not None:
             return
         self.failed = ""
         try:
-            job = job_of(self.wish, actions)
+            job = self.job()
         except PlaygroundError as error:
             self.failed = str(error)
-            actions.say(self.failed)
+            self.notices.say(self.failed)
             return
-        engine = actions.session.engine
+        engine = self.session.engine
         self.working = JobProcess(job, software=engine.info.software, driver=engine.driver)
 
-    def look(self, actions: Actions) -> None:
-        """Take in how far the job is; say it once it has ended."""
+    def poll(self) -> None:
+        """Take in how far the job is; report it once it has ended."""
         finished = self.working.poll() if self.working is not None else None
         if self.working is None or finished is None:
             return
         job, took = self.working.job, time.monotonic() - self.working.started
         self.working = None
         for note in finished.notes:
-            actions.say(note)
+            self.notices.say(note)
         if finished.stopped:
-            actions.say("the capture was stopped" + ("; its pictures stay" if job.kind == PICTURES else ""))
+            self.notices.say(
+                "the capture was stopped" + ("; its pictures stay" if job.kind == PICTURES else "")
+            )
         elif finished.path is None:
             self.failed = finished.error
-            actions.say(finished.error)
+            self.notices.say(finished.error)
         else:
-            self.last = actions.saved = finished.path
+            self.made = self.saved = finished.path
             width, height = job.size
             what = "pictures of " if job.kind in (PICTURES, SHEET) else ""
-            actions.say(f"saved {shown(finished.path)}, {what}{width} x {height} pixels, in {took:.1f} s")
+            text = f"saved {shown(finished.path)}, {what}{width} x {height} pixels, in {took:.1f} s"
+            self.notices.say(text)
 
     def close(self) -> None:
-        """Stop what is at work."""
+        """Stop the job that is at work."""
         if self.working is not None:
             self.working.close()
             self.working = None
 
+    def size(self) -> tuple[int, int]:
+        """Return the size in pixels that is wished for; raise ``ParameterError``."""
+        wish, plan = self.wish, self.session.plan
+        width, height = plan.frame_size if plan is not None else (0, 0)
+        if wish.kind == SHEET and wish.multiple:
+            scale = USUAL_SIZE[0] * wish.multiple / max(width, 1)
+            return max(round(width * scale), 1), max(round(height * scale), 1)
+        size = (width * wish.multiple, height * wish.multiple) if wish.multiple else wish.size
+        if wish.kind == FILM and wish.ending != ".gif":
+            size = size[0] + size[0] % 2, size[1] + size[1] % 2
+        most = LARGEST_PICTURE if wish.kind in (PICTURE, PICTURES) else LARGEST_SIDE
+        if not all(1 <= side <= most for side in size):
+            raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
+        return size
 
-def window_size(actions: Actions) -> tuple[int, int]:
-    """Return the size of the picture in the window, in pixels; (0, 0) before the first."""
-    plan = actions.session.plan
-    return plan.frame_size if plan is not None else (0, 0)
+    def job(self) -> CaptureJob:
+        """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
+        wish, session = self.wish, self.session
+        if session.sketch is None:
+            raise DataError("there is no picture to save yet")
+        shown_map = session.view.map
+        sketch = shown_map.of(session.sketch) if shown_map is not None else session.sketch
+        steps, size = session.view.stops(session.sketch, session.clock.time), self.size()
+        moves = wish.kind in (FILM, PICTURES)
+        start = wish.start if moves else session.clock.time
+        fps, sweeps = Fraction(max(wish.fps, 1)), tuple(filter(None, (s.strip() for s in wish.sweeps)))
+        if wish.kind == FILM:
+            check_video(self.folder / f"film{wish.ending}", size, fps, wish.quality)
+        if wish.kind == SHEET:
+            if not sweeps:
+                raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
+            at = sketch.at(start)
+            swept(at, [read_sweep(at, text) for text in sweeps])
+            if steps:
+                raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
+        return CaptureJob(
+            kind=wish.kind,
+            sketch=sketch,
+            folder=self.folder,
+            size=size,
+            time=start,
+            steps=steps,
+            seconds=seconds_of(wish, sketch) if moves else None,
+            fps=fps,
+            ending=wish.ending,
+            quality=wish.quality,
+            sweeps=sweeps,
+        )
 
-
-def size_of(wish: Wish, actions: Actions) -> tuple[int, int]:
-    """Return the size in pixels that is wished for; raise ``ParameterError``."""
-    width, height = window_size(actions)
-    if wish.kind == SHEET and wish.multiple:
-        scale = USUAL_SIZE[0] * wish.multiple / max(width, 1)
-        return max(round(width * scale), 1), max(round(height * scale), 1)
-    size = (width * wish.multiple, height * wish.multiple) if wish.multiple else wish.size
-    if wish.kind == FILM and wish.ending != ".gif":
-        size = size[0] + size[0] % 2, size[1] + size[1] % 2
-    most = LARGEST_PICTURE if wish.kind in (PICTURE, PICTURES) else LARGEST_SIDE
-    if not all(1 <= side <= most for side in size):
-        raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
-    return size
-
-
-def job_of(wish: Wish, actions: Actions) -> Job:
-    """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
-    session = actions.session
-    if session.sketch is None:
-        raise DataError("there is no picture to save yet")
-    sketch = session.view.map.of(session.sketch) if session.view.map is not None else session.sketch
-    turns = session.repeats
-    steps = {path: turn for path, turn in session.view.steps.items() if turn < turns.get(path, 0)}
-    size = size_of(wish, actions)
-    moves = wish.kind in (FILM, PICTURES)
-    time_of = wish.start if moves else session.clock.time
-    fps, sweeps = Fraction(max(wish.fps, 1)), tuple(filter(None, (s.strip() for s in wish.sweeps)))
-    if wish.kind == FILM:
-        check_video(actions.folder / f"film{wish.ending}", size, fps, wish.quality)
-    if wish.kind == SHEET:
-        if not sweeps:
-            raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
-        at = sketch.at(time_of)
-        swept(at, [read_sweep(at, text) for text in sweeps])
-        if steps:
-            raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
-    return Job(
-        kind=wish.kind,
-        sketch=sketch,
-        folder=actions.folder,
-        size=size,
-        time=time_of,
-        steps=steps,
-        seconds=seconds_of(wish, sketch) if moves else None,
-        fps=fps,
-        ending=wish.ending,
-        quality=wish.quality,
-        sweeps=sweeps,
-    )
+    def summary(self) -> str:
+        """Return in a few words what would be made."""
+        try:
+            width, height = self.size()
+        except ParameterError as error:
+            return str(error)
+        if self.wish.kind in (FILM, PICTURES) and self.session.sketch is not None:
+            count = round(seconds_of(self.wish, self.session.sketch) * self.wish.fps)
+            return f"{counted(count, 'picture')} of {width} x {height} pixels"
+        return f"{width} x {height} pixels" + (" each" if self.wish.kind == SHEET else "")
 
 
 def seconds_of(wish: Wish, sketch: Sketch) -> float:
     """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
     left = sketch.duration - wish.start
     return wish.seconds if wish.seconds > 0.0 else left if left > 0.0 else 10.0
-
-
-def summary(wish: Wish, actions: Actions) -> str:
-    """Return in a few words what would be made."""
-    try:
-        width, height = size_of(wish, actions)
-    except ParameterError as error:
-        return str(error)
-    sketch = actions.session.sketch
-    if wish.kind in (FILM, PICTURES) and sketch is not None:
-        count = round(seconds_of(wish, sketch) * wish.fps)
-        return f"{counted(count, 'picture')} of {width} x {height} pixels"
-    return f"{width} x {height} pixels" + (" each" if wish.kind == SHEET else "")
 
 
 def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:

@@ -191,6 +191,13 @@ class History:
             self._close()
 
 
+def changes_between(before: Edits, after: Edits) -> tuple[dict[Key, object], dict[Key, object]]:
+    """Return what two edits say of each thing that differs."""
+    old, new = state_of(before, {}), state_of(after, {})
+    changed = [key for key in {*old, *new} if old.get(key) != new.get(key)]
+    return {key: old.get(key) for key in changed}, {key: new.get(key) for key in changed}
+
+
 def applied(state: State, changes: State) -> dict[Key, object]:
     """Return a state with changes made to it; None takes a thing out."""
     found = {**state, **changes}

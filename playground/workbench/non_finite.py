@@ -1,4 +1,4 @@
-"""Search the picture for numbers that are not finite while it rests, one pass a frame.
+"""Search the picture for numbers that are not finite while nothing changes, one pass a frame.
 
 Nothing is searched while a mouse button is held or until the picture has rested for a moment. A
 picture that goes on changing with time is searched now and then: that takes one part in fifty of
@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from playground.engine.non_finite import NotFinite
 from playground.errors import PlaygroundError, counted
-from playground.workbench.actions import Actions
+from playground.workbench.session import Session
 
 REST = 0.4  # [s] without a new picture before one is looked at
 _SELDOM = 2.0  # [s] between looks at a picture that moves
@@ -43,9 +43,9 @@ class FiniteWatch:
             return None
         return 0.0 if self._going is not None else REST / 2
 
-    def turn(self, actions: Actions, held: bool) -> None:
+    def update(self, session: Session, *, held: bool) -> None:
         """Look at one pass more, if it is time to; ``held``: a mouse button is down."""
-        session, now = actions.session, self._now()
+        now = self._now()
         if session.shown is None or session.plan is None:
             return
         picture = (session.engine, session.draws)
@@ -60,12 +60,12 @@ class FiniteWatch:
         if now < self._next if moving else self._going is None and now - self._since < REST:
             return
         try:
-            self._look(actions, to_the_end=moving)
+            self._look(session, to_the_end=moving)
         except PlaygroundError:  # whoever draws the sketch says so
             self._going, self._done = None, True
 
-    def _look(self, actions: Actions, to_the_end: bool) -> None:
-        session, start = actions.session, self._now()
+    def _look(self, session: Session, *, to_the_end: bool) -> None:
+        start = self._now()
         engine = session.engine
         assert session.plan is not None
         if self._going is None:
@@ -81,27 +81,26 @@ class FiniteWatch:
                 return
         self._going, self._done = None, True
         if engine.plan is session.plan:
-            self._take(actions)
+            self._take(session)
         self._next = self._now() + max(_SELDOM, _SHARE * (self._spent + self._now() - start))
 
-    def _take(self, actions: Actions) -> None:
+    def _take(self, session: Session) -> None:
         """Take what was found; of passes that a map does not need, what was found before stays."""
-        session = actions.session
         assert session.plan is not None
-        kept: list[NotFinite] = []
+        earlier: list[NotFinite] = []
         if session.view.map is not None and self._of is session.sketch:
             ran = (step.path for step in session.plan.walk() if step.path in session.engine.results)
             there = {session.view.map.own_path(path) for path in ran}
-            kept = [f for f in self.found if f.path not in there]
+            earlier = [f for f in self.found if f.path not in there]
         self._of = session.sketch
         coming = self._coming
         if session.view.map is not None:
             found = [(f, session.view.map.own_path(f.path)) for f in coming]
             coming = [replace(f, path=path) for f, path in found if path]
-        self.found = (*coming, *kept)
+        self.found = (*coming, *earlier)
 
 
-def said(found: tuple[NotFinite, ...]) -> str:
+def summary(found: tuple[NotFinite, ...]) -> str:
     """Return what was found as a sentence: the first, and of how many."""
     first = found[0]
     x, y = first.texel

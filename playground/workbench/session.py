@@ -192,8 +192,16 @@ class Session:
 
     def show(self, ref: str | None) -> None:
         """Show a texture from above, its range fitted to its values; None: the sketch's own view."""
+        self.view.last_ref = ref or self.view.last_ref
         self.view.show(Map(ref) if ref else None)
         self.fit_map()
+
+    def toggle_map(self) -> None:
+        """Go between the sketch's own view and the map shown last, at first of the first texture."""
+        if self.view.map is not None:
+            self.show(None)
+        elif refs := self.refs:
+            self.show(self.view.last_ref if self.view.last_ref in refs else refs[0])
 
     def restore_view(self, steps: Mapping[str, int], shown: Map | None) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""

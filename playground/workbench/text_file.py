@@ -140,7 +140,7 @@ class Editing:
     def __init__(self, text: OpenText) -> None:
         self.text = text
         self.line, self.column = 1, 1
-        self.asked = True  # it is to come to the front, at its line
+        self.focus = True  # it is to come to the front, at its line
         self.view: TextView | None = None  # None until it is drawn for the first time
 
 

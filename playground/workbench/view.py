@@ -15,6 +15,7 @@ class View:
 
     def __init__(self) -> None:
         self.map: Map | None = None  # drawn instead of the sketch's own view
+        self.last_ref = ""  # the texture of the map shown last
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.framed_for = DEFAULT_PICTURE  # [pixels] the image whose sides stay visible in a narrower window

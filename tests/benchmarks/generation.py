@@ -4,7 +4,8 @@
     python tests/benchmarks/generation.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
 Each figure is the median of several runs, with a new seed each, ours and theirs in turn,
-so that a busy machine slows both. Nothing compiled is timed. Figures wander with the
+so that a busy machine slows both; techniques with a fast variant are timed in their plain form
+as well. Nothing compiled is timed. Figures wander with the
 machine; ratios less so. The thesis's own methods are compiled from thesis.c with cc -O2.
 """
 
@@ -13,12 +14,14 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 from side_by_side import SEEDS, Bench, Comparison, Run, run_all
 
 from playground.engine.engine import Engine
 from playground.sketch.model import Sketch
+from playground.sketch.variants import any_variants
 
 
 class Generation(Bench):
@@ -32,21 +35,27 @@ class Generation(Bench):
         ref: str,
         size: int,
         *,
-        drivers: str = "auto fragment",
+        forms: str = "auto fragment plain",
         seed: str = "seed",
         **values: object,
     ) -> dict[str, Run]:
-        """Return runs of a technique, a new seed each, up to the texture ``ref`` inside it ("": its last)."""
+        """Return runs of a technique, a new seed each, up to the texture ``ref`` inside it ("": its last).
+
+        Of one without a fast variant there is no plain form apart.
+        """
         sketch = self.sketch(f'size = {size}\n[[pass]]\nname = "a"\nuse = "{use}"\n').with_values(
             {f"a.{name}": value for name, value in values.items()}
         )
         wanted = f"a.{ref}" if ref else "a"
 
-        def run(engine: Engine) -> None:
-            engine.texture(sketch.with_values({f"a.{seed}": next(SEEDS) % 9999}), wanted)
+        def run(form: str) -> None:
+            engine = self.engines["auto" if form == "plain" else form]
+            asked = sketch.with_values({f"a.{seed}": next(SEEDS) % 9999})
+            engine.texture(asked.plainly() if form == "plain" else asked, wanted)
             engine.ctx.finish()
 
-        return {driver: (lambda e=self.engines[driver]: run(e)) for driver in drivers.split()}  # type: ignore[misc]
+        there = [f for f in forms.split() if f != "plain" or any_variants(sketch.graph.passes[0].technique)]
+        return {form: partial(run, form) for form in there}
 
     def c(self, function: str, size: int, *arguments: float | int) -> dict[str, Run]:
         """Return a run of one of the thesis's methods in C; none where there is no compiler."""
@@ -225,8 +234,8 @@ def fault_formation(bench: Generation, size: int) -> Iterator[Comparison]:
 
 def models(bench: Generation, size: int) -> Iterator[Comparison]:
     """Compare the thesis's own models with its Perlin: its claims, as ratios."""
-    base = bench.ours("generation/layered_noise", "", size, drivers="auto")["auto"]
-    shape = bench.ours("generation/diamond_square", "", size, drivers="auto")["auto"]
+    base = bench.ours("generation/layered_noise", "", size, forms="auto")["auto"]
+    shape = bench.ours("generation/diamond_square", "", size, forms="auto")["auto"]
     for name, seed in (("mixed", "seed"), ("mixed_tiled", "seed"), ("layered_noise_tiled", "seed")):
         ours = bench.ours(f"generation/{name}", "", size, seed=seed)
         theirs = {"layered_noise": base, "diamond_square": shape}
@@ -251,9 +260,7 @@ def multiply(bench: Generation, size: int) -> Iterator[Comparison]:
             engine.ctx.finish()
 
         ours: dict[str, Run] = {d: (lambda e=e, r=run: r(e)) for d, e in bench.engines.items()}  # type: ignore[misc]
-        theirs = {
-            name: bench.ours(f"generation/{name}", "", side, drivers="auto", normalise="minmax")["auto"]
-        }
+        theirs = {name: bench.ours(f"generation/{name}", "", side, forms="auto", normalise="minmax")["auto"]}
         yield Comparison(f"multiply, two by {name}", ours, theirs, "0.5, says the thesis")
 
 

@@ -31,6 +31,8 @@ from playground.sketch.model import Sketch
 HERE = Path(__file__).resolve().parent
 SEEDS = itertools.count(1)
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+FORMS = ("auto", "fragment", "plain")
+"""What of ours is timed: by compute shaders where there are any, without, and in the plain form."""
 Run = Callable[[], object]
 
 
@@ -39,7 +41,7 @@ class Comparison:
     """Something of ours, and what stands beside it."""
 
     what: str
-    ours: dict[str, Run]  # by driver
+    ours: dict[str, Run]  # by form, see FORMS
     theirs: dict[str, Run] = field(default_factory=dict)
     wanted: str = ""
     once: frozenset[str] = frozenset()  # those of theirs that are too slow to run more than once
@@ -100,7 +102,7 @@ def run_all(
         costs: dict[tuple[str, int], float] = {}
         for size in options.size:
             table = Table(title=f"{size} x {size}, {clock}")
-            for heading in ("what", "auto", "fragment", "beside it", "ms", "ratio", "wanted"):
+            for heading in ("what", *FORMS, "beside it", "ms", "ratio", "wanted"):
                 table.add_column(heading, justify="left" if heading in ("what", "beside it") else "right")
             for name, make in comparisons.items():
                 if options.names and name not in options.names:
@@ -115,12 +117,12 @@ def run_all(
 
 
 def _add(table: Table, comparison: Comparison, times: dict[str, float]) -> None:
-    ours = [f"{times[d]:.1f}" if d in times else "" for d in ("auto", "fragment")]
+    ours = [f"{times[form]:.1f}" if form in times else "" for form in FORMS]
     if not comparison.theirs:
         table.add_row(comparison.what, *ours, "", "", "", comparison.wanted)
     for index, name in enumerate(comparison.theirs):
-        ratios = " / ".join(f"{times[name] / times[d]:.2f}" for d in comparison.ours)
-        head = (comparison.what, *ours) if index == 0 else ("", "", "")
+        ratios = " / ".join(f"{times[name] / times[form]:.2f}" for form in comparison.ours)
+        head = (comparison.what, *ours) if index == 0 else ("",) * (1 + len(ours))
         table.add_row(*head, name, f"{times[name]:.1f}", ratios, comparison.wanted if index == 0 else "")
 
 

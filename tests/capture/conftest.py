@@ -9,6 +9,8 @@ import pytest
 
 import playground
 
+from ..sketch_texts import passes
+
 HEIGHT = """// lop.glsl -- land that is like itself in no mirror.
 #pragma kernel(output = "height:r32f")
 uniform float gap = 0.0;  //! slider(0, 1) step(1) Whether a texel in the middle is no number
@@ -34,27 +36,16 @@ void kernel(ivec2 texel, out vec4 weights, out vec2 flow) {
     flow = vec2(-3.0, 1e6) * place;
 }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 size = [9, 5]
 extent = [800.0, 300.0]
 relief = 1000.0
 base_elevation = 50.0
-[[pass]]
-name = "height"
-use = "./lop"
-[[pass]]
-name = "colour"
-use = "./tint"
-size = [17, 13]
-[[pass]]
-name = "light"
-use = "./glow"
-[[pass]]
-name = "mix"
-use = "./weights"
-[view]
-use = "view/terrain"
 """
+    + passes(height="./lop", colour=("./tint", "size = [17, 13]"), light="./glow", mix="./weights")
+    + '[view]\nuse = "view/terrain"\n'
+)
 
 
 @pytest.fixture

@@ -20,6 +20,8 @@ from playground.errors import ContextError, DataError, ParameterError
 from playground.images.files import read_png, write_png
 from playground.sketch.load import load
 
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+
 av = pytest.importorskip("av")
 
 CLOCK = """#version 330
@@ -30,15 +32,10 @@ uniform float iTimeDelta;
 out vec4 colour;
 void main() { colour = vec4(u_time / 10.0, float(iFrame) / 255.0, iTimeDelta, 1.0); }
 """
-KEYS = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[[keyframe]]
+KEYS = (
+    "format = 1\nsize = 33\n"
+    + LIT_NOISE
+    + """[[keyframe]]
 time = 0.0
 camera = { azimuth = 100.0 }
 set = { "light.sun" = [90, 20] }
@@ -46,10 +43,9 @@ set = { "light.sun" = [90, 20] }
 time = 0.4
 camera = { azimuth = 190.0 }
 set = { "light.sun" = [200, 60] }
-[view]
-use = "view/terrain"
-set = { grid = 9 }
 """
+    + SMALL_VIEW
+)
 
 
 @pytest.fixture
@@ -266,7 +262,7 @@ def test_a_film_that_cannot_be_read_back_is_kept(
         any_engine,
         Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
         tmp_path / "film.mp4",
-        say=said.append,
+        notice=said.append,
     )
     assert decoded(path).shape == (3, 36, 64, 3)
     assert len(said) == 1 and "was written, but could not be checked" in said[0]

@@ -16,6 +16,8 @@ from playground.gpu.textures import read_picture
 from playground.images.files import read_png
 from playground.sketch.load import load
 
+from ..sketch_texts import passes
+
 SIZE, TILES = (640, 360), (100, 70)
 SMALL = {"size": 129}
 
@@ -36,30 +38,16 @@ vec4 kernel(ivec2 texel) {{
     {body}
 }}
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "first"
-use = "view/map"
-inputs = {{ shown = "height" }}
-[view]
-use = "./both"
-inputs = {{ height = "height" }}
-"""
-BOTH = """format = 1
-[[pass]]
-name = "first"
-use = "view/map"
-[[pass]]
-name = "last"
-use = "./last"
-inputs = {{ shown = "first" }}
-[inputs]
-height = "first.shown"
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(height="generation/white_noise", first=("view/map", 'inputs = {{ shown = "height" }}'))
+    + '[view]\nuse = "./both"\ninputs = {{ height = "height" }}\n'
+)
+BOTH = (
+    "format = 1\n"
+    + passes(first="view/map", last=("./last", 'inputs = {{ shown = "first" }}'))
+    + '[inputs]\nheight = "first.shown"\n'
+)
 
 
 def together(engine: Engine, sketch, size=SIZE, tile=TILES, **more) -> np.ndarray:

@@ -57,7 +57,7 @@ def test_vertices_stand_where_the_land_is(
     for x, y, z in mesh.vertices:
         col, row = round((x + 400) / 100), round((z + 150) / 75)
         assert abs(y - land[row, col]) < 1e-3
-    assert "9 x 5 vertices, 64 triangles; 800 x 300 m, 175 to 925 m high; texture 17 x 13" in done.said
+    assert "9 x 5 vertices, 64 triangles; 800 x 300 m, 175 to 925 m high; texture 17 x 13" in done.summary
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
@@ -154,9 +154,9 @@ def test_land_without_colour_has_no_texture(any_engine: Engine, folder: Path, tm
     bare = playground.load(folder / "bare.toml")
     for ending in ENDINGS:
         done = playground.export(bare, tmp_path / f"land.{ending}", engine=any_engine)
-        assert "no texture: the view shows no colour" in done.said
+        assert "no texture: the view shows no colour" in done.summary
         assert opened(done.path).faces.shape == (64, 3)
-    assert [path.name for path in done.beside] == ["land.mtl"]
+    assert [path.name for path in done.sidecars] == ["land.mtl"]
     assert "map_Kd" not in (tmp_path / "land.mtl").read_text()
     with pytest.raises(playground.SketchError, match="has no light to bake in"):
         playground.export(bare, tmp_path / "land.glb", light=True, engine=any_engine)
@@ -174,7 +174,7 @@ def test_a_coarser_grid_stands_on_the_land(any_engine: Engine, lop: Sketch, land
 def test_the_usual_grid_is_the_land_s_up_to_513(any_engine: Engine, lop: Sketch, tmp_path: Path):
     large = lop.with_values({"size": "1025x257"})
     done = playground.export(large, tmp_path / "land.glb", engine=any_engine)
-    assert "513 x 129 vertices" in done.said
+    assert "513 x 129 vertices" in done.summary
     mesh = opened(done.path)
     np.testing.assert_allclose(mesh.vertices[:, 1].reshape(129, 513), metres((513, 129)), rtol=1e-6)
     assert document(done.path)["accessors"][3]["componentType"] == 5125, "66177 vertices: 32 bits"
@@ -194,7 +194,7 @@ def test_indices_grow_where_sixteen_bits_end(cols: int, rows: int, kind: int, tm
 
 def test_an_obj_s_files_find_each_other(any_engine: Engine, lop: Sketch, tmp_path: Path):
     done = playground.export(lop, tmp_path / "my own land.obj", engine=any_engine)
-    assert [path.name for path in done.beside] == ["my_own_land.mtl", "my_own_land-texture.png"]
+    assert [path.name for path in done.sidecars] == ["my_own_land.mtl", "my_own_land-texture.png"]
     assert picture_of(opened(done.path)).shape == (13, 17, 3)
 
 

@@ -25,6 +25,7 @@ from playground.sketch.unpack import unpacked, unpacked_beside
 from playground.sketch.variant_record import NAME
 from playground.sketch.variants import left_out, standing
 
+from ..sketch_texts import passes
 from ..variants import trust
 
 LAND = """// land.glsl -- a picture, tilted
@@ -34,23 +35,17 @@ uniform sampler2D shape; //! file
 float kernel(ivec2 texel) { return tilt(texel, size) * texelFetch(shape, texel, 0).r; }
 """
 TILT = "float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }\n"
-SKETCH = """format = 1  # ours
-title = "Hills"
-size = 17
-[[pass]]
-name = "height"
-use = "./parts/land"
-set = { shape = "images/one.png" }
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
+SKETCH = (
+    'format = 1  # ours\ntitle = "Hills"\nsize = 17\n'
+    + passes(height=("./parts/land", 'set = { shape = "images/one.png" }'), light="lighting/l_dot_n")
+    + """[view]
 use = "view/terrain"
 set = { grid = 9 }
 [[preset]]
 name = "other"
 set = { "height.shape" = "images/two.png" }
 """
+)
 
 
 @pytest.fixture(autouse=True)

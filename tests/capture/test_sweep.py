@@ -15,18 +15,9 @@ from playground.errors import ParameterError
 from playground.images.files import read_png
 from playground.sketch.load import load
 
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
-use = "view/terrain"
-set = { grid = 9 }
-"""
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+
+SKETCH = "format = 1\nsize = 33\n" + LIT_NOISE + SMALL_VIEW
 
 
 @pytest.fixture
@@ -48,8 +39,8 @@ def test_what_a_sweep_says(sketch):
     assert values("view.sea=true,false") == (True, False)
     assert values("view.tone=none,film") == (0, 2)
     assert values("size=33,65") == ((33, 33), (65, 65))
-    assert read_sweep(sketch, "view.tone=none,film").said == ("none", "film")
-    assert read_sweep(sketch, "light.sun_colour=#ff0000;#00ff00").said == ("#ff0000", "#00ff00")
+    assert read_sweep(sketch, "view.tone=none,film").labels == ("none", "film")
+    assert read_sweep(sketch, "light.sun_colour=#ff0000;#00ff00").labels == ("#ff0000", "#00ff00")
     assert len(read_sweep(sketch, "view.haze=0..1").values) == 9
 
 

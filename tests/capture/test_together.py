@@ -73,4 +73,4 @@ def test_what_goes_beside_replaces_only_what_an_export_wrote(any_engine: Engine,
         mine.unlink()
         first = playground.export(lop, tmp_path / name, engine=any_engine)
         again = playground.export(lop.with_values({"relief": 500}), tmp_path / name, engine=any_engine)
-        assert first.beside == again.beside and mine in again.beside
+        assert first.sidecars == again.sidecars and mine in again.sidecars

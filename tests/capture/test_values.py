@@ -45,7 +45,7 @@ def test_floats_are_metres_from_the_north(any_engine: Engine, lop: Sketch, land:
         assert found.dtype == np.float32
         np.testing.assert_allclose(found, land, rtol=1e-6)
         assert found.argmax() == 0, "the north-western corner is the highest"
-        assert "metres above sea level" in done.said
+        assert "metres above sea level" in done.summary
 
 
 @pytest.mark.parametrize("ending", ["png", "r16", "raw", "tif"])
@@ -54,7 +54,7 @@ def test_sixteen_bits_say_what_they_stand_for(
 ):
     path = tmp_path / f"land.{ending}"
     done = playground.export(lop, path, bits=16, engine=any_engine)
-    assert "0 is 175 m and 65535 is 925 m" in done.said
+    assert "0 is 175 m and 65535 is 925 m" in done.summary
     if ending == "png":
         with PIL.Image.open(path) as picture:
             stored, text = np.array(picture), picture.text  # type: ignore[attr-defined]
@@ -67,8 +67,8 @@ def test_sixteen_bits_say_what_they_stand_for(
         scale, offset = (float(items.split(f'role="{r}">')[1].split("<")[0]) for r in ("scale", "offset"))
     else:
         stored = np.fromfile(path, "<u2").reshape(5, 9)
-        assert done.beside == (tmp_path / f"land.{ending}.json",)
-        told = json.loads(done.beside[0].read_text())
+        assert done.sidecars == (tmp_path / f"land.{ending}.json",)
+        told = json.loads(done.sidecars[0].read_text())
         assert (told["width"], told["height"], told["bits"]) == (9, 5, 16)
         assert (told["byte_order"], told["first_row"], told["spacing_m"]) == (
             "little",
@@ -94,7 +94,7 @@ def test_a_range_is_kept_and_what_lies_outside_is_said(any_engine: Engine, lop: 
 def test_flat_land_has_a_scale(any_engine: Engine, lop: Sketch, tmp_path: Path):
     done = playground.export(lop.with_values({"relief": 0}), tmp_path / "a.r16", engine=any_engine)
     assert not np.fromfile(done.path, "<u2").any()
-    assert "0 is 50 m and 65535 is 51 m" in done.said
+    assert "0 is 50 m and 65535 is 51 m" in done.summary
 
 
 def test_the_land_comes_back_by_the_playground_s_own_reader(
@@ -179,7 +179,7 @@ def test_colours_are_srgb_pictures(ending: str, bound: int, any_engine: Engine, 
         assert picture.mode == "RGB"
         found = np.array(picture).astype(int)
     assert np.abs(found - np.rint(255 * srgb(tint()))).max() <= bound
-    assert "sRGB" in done.said and not done.warnings
+    assert "sRGB" in done.summary and not done.warnings
 
 
 def test_colours_in_floats_stay_linear_and_whole(any_engine: Engine, lop: Sketch, tmp_path: Path):

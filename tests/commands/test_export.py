@@ -15,6 +15,8 @@ from playground import cli
 from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
 
+from ..sketch_texts import map_of, passes
+
 ROOT = Path(__file__).resolve().parents[2]
 
 HEIGHT = """// rise.glsl -- a slope that rises to the north.
@@ -26,17 +28,14 @@ WAVE = """// wave.glsl -- colours, and no height.
 #pragma kernel(output = "colour:rgba16f")
 vec4 kernel(ivec2 texel) { return vec4(0.5); }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 size = 17
 extent = 320.0
 relief = 100.0
-[[pass]]
-name = "height"
-use = "./rise"
-[[pass]]
-name = "colour"
-use = "./wave"
-[view]
+"""
+    + passes(height="./rise", colour="./wave")
+    + """[view]
 use = "view/terrain"
 [[preset]]
 name = "half"
@@ -45,18 +44,11 @@ set = { "height.rise" = 0.5 }
 name = "quarter"
 set = { "height.rise" = 0.25 }
 """
+)
 LIT = SKETCH.replace("[view]", '[[pass]]\nname = "light"\nuse = "./wave"\n[view]', 1).replace(
     '"half"', '"evening"'
 )
-FLAT = """format = 1
-size = 9
-[[pass]]
-name = "colour"
-use = "./wave"
-[view]
-use = "view/map"
-inputs = { shown = "colour" }
-"""
+FLAT = "format = 1\nsize = 9\n" + passes(colour="./wave") + map_of("colour")
 
 
 @pytest.fixture(autouse=True)

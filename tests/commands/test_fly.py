@@ -15,19 +15,17 @@ from playground.engine.engine import Engine
 from playground.images.files import read_png
 from playground.sketch.model import Sketch
 
+from ..sketch_texts import passes
+
 SKETCH = """format = 1
 title = "A small land without end"
 size = 25
 extent = 1440.0
 relief = 700.0
-[[pass]]
-name = "height"
-use = "generation/endless"
-set = { apron = 4, hills = 64, "detail.octaves" = 2 }
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-"""
+""" + passes(
+    height=("generation/endless", 'set = { apron = 4, hills = 64, "detail.octaves" = 2 }'),
+    light="lighting/l_dot_n",
+)
 HEADER = {
     "format": "playground flight",
     "version": 1,

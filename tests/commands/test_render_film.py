@@ -15,19 +15,14 @@ import pytest
 from playground import cli
 from playground.images.files import read_png
 
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+
 ROOT = Path(__file__).resolve().parents[2]
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
-use = "view/terrain"
-set = { grid = 9 }
-[[keyframe]]
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + LIT_NOISE
+    + SMALL_VIEW
+    + """[[keyframe]]
 time = 0.0
 set = { "light.gain" = 1.0 }
 [[keyframe]]
@@ -38,6 +33,7 @@ name = "late"
 time = 0.3
 size = [48, 28]
 """
+)
 
 
 @pytest.fixture

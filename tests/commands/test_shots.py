@@ -10,21 +10,13 @@ import pytest
 from playground import cli
 from playground.sketch.find import shipped_sketches
 
-SKETCH = """format = 1
-title = "A slope"
-size = 33
-[[pass]]
-name = "height"
-use = "./slope"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[shot]]
-name = "dark"
-size = [66, 33]
-[[shot]]
-name = "bright"
-"""
+from ..sketch_texts import map_of_height
+
+SKETCH = (
+    'format = 1\ntitle = "A slope"\nsize = 33\n'
+    + map_of_height("./slope")
+    + '[[shot]]\nname = "dark"\nsize = [66, 33]\n[[shot]]\nname = "bright"\n'
+)
 SLOPE = """// slope.glsl -- a slope that rises to the east.
 #pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }

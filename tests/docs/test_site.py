@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from functools import partial
 from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -13,6 +17,14 @@ import playground
 from playground.sketch.catalogue import techniques as listed
 
 pytestmark = pytest.mark.slow
+IN_A_BROWSER = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+FOUND = "document.querySelectorAll('.md-search-result__item').length"
+ELSEWHERE = (
+    "return performance.getEntriesByType('resource').map(e => e.name)"
+    ".filter(name => !name.startsWith(location.origin) && !name.startsWith('file:'))"
+)
+NARROW, WIDE = 390, 1280  # pixels: a phone, a desk
 
 
 class Loads(HTMLParser):
@@ -63,3 +75,53 @@ def test_every_technique_and_public_name_has_its_place(site: Path):
 
 def test_no_source_of_the_site_is_published(site: Path):
     assert not [path for path in site.rglob("*.py") if path.name in ("hooks.py", "pages.py")]
+
+
+# In a real browser
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, form: str, *values: object) -> None:
+        """Keep the test's output to itself."""
+
+
+@pytest.fixture
+def server(site: Path) -> Iterator[str]:
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site))) as found:
+        thread = Thread(target=found.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{found.server_port}"
+        found.shutdown()
+        thread.join()
+
+
+@IN_A_BROWSER
+@pytest.mark.parametrize("word", ["penumbra", "pénombre"])
+@pytest.mark.parametrize("kind", ["server", "folder"])
+def test_a_word_is_found(kind: str, word: str, site: Path, server: str, tmp_path: Path):
+    top = server if kind == "server" else site.as_uri()
+    with Browser(tmp_path / "profile") as browser:
+        browser.open(f"{top}/reference/glossary.html?q={word}")
+        browser.wait(f"{FOUND} > 0")
+        assert browser.run(ELSEWHERE) == []
+
+
+@IN_A_BROWSER
+@pytest.mark.parametrize("width", [NARROW, WIDE])
+def test_no_page_is_wider_than_the_window(width: int, site: Path, server: str, tmp_path: Path):
+    with Browser(tmp_path / "profile", width) as browser:
+        browser.emulate(
+            "setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False
+        )
+        for page in (
+            "index",
+            "reference/commands",
+            "reference/configuration",
+            "reference/gallery",
+            "reference/python",
+            "reference/techniques/lighting-night",
+            "tutorials/first-kernel",
+        ):
+            browser.open(f"{server}/{page}.html")
+            assert browser.run("return document.documentElement.scrollWidth") <= width, page
+            assert browser.log() == [], page

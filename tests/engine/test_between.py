@@ -14,17 +14,12 @@ from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..sketch_texts import map_of, passes
+
 SIDE = 16
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "generation/NAME"
-set = { seed = 5 }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = (
+    "format = 1\nsize = 17\n" + passes(height=("generation/NAME", "set = { seed = 5 }")) + map_of("height")
+)
 NAMES = ("diamond_square", "midpoint_displacement", "triangle_subdivision")
 
 

@@ -11,6 +11,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
+from ..sketch_texts import passes
+
 pytestmark = pytest.mark.usefixtures("trusted_variants")
 
 SUMS = """#pragma kernel(output = "sums:r32f", repeat = "log2(size.x)")
@@ -40,14 +42,7 @@ void main() {
 VALUES = """#pragma kernel(output = "values:r32f")
 float kernel(ivec2 texel) { return float((texel.x * 3 + texel.y * 5) % 8); }
 """
-BODY = """
-[[pass]]
-name = "values"
-use = "./values"
-[[pass]]
-name = "sums"
-use = "./sums"
-"""
+BODY = "\n" + passes(values="./values", sums="./sums")
 
 
 def truth(scale: float = 1.0) -> np.ndarray:
@@ -119,20 +114,17 @@ def test_a_start_that_it_knows_nothing_of_keeps_it_out(any_engine, folder, sums,
     assert "sums.comp" not in ran
 
 
-GRAPH = """
-[[pass]]
-name = "doubled"
-use = "./doubled"
-[[pass]]
-name = "add"
-use = "./add"
-[inputs]
+GRAPH = (
+    "\n"
+    + passes(doubled="./doubled", add="./add")
+    + """[inputs]
 values = ["doubled.values", "add.values"]
 [parameters]
 scale = ["doubled.scale", "add.scale"]
 [outputs]
 sum = "add:sum"
 """
+)
 DOUBLED = """#pragma kernel(output = "doubled:r32f")
 uniform sampler2D values; //! input
 uniform float scale = 1.0; //! slider(0, 10)

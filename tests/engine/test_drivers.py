@@ -8,14 +8,9 @@ import pytest
 from playground.engine.engine import Engine
 from playground.sketch.header import FORMATS
 
-BODY = """
-[[pass]]
-name = "start"
-use = "./start"
-[[pass]]
-name = "a"
-use = "./one"
-"""
+from ..sketch_texts import passes
+
+BODY = "\n" + passes(start="./start", a="./one")
 START = """#pragma kernel(output = "start:rgba32f")
 uint scrambled(uint x) { x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu;
     return x ^ (x >> 16); }

@@ -17,6 +17,7 @@ from playground.sketch.model import VARIANTS, Sketch
 from playground.sketch.variant_record import NAME
 from playground.sketch.variants import left_out
 
+from ..sketch_texts import passes
 from ..variants import trust
 
 HILL = """\
@@ -34,17 +35,9 @@ void main() {
     imageStore(out_height, texel, vec4(scale * float(texel.x)));
 }
 """
-PASSES = """\
-agrees = "1e-5"
-[[pass]]
-name = "part"
-use = "./part"
-[[pass]]
-name = "height"
-use = "./twice"
-[parameters]
-scale = "part.scale"
-"""
+PASSES = (
+    'agrees = "1e-5"\n' + passes(part="./part", height="./twice") + '[parameters]\nscale = "part.scale"\n'
+)
 HALF = """\
 #pragma kernel(output = "part:r32f")
 uniform float scale = 1.0; //! slider(0, 4) How high

@@ -18,6 +18,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.images.files import write_png
 
+from ..sketch_texts import passes
+
 ROOT = Path(__file__).resolve().parents[2]
 LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float bumps = 3.0; //! slider(0, 1000)
@@ -34,19 +36,15 @@ vec4 vertex(vec3 corner, out vec2 place) {
 }
 vec4 fragment(vec2 place) { return vec4(texture(height, place).rrr, 1.0); }
 """
-BODY = """
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "turned"
-use = "./loop"
-repeat = 3
-feedback = { height = "height" }
+BODY = (
+    "\n"
+    + passes(height="./land", turned=("./loop", "repeat = 3"))
+    + """feedback = { height = "height" }
 [view]
 use = "./draw"
 inputs = { height = "turned:height" }
 """
+)
 LOOP = """
 [[pass]]
 name = "add"

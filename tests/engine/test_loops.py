@@ -9,6 +9,8 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from ..sketch_texts import passes
+
 START = """#pragma kernel(output = "water:r32f")
 uniform float level = 1.0; //! slider(0, 10)
 float kernel(ivec2 texel) { return level * float((texel.x * 5 + texel.y * 3) % 7); }
@@ -33,17 +35,10 @@ void kernel(ivec2 texel, out float moved, out float left) {
     left = texelFetch(silt, texel, 0).r + texelFetch(flow, texel, 0).r;
 }
 """
-RAIN = """
-[[pass]]
-name = "rough"
-use = "./rough"
-[[pass]]
-name = "flow"
-use = "./flow"
-[[pass]]
-name = "move"
-use = "./move"
-[inputs]
+RAIN = (
+    "\n"
+    + passes(rough="./rough", flow="./flow", move="./move")
+    + """[inputs]
 water = ["flow.water", "move.water"]
 silt = "move.silt"
 [outputs]
@@ -51,6 +46,7 @@ water = "move:moved"
 silt = "move:left"
 flow = "flow:flow"
 """
+)
 SKETCH = """
 [[pass]]
 name = "start"
@@ -244,23 +240,17 @@ float kernel(ivec2 texel) { return texelFetch(fed, texel, 0).r + float(texel.x);
 STILL = """#pragma kernel(output = "still:r32f")
 float kernel(ivec2 texel) { return float(texel.y) * 0.125; }
 """
-INNER_TOML = """
-[[pass]]
-name = "still"
-use = "./still"
-[[pass]]
-name = "slow"
-use = "./slow"
-[[pass]]
-name = "go"
-use = "./inner"
-[inputs]
+INNER_TOML = (
+    "\n"
+    + passes(still="./still", slow="./slow", go="./inner")
+    + """[inputs]
 before = "go.before"
 fed = "slow.fed"
 [outputs]
 v = "go:v"
 slow = "slow:slow"
 """
+)
 OUTER_TOML = """
 [[pass]]
 name = "round"

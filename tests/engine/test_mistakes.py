@@ -12,22 +12,17 @@ from playground.engine.sandbox import Sandbox, TrySketch
 from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.sketch.load import load
 
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./first"
-[[pass]]
-name = "other"
-use = "./second"
-[[pass]]
-name = "good"
-use = "./third"
-[view]
+from ..sketch_texts import passes
+
+SKETCH = (
+    "format = 1\nsize = 17\n"
+    + passes(height="./first", other="./second", good="./third")
+    + """[view]
 use = "view/map"
 [view.inputs]
 shown = "height"
 """
+)
 KERNEL = """#include "both.glsl"
 #pragma kernel(output = "{name}:r32f")
 float kernel(ivec2 texel) {{ return {body}; }}

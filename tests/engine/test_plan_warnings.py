@@ -18,19 +18,13 @@ from playground.engine.sandbox import Sandbox
 from playground.sketch.load import load
 from playground.workbench.problems import Warnings
 
-SKETCH = """format = 1
-size = 9
-[[pass]]
-name = "height"
-use = "generation/heightmap"
-set = { elevation = "turned.tif" }
-[[pass]]
-name = "other"
-use = "./mine"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+from ..sketch_texts import map_of, passes
+
+SKETCH = (
+    "format = 1\nsize = 9\n"
+    + passes(height=("generation/heightmap", 'set = { elevation = "turned.tif" }'), other="./mine")
+    + map_of("height")
+)
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform float idle = 1.0;  //! slider(0, 2)
 #line 7

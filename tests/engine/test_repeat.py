@@ -13,6 +13,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.model import Keyframe
 
 from ..loading import load
+from ..sketch_texts import passes
 
 COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")
 uniform int turns = 5; //! slider(0, 50)
@@ -28,15 +29,7 @@ float kernel(ivec2 texel) {
 NUMBERS = """#pragma kernel(output = "n:r32f")
 float kernel(ivec2 texel) { return float((texel.x * 7 + texel.y * 13) % 11); }
 """
-WITH_START = """
-[[pass]]
-name = "n"
-use = "./numbers"
-[[pass]]
-name = "a"
-use = "./one"
-inputs = { initial = "n" }
-"""
+WITH_START = "\n" + passes(n="./numbers", a=("./one", 'inputs = { initial = "n" }'))
 
 
 def numbers(ny: int = 17, nx: int = 17) -> np.ndarray:

@@ -10,6 +10,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.sketch.load import load
 
+from ..sketch_texts import map_of, passes
+
 LAND = """#pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return float(texel.x + 100 * texel.y); }
 """
@@ -29,17 +31,10 @@ float kernel(ivec2 texel) {
     return total;
 }
 """
-SUM = """[[pass]]
-name = "rows"
-use = "./rows"
-size = [1, "height.size.y"]
-[[pass]]
-name = "total"
-use = "./all"
-size = 1
-[inputs]
-height = "rows.height"
-"""
+SUM = (
+    passes(rows=("./rows", 'size = [1, "height.size.y"]'), total=("./all", "size = 1"))
+    + '[inputs]\nheight = "rows.height"\n'
+)
 VARIANT = """// The same sum at once.
 #pragma compute(groups = "1, 1", local = "1, 1")
 uniform sampler2D height; //! input
@@ -52,20 +47,13 @@ void main() {
     imageStore(out_total, ivec2(0), vec4(total));
 }
 """
-SKETCH = """format = 1
-size = [17, 9]
-[[pass]]
-name = "land"
-use = "./land"
-size = ["size.x // 2", "size.y + 3"]
-[[pass]]
-name = "sum"
-use = "./sum"
-inputs = { height = "land" }
-[view]
-use = "view/map"
-inputs = { shown = "sum" }
-"""
+SKETCH = (
+    "format = 1\nsize = [17, 9]\n"
+    + passes(
+        land=("./land", 'size = ["size.x // 2", "size.y + 3"]'), sum=("./sum", 'inputs = { height = "land" }')
+    )
+    + map_of("sum")
+)
 
 
 @pytest.fixture

@@ -12,6 +12,8 @@ from playground.engine.engine import Engine
 from playground.images.files import write_png
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
+
 LAND = """#pragma kernel(output = "height:r32f")
 uniform float bumps = 3.0;   //! slider(0, 10) How many
 uniform float unused = 1.0;  //! slider(0, 10) Read by nobody
@@ -32,26 +34,13 @@ float kernel(ivec2 texel) { return extent.x + relief; }
 CLOCK = """#pragma kernel(output = "clock:r32f")
 float kernel(ivec2 texel) { return time; }
 """
-FOUR = """
-extent = 1000.0
-relief = 100.0
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "slope"
-use = "./slope"
-[[pass]]
-name = "span"
-use = "./span"
-[[pass]]
-name = "clock"
-use = "./clock"
-[[pass]]
-name = "light"
-use = "./light"
-inputs = { height = "height" }
-"""
+FOUR = "\nextent = 1000.0\nrelief = 100.0\n" + passes(
+    height="./land",
+    slope="./slope",
+    span="./span",
+    clock="./clock",
+    light=("./light", 'inputs = { height = "height" }'),
+)
 EVERYTHING = ("height", "slope", "span", "clock", "light")
 
 

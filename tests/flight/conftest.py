@@ -12,28 +12,26 @@ from playground.engine.engine import Engine
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
-LAND = """format = 1
+from ..sketch_texts import passes
+
+LAND = (
+    """format = 1
 title = "A small land without end"
 size = {size}
 extent = {extent}
 relief = 900.0
 base_elevation = -150.0
-[[pass]]
-name = "height"
-use = "generation/endless"
-set = {{ apron = {apron}, hills = 64, "detail.octaves" = 3 }}
-[[pass]]
-name = "colour"
-use = "texturing/endless_ground"
-set = {{ apron = {apron}, patches = 16 }}
-[[pass]]
-name = "light"
-use = "lighting/soft_cone"
-set = {{ gain = 1.0, ambient = 0.3, sun = {{ azimuth = 135, elevation = 35 }} }}
-[view]
-use = "view/terrain"
-samples = 1
 """
+    + passes(
+        height=("generation/endless", 'set = {{ apron = {apron}, hills = 64, "detail.octaves" = 3 }}'),
+        colour=("texturing/endless_ground", "set = {{ apron = {apron}, patches = 16 }}"),
+        light=(
+            "lighting/soft_cone",
+            "set = {{ gain = 1.0, ambient = 0.3, sun = {{ azimuth = 135, elevation = 35 }} }}",
+        ),
+    )
+    + '[view]\nuse = "view/terrain"\nsamples = 1\n'
+)
 DAYLIGHT = """[[pass]]
 name = "daylight"
 use = "lighting/daylight"

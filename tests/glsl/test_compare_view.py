@@ -7,19 +7,14 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from ..sketch_texts import passes
+
 SIZE = (96, 64)
-LAND = """
-[[pass]]
-name = "height"
-use = "generation/layered_noise"
-[[pass]]
-name = "one"
-use = "lighting/l_dot_n"
-[[pass]]
-name = "two"
-use = "lighting/l_dot_n"
-set = { gain = 0.5 }
-"""
+LAND = "\n" + passes(
+    height="generation/layered_noise",
+    one="lighting/l_dot_n",
+    two=("lighting/l_dot_n", "set = { gain = 0.5 }"),
+)
 
 
 @pytest.fixture

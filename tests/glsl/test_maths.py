@@ -88,6 +88,26 @@ def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
     np.testing.assert_array_equal(found, level[:, 0].astype(np.float32))
 
 
+def test_the_nodes_around_a_place_weigh_as_in_bilinear_interpolation(on_gpu):
+    """A sum over the nodes is a bilinear function itself, whose value at a place is known."""
+    places = np.concatenate([RNG.uniform(0, 50, (200, 2)), RNG.integers(0, 50, (50, 2))]).astype(np.float32)
+    places[200:220, 0] += np.float32(0.25)  # between two nodes of a row
+    places[220:230, 1] += np.float32(0.5)  # and of a column
+    count = on_gpu("maths/nodes.glsl", "float(nodes_around(place).count)", place=places)
+    fractions = places != np.floor(places)
+    np.testing.assert_array_equal(count, 2.0 ** fractions.sum(axis=1))
+    total, weights = np.zeros(len(places)), np.zeros(len(places))
+    for k in range(4):
+        weight = on_gpu("maths/nodes.glsl", f"weight_of(nodes_around(place), {k})", place=places)
+        node = on_gpu("maths/nodes.glsl", f"vec2(node_at(nodes_around(place), {k}))", place=places)
+        weight, node = np.where(k < count, weight, 0.0).astype(np.float64), node.astype(np.float64)
+        weights += weight
+        total += weight * (3.0 + node[:, 0]) * (7.0 - 2.0 * node[:, 1])
+    np.testing.assert_allclose(weights, 1.0, rtol=1e-6)
+    x, y = places.astype(np.float64).T
+    np.testing.assert_allclose(total, (3.0 + x) * (7.0 - 2.0 * y), rtol=1e-4, atol=1e-3)
+
+
 def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
     place, start, end = (RNG.uniform(-5, 5, (200, 2)).astype(np.float32) for _ in range(3))
     end[:20] = start[:20]  # pieces without length

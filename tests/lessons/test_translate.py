@@ -111,7 +111,7 @@ def test_marking_it_again_makes_it_current(pair, write_lesson):
             "```slider rough",
             "expected the block 'slider smooth' here, found slider rough",
         ),
-        ("## Une chose", "Une chose", "a paragraph stands here, where the English has a heading"),
+        ("## Une chose", "Une chose", "a paragraph is here, where the English has a heading"),
     ],
 )
 def test_what_a_translation_may_not(pair, before, after, words):
@@ -175,7 +175,7 @@ def test_a_block_that_got_more_parts_stands_in_english(pair, write_lesson):
 @pytest.mark.parametrize(
     ("before", "after", "words"),
     [
-        ("## Une chose", "Une chose", "a paragraph stands here, where the English has a heading"),
+        ("## Une chose", "Une chose", "a paragraph is here, where the English has a heading"),
         ('labels  = ["uni", "inégal"]', 'labels = ["uni"]', "labels: 1 here, 2 in English"),
     ],
 )

@@ -10,13 +10,15 @@ import imgui_bundle
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
-from playground.live.drops import draw_drops
-from playground.live.inspect.overlays import draw_see
+from playground.live.drops import Drops
+from playground.live.errors_list import ErrorsList
+from playground.live.inspect.overlays import draw_inspection
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
 from playground.live.theme import Theme
-from playground.workbench.actions import Actions
+from playground.workbench.bench import Bench
+from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
 
@@ -36,7 +38,8 @@ class Bare:
         self.theme.rescale(scale)
         self.time = 0.0
         self.session = Session(engine, path)
-        self.actions = Actions(self.session, self._quit, path, now=lambda: self.time)
+        self.bench = Bench(self.session, WindowControls(self._quit), folder=path, now=lambda: self.time)
+        self.drops = Drops(self.bench.commands)
         self.panel = Panel()
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
         self._watched: list[tuple[object, str, object]] = []
@@ -96,9 +99,9 @@ class Bare:
                 self.draw()
             else:
                 around(self.draw)
-            act_on_keys(self.actions)
-            self.actions.look_back(imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
-            self.actions.take_notes()
+            act_on_keys(self.bench)
+            self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+            self.bench.take_notes()
             imgui.render()
             for texture in imgui.get_platform_io().textures:
                 texture.set_status(imgui.ImTextureStatus.ok)
@@ -151,18 +154,23 @@ class Bare:
 
     def draw(self) -> None:
         """Draw the panel, and what stands over the window."""
-        self.actions.see.begin()
-        left = self.panel.draw(self.actions, self.theme)
+        self.bench.inspection.begin()
+        left = self.panel.draw(self.bench, self.theme)
         room = imgui.get_io().display_size
         area = left, 0.0, max(room.x - left, 1.0), room.y
-        draw_see(self.actions, self.picture, self.theme, area, 48 / area[2])
-        draw_drops(self.actions, self.theme)
-        draw_keymap(self.actions, self.theme)
+        draw_inspection(self.bench, self.picture, self.theme, area, 48 / area[2])
+        self.drops.draw(self.theme)
+        draw_keymap(self.bench.interface, self.theme)
 
     def close(self) -> None:
         """End it; the engine is its owner's."""
         for owner, name, draw in self._watched:
             setattr(owner, name, draw)
-        self.actions.see.release()
+        self.bench.inspection.release()
         self.session.release()
         imgui.destroy_context(self.context)
+
+
+def errors_of(bench: Bench) -> ErrorsList:
+    """Return the list of errors of one frame."""
+    return ErrorsList(bench.problems, bench.files, bench.session, bench.interface)

@@ -252,8 +252,8 @@ class Desk(Bare):
         for name in ("small_button", "radio_button"):
             self._watch(imgui, name)
         self.rememberer = Rememberer(self.session, memory_of(self.session.path))
-        self.lessons = Lessons(self.actions, self.rememberer, lambda: self.rememberer.look(size))
-        self.actions.panel_shown = True
+        self.lessons = Lessons(self.bench, self.rememberer, lambda: self.rememberer.look(size))
+        self.bench.interface.panel_shown = True
 
     @property
     def reading(self) -> Reading:
@@ -269,15 +269,17 @@ class Desk(Bare):
         if self.lessons is None:
             super().draw()
             return
-        self.actions.see.begin()
+        self.bench.inspection.begin()
         left = self.lessons.draw(self.theme)
-        left += self.panel.draw(self.actions, self.theme, left) if self.actions.panel_shown else 0.0
+        left += self.panel.draw(self.bench, self.theme, left) if self.bench.interface.panel_shown else 0.0
         room = imgui.get_io().display_size
-        draw_code(self.actions, self.theme, (left, 0.0, max(room.x - left, 1.0), room.y))
-        assert height_of_timeline(self.actions, self.theme) >= 0
+        area = left, 0.0, max(room.x - left, 1.0), room.y
+        bench = self.bench
+        draw_code(bench.files, bench.problems, bench.window.quit, self.theme, area)
+        assert height_of_timeline(self.session, self.bench.interface, self.theme) >= 0
         if self.picture is not None:
-            self.actions.see.compare.follow(self.picture)
-        self.lessons.turn(idle=True)
+            self.bench.inspection.compare.follow(self.picture)
+        self.lessons.update(idle=True)
 
     def close(self) -> None:
         if self.lessons is not None:

@@ -11,17 +11,19 @@ import numpy as np
 import pytest
 
 from playground.api import headless
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, Job, do
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, do
 from playground.capture.job_process import JobProcess
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
 from playground.sketch.assign import resolve
 from playground.workbench import captures as capturing
-from playground.workbench.actions import Actions
-from playground.workbench.captures import Capturing, Wish, job_of, parts_of, size_of, summary, sweep_text
+from playground.workbench.bench import Bench
+from playground.workbench.captures import Captures, Wish, parts_of, sweep_text
+from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = """// land.glsl -- a slope that goes up
@@ -31,99 +33,100 @@ uniform int kind = 0; //! menu("one", "two")
 uniform vec3 tint = vec3(1.0); //! colour
 float kernel(ivec2 texel) { return level * float(texel.x + kind) / float(size.x) + fract(time); }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[keyframe]]
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + map_of_height(channel="red")
+    + """[[keyframe]]
 time = 0.0
 set = { "height.tint" = "#000000" }
 [[keyframe]]
 time = 0.5
 set = { "height.tint" = "#ffffff" }
 """
+)
 LIMIT = 90.0  # [s] for a job to end on a slow machine
 SIZE = (40, 30)
 
 
 @pytest.fixture
-def actions(any_engine: Engine, tmp_path: Path) -> Iterator[Actions]:
+def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Bench]:
     (tmp_path / "land.glsl").write_text(LAND.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     (tmp_path / "out").mkdir()
     session = Session(any_engine, tmp_path)
-    made = Actions(session, lambda: None, tmp_path / "out")
+    made = Bench(session, WindowControls(lambda: None), folder=tmp_path / "out")
     session.frame(SIZE)
     assert session.error is None
     yield made
-    made.capture.close()
+    made.captures.close()
     session.release()
 
 
-def done(actions: Actions) -> None:
+def wishing(bench: Bench, wish: Wish) -> Captures:
+    """Return the captures with a wish."""
+    bench.captures.wish = wish
+    return bench.captures
+
+
+def done(bench: Bench) -> None:
     """Start what is wished for, and wait until it has ended; the window goes on meanwhile."""
-    actions.capture.start(actions)
-    wait(actions)
+    bench.captures.start()
+    wait(bench)
 
 
-def wait(actions: Actions) -> None:
+def wait(bench: Bench) -> None:
     end = time.monotonic() + LIMIT
-    while actions.capture.working is not None:
+    while bench.captures.working is not None:
         assert time.monotonic() < end
-        actions.session.frame(SIZE)
-        actions.capture.look(actions)
+        bench.session.frame(SIZE)
+        bench.captures.poll()
         time.sleep(0.01)
 
 
-def said(actions: Actions) -> str:
-    return "\n".join(notice.text for notice in actions.notices)
+def said(bench: Bench) -> str:
+    return "\n".join(notice.text for notice in bench.notices.items)
 
 
-def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(actions: Actions) -> None:
-    actions.session.drafts.set("height.level", 0.2)
-    actions.session.clock.time = 1.5
-    actions.session.frame(SIZE)
-    frame = actions.session.read()
+def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: Bench) -> None:
+    bench.session.drafts.set("height.level", 0.2)
+    bench.session.clock.time = 1.5
+    bench.session.frame(SIZE)
+    frame = bench.session.read()
     assert frame is not None
-    done(actions)
-    made = actions.capture.last
-    assert made == actions.folder / f"{made.name}" and actions.saved == made, said(actions)
+    done(bench)
+    made = bench.captures.made
+    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, said(bench)
     pixels, _ = read_png(made)
     assert np.array_equal(pixels, frame.array)
-    assert f"saved {made}, 40 x 30 pixels" in said(actions)
-    actions.capture.wish.multiple = 4
-    done(actions)
-    assert actions.capture.last is not None and actions.capture.last != made
-    assert read_png(actions.capture.last)[0].shape == (120, 160, 4)
+    assert f"saved {made}, 40 x 30 pixels" in said(bench)
+    bench.captures.wish.multiple = 4
+    done(bench)
+    assert bench.captures.made is not None and bench.captures.made != made
+    assert read_png(bench.captures.made)[0].shape == (120, 160, 4)
 
 
-def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(actions: Actions) -> None:
-    actions.capture.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
-    actions.capture.start(actions)
-    assert actions.capture.working is not None
-    actions.capture.working.stop()
-    wait(actions)
-    assert "the capture was stopped" in said(actions) and list(actions.folder.iterdir()) == []
-    actions.capture.start(actions)
-    actions.capture.close()
-    assert actions.capture.working is None and list(actions.folder.iterdir()) == []
+def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Bench) -> None:
+    bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
+    bench.captures.start()
+    assert bench.captures.working is not None
+    bench.captures.working.stop()
+    wait(bench)
+    assert "the capture was stopped" in said(bench) and list(bench.captures.folder.iterdir()) == []
+    bench.captures.start()
+    bench.captures.close()
+    assert bench.captures.working is None and list(bench.captures.folder.iterdir()) == []
 
 
-def test_a_process_that_dies_is_told(actions: Actions) -> None:
-    actions.capture.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
-    actions.capture.start(actions)
-    assert actions.capture.working is not None
-    actions.capture.working._worker._process.kill()
-    wait(actions)
-    assert actions.capture.failed.startswith("the capture "), actions.capture.failed
+def test_a_process_that_dies_is_told(bench: Bench) -> None:
+    bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
+    bench.captures.start()
+    assert bench.captures.working is not None
+    bench.captures.working._worker._process.kill()
+    wait(bench)
+    assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 
 
-def test_numbered_pictures_a_film_and_a_sheet(actions: Actions) -> None:
+def test_numbered_pictures_a_film_and_a_sheet(bench: Bench) -> None:
     """In this process, by the job that the other one does."""
     progress: list[tuple[int, int]] = []
     wish = Wish(PICTURES, seconds=0.2, fps=10, start=1.0)
@@ -131,13 +134,13 @@ def test_numbered_pictures_a_film_and_a_sheet(actions: Actions) -> None:
 
         def made(wish: Wish) -> Path:
             progress.clear()
-            job = job_of(wish, actions)
+            job = wishing(bench, wish).job()
             return do(job, engine, lambda done, of: progress.append((done, of)), lambda _: None)
 
         folder = made(wish)
         assert [path.name for path in sorted(folder.iterdir())] == ["00000.png", "00001.png"]
         assert progress == [(0, 2), (1, 2), (2, 2)]
-        job = job_of(wish, actions)
+        job = wishing(bench, wish).job()
         for number in range(2):
             wanted = engine.render(job.sketch, size=SIZE, time=1.0 + number / 10).array
             assert np.array_equal(read_png(folder / f"{number:05d}.png")[0], wanted)
@@ -147,11 +150,11 @@ def test_numbered_pictures_a_film_and_a_sheet(actions: Actions) -> None:
         pytest.importorskip("av")
         film = made(Wish(FILM, seconds=0.0, fps=10, ending=".gif"))
         assert film.suffix == ".gif" and progress[-1] == (5, 5), "to the last keyframe"
-    assert not list(actions.folder.rglob("*.part"))
+    assert not list(bench.captures.folder.rglob("*.part"))
 
 
 def test_what_cannot_be_made_is_said_before_anything_begins(
-    actions: Actions, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for wish, sentence in (
         (Wish(SHEET), "choose a parameter to sweep"),
@@ -160,49 +163,47 @@ def test_what_cannot_be_made_is_said_before_anything_begins(
         (Wish(FILM, ending=".gif", fps=30), "A GIF cannot|a GIF cannot"),
     ):
         with pytest.raises(PlaygroundError, match=sentence):
-            job_of(wish, actions)
-        actions.capture.wish = wish
-        actions.capture.start(actions)
-        assert actions.capture.working is None and actions.capture.failed
-        assert actions.capture.failed in said(actions)
+            wishing(bench, wish).job()
+        bench.captures.wish = wish
+        bench.captures.start()
+        assert bench.captures.working is None and bench.captures.failed
+        assert bench.captures.failed in said(bench)
 
 
-def test_without_pyav_one_sentence_with_the_command(
-    actions: Actions, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_pyav_one_sentence_with_the_command(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "av", None)
-    job = job_of(Wish(FILM, seconds=0.2, fps=10), actions)
+    job = wishing(bench, Wish(FILM, seconds=0.2, fps=10)).job()
     with pytest.raises(PlaygroundError, match="pip install"):
-        do(job, actions.session.engine, lambda *_: None, lambda _: None)
-    assert list(actions.folder.iterdir()) == []
+        do(job, bench.session.engine, lambda *_: None, lambda _: None)
+    assert list(bench.captures.folder.iterdir()) == []
 
 
-def test_sizes_and_lengths(actions: Actions) -> None:
-    assert size_of(Wish(PICTURE, multiple=8), actions) == (320, 240)
-    assert size_of(Wish(FILM, multiple=0, size=(33, 21)), actions) == (34, 22)
-    assert size_of(Wish(SHEET), actions) == (320, 240)
-    assert summary(Wish(FILM, seconds=2.0, fps=30), actions) == "60 pictures of 40 x 30 pixels"
-    assert summary(Wish(FILM, fps=10), actions) == "5 pictures of 40 x 30 pixels"
-    assert "expected" in summary(Wish(PICTURE, multiple=0, size=(0, 1)), actions)
+def test_sizes_and_lengths(bench: Bench) -> None:
+    assert wishing(bench, Wish(PICTURE, multiple=8)).size() == (320, 240)
+    assert wishing(bench, Wish(FILM, multiple=0, size=(33, 21))).size() == (34, 22)
+    assert wishing(bench, Wish(SHEET)).size() == (320, 240)
+    assert wishing(bench, Wish(FILM, seconds=2.0, fps=30)).summary() == "60 pictures of 40 x 30 pixels"
+    assert wishing(bench, Wish(FILM, fps=10)).summary() == "5 pictures of 40 x 30 pixels"
+    assert "expected" in wishing(bench, Wish(PICTURE, multiple=0, size=(0, 1))).summary()
     with pytest.raises(ParameterError):
-        size_of(Wish(FILM, multiple=0, size=(20000, 100)), actions)
+        wishing(bench, Wish(FILM, multiple=0, size=(20000, 100))).size()
 
 
-def test_the_map_is_captured_where_it_is_shown(actions: Actions) -> None:
-    actions.session.show("height:height")
-    actions.session.frame(SIZE)
-    assert actions.session.view.map is not None
-    assert job_of(Wish(), actions).sketch == actions.session.view.map.of(actions.session.sketch)  # type: ignore[arg-type]
+def test_the_map_is_captured_where_it_is_shown(bench: Bench) -> None:
+    bench.session.show("height:height")
+    bench.session.frame(SIZE)
+    assert bench.session.view.map is not None
+    assert wishing(bench, Wish()).job().sketch == bench.session.view.map.of(bench.session.sketch)  # type: ignore[arg-type]
 
 
-def test_a_chosen_parameter_is_swept_over_its_range(actions: Actions) -> None:
-    graph = actions.session.sketch.graph  # type: ignore[union-attr]
+def test_a_chosen_parameter_is_swept_over_its_range(bench: Bench) -> None:
+    graph = bench.session.sketch.graph  # type: ignore[union-attr]
     level, kind, tint = (resolve(graph, f"height.{n}")[0].parameter for n in ("level", "kind", "tint"))
     assert sweep_text("height.level", level) == "height.level=0..1,9"
     assert sweep_text("height.kind", kind) == "height.kind=one,two"
     assert parts_of(tint) == ("r", "g", "b") and parts_of(level) == ("",)
     for text in (sweep_text("height.kind", kind), sweep_text("height.tint", tint, "g")):
-        assert job_of(Wish(SHEET, sweeps=[text, ""]), actions).sweeps == (text,)
+        assert wishing(bench, Wish(SHEET, sweeps=[text, ""])).job().sweeps == (text,)
 
 
 def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -221,28 +222,25 @@ def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.Monkey
     assert str(tmp_path) in capturing.open_folder(file)
 
 
-def test_a_job_takes_a_new_name_every_time(actions: Actions) -> None:
-    job = job_of(Wish(), actions)
-    engine = actions.session.engine
+def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
+    job = wishing(bench, Wish()).job()
+    engine = bench.session.engine
     names = [do(job, engine, lambda *_: None, lambda _: None).name for _ in range(3)]
     stem = job.sketch.name
     assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
 
 
-def test_a_job_in_its_process_gives_the_bytes_of_this_one(actions: Actions) -> None:
-    job = Job(
-        kind=PICTURE,
-        sketch=job_of(Wish(), actions).sketch,
-        folder=actions.folder,
-        size=(64, 64),
-        fps=Fraction(30),
+def test_a_job_in_its_process_gives_the_bytes_of_this_one(bench: Bench) -> None:
+    sketch = wishing(bench, Wish()).job().sketch
+    job = CaptureJob(
+        kind=PICTURE, sketch=sketch, folder=bench.captures.folder, size=(64, 64), fps=Fraction(30)
     )
-    working = JobProcess(job, software=actions.session.engine.info.software)
+    working = JobProcess(job, software=bench.session.engine.info.software)
     end = time.monotonic() + LIMIT
     while (finished := working.poll()) is None and time.monotonic() < end:
         time.sleep(0.01)
     assert finished is not None and finished.path is not None, finished
-    here = actions.session.engine.render(job.sketch, size=(64, 64))
+    here = bench.session.engine.render(job.sketch, size=(64, 64))
     assert np.array_equal(read_png(finished.path)[0], here.array)
     assert working.progress == (1, 1)
 
@@ -258,19 +256,19 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, tmp_path / "sketch.toml")
     started: list[Wish] = []
-    monkeypatch.setattr(Capturing, "start", lambda self, _: started.append(self.wish))
+    monkeypatch.setattr(Captures, "start", lambda self: started.append(self.wish))
     draw = bare.draw
 
     def both() -> None:
         draw()
-        draw_capture(bare.actions.capture, bare.actions, bare.theme)
+        draw_capture(bare.bench.captures, bare.theme)
 
     monkeypatch.setattr(bare, "draw", both)
     try:
         bare.key(imgui.Key.c)
         bare.turn(3)
-        assert bare.actions.capture.shown
-        wish = bare.actions.capture.wish
+        assert bare.bench.captures.shown
+        wish = bare.bench.captures.wish
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):
             bare.click("##kind")
             bare.click(name)
@@ -279,6 +277,6 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
         bare.click("height.level")
         assert wish.sweeps[0] == "height.level=0..1,9"
         bare.key(imgui.Key.escape)
-        assert not bare.actions.capture.shown and not bare.quits
+        assert not bare.bench.captures.shown and not bare.quits
     finally:
         bare.close()

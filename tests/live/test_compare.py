@@ -17,10 +17,10 @@ from playground.gpu.textures import make_framebuffer, make_texture, read_picture
 from playground.images.files import write_png
 from playground.live.inspect.ab import drag_line, shows_first
 from playground.sketch.load import load
-from playground.workbench.inspect.blend import Beside
+from playground.workbench.inspect.blend import Blend
 from playground.workbench.inspect.compare import PERIOD, Compare, Mode
 from playground.workbench.inspect.inspector import Inspector
-from playground.workbench.inspect.toggles import See
+from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.preview import as_preview
 from playground.workbench.session import Session
 
@@ -241,7 +241,7 @@ def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
         write_texture(texture, values)
     target = make_texture(ctx, (24, 10), "rgba8")
     framebuffer = make_framebuffer(ctx, [target])
-    painter = Beside(ctx)
+    painter = Blend(ctx)
     painter.paint((a, b), framebuffer, (4, 0, 20, 10), split=0.35)
     found = read_picture(target)[::-1, 4:, :3]
     np.testing.assert_array_equal(found[:, :7], one[:, :7, :3])
@@ -255,7 +255,7 @@ def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
 
 
 def test_they_take_turns_when_they_flicker(session: Session) -> None:
-    see = See(session)
+    see = Inspection(session)
     session.frame(SIZE)
     assert see.patience(0.1) > 1e6
     see.compare.keep()
@@ -268,7 +268,7 @@ def test_they_take_turns_when_they_flicker(session: Session) -> None:
 
 def test_the_line_follows_the_mouse(folder: Path, any_engine: Engine) -> None:
     bare = Bare(any_engine, folder)
-    compare, io = bare.actions.see.compare, imgui.get_io()
+    compare, io = bare.bench.inspection.compare, imgui.get_io()
     area = 280.0, 0.0, 1000.0, 720.0
     try:
         bare.key(imgui.Key.a)

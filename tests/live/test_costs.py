@@ -70,12 +70,14 @@ def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
     bare.session.drafts.set("height.level", 0.25)
     bare.turn(3)
     assert (
-        not bare.session.engine.profiling and not bare.session.times and not bare.actions.see.record.pictures
+        not bare.session.engine.profiling
+        and not bare.session.times
+        and not bare.bench.inspection.record.pictures
     )
 
 
 def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
-    engine, record = bare.session.engine, bare.actions.see.record
+    engine, record = bare.session.engine, bare.bench.inspection.record
     bare.click("Cost###costs")
     assert engine.profiling
     before = record.pictures
@@ -101,8 +103,8 @@ def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
 def test_it_is_not_timed_while_the_panel_is_away(bare: Bare) -> None:
     bare.click("Cost###costs")
     assert bare.session.engine.profiling
-    bare.actions.see.begin()  # a turn in which no panel is drawn
-    bare.actions.see.look()
+    bare.bench.inspection.begin()  # a turn in which no panel is drawn
+    bare.bench.inspection.update()
     assert not bare.session.engine.profiling
 
 

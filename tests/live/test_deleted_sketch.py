@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -14,12 +13,11 @@ from playground import errors
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport
 from playground.errors import PlaygroundError
-from playground.live.errors_list import draw_errors
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
 from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeTrial
-from .desk import Bare
+from .desk import Bare, errors_of
 from .screen import ROOT
 
 
@@ -35,13 +33,6 @@ def folder(tmp_path: Path) -> Path:
     for name, text in {"land.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
         (home / name).write_text(text, encoding="utf-8")
     return home
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
 
 
 def test_there_are_many_kinds_of_errors() -> None:
@@ -64,18 +55,18 @@ def test_every_kind_of_error_without_a_file_is_drawn_with_the_sketch_s(
     assert error is not None and "this went wrong" in str(error)
     if isinstance(fault, PlaygroundError):
         assert type(error) is kind
-    bare.actions.problems.take(error)
+    bare.bench.problems.take(error)
     area = 330.0, 0.0, 900.0, 720.0
     for _ in range(2):
-        bare.turn(around=lambda draw: (draw(), draw_errors(bare.actions, bare.theme, area)))
-    assert {d.file for d in bare.actions.problems.all} == {str(session.path)}
+        bare.turn(around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
+    assert {d.file for d in bare.bench.problems.all} == {str(session.path)}
     assert any("sketch.toml" in label for label in bare.places), "the file heads the list"
 
 
 def test_a_list_that_holds_no_file_is_drawn_all_the_same(bare: Bare) -> None:
-    bare.actions.problems.take(PlaygroundError("nobody knows where"))
+    bare.bench.problems.take(PlaygroundError("nobody knows where"))
     area = 330.0, 0.0, 900.0, 720.0
-    bare.turn(2, around=lambda draw: (draw(), draw_errors(bare.actions, bare.theme, area)))
+    bare.turn(2, around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
     assert any("no file" in label for label in bare.places)
 
 

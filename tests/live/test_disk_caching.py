@@ -15,13 +15,15 @@ from playground.engine.disk_caching import REST as LAND_RESTS
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
-from playground.workbench import disk_caching as storing_module
-from playground.workbench.actions import Actions
-from playground.workbench.disk_caching import Storing
+from playground.workbench import disk_caching as module
+from playground.workbench.bench import Bench
+from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.inspect.thumbnails import Thumbnails
+from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .screen import ON_LINUX, Program, Screen
 
 SLOW = """// slow.glsl -- takes far longer than to read it from a disk
@@ -43,20 +45,11 @@ RAISED = """// raised.glsl -- what swallows a NaN
 uniform sampler2D low; //! input
 float kernel(ivec2 texel) { float h = texelFetch(low, texel, 0).r; return h >= 0.0 ? h : 0.25; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "low"
-use = "./height"
-[[pass]]
-name = "height"
-use = "./raised"
-inputs = { low = "low:height" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(low="./height", height=("./raised", 'inputs = { low = "low:height" }'))
+    + map_of("height", channel="red")
+)
 RUN = """
 import sys
 from playground.live.app import run
@@ -78,16 +71,17 @@ class Desk:
         self.close()
         engine = Engine(self.ctx)
         self.session = Session(engine, self.folder, now=lambda: self.time)
-        self.actions = Actions(self.session, lambda: None, self.folder, now=lambda: self.time)
+        window = WindowControls(lambda: None)
+        self.bench = Bench(self.session, window, folder=self.folder, now=lambda: self.time)
         self.watch = FiniteWatch(lambda: self.time)
-        self.storing = Storing(self.session, 2**26)
+        self.storing = SessionCaching(self.session, 2**26)
 
     def turn(self, seconds: float = 0.0) -> None:
         assert self.session is not None
         self.time += seconds
         self.session.frame((40, 30))
-        self.watch.turn(self.actions, False)
-        self.storing.turn(self.actions, self.watch)
+        self.watch.update(self.session, held=False)
+        self.storing.update(self.bench.inspection, self.watch)
 
     def rest(self) -> None:
         """Let things rest until nothing is left to do."""
@@ -122,7 +116,7 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
         return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(storing_module, "DiskCaching", keeping)
+    monkeypatch.setattr(module, "DiskCaching", keeping)
     made.open()
     yield made
     made.close()
@@ -186,7 +180,7 @@ def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
     assert desk.session is not None
     engine = desk.session.engine
     assert "low" not in engine.results
-    getattr(desk.actions.see, tool).on = True
+    getattr(desk.bench.inspection, tool).on = True
     desk.turn()
     desk.turn()
     assert set(engine.results) == {"low", "height", "view"}
@@ -209,7 +203,7 @@ def test_passes_that_fail_are_asked_for_once(desk: Desk, monkeypatch: pytest.Mon
         raise ContextError("no")
 
     monkeypatch.setattr(desk.session.engine, "draw", fails)
-    desk.actions.see.graph.on = True
+    desk.bench.inspection.graph.on = True
     for _ in range(5):
         desk.turn()
     assert len(tries) == 1
@@ -237,7 +231,7 @@ def test_a_folder_that_cannot_be_written_is_told_once(desk: Desk, tmp_path: Path
 def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
     assert desk.session is not None
     desk.session.engine.disk_caching = None
-    desk.storing = Storing(desk.session, 0)
+    desk.storing = SessionCaching(desk.session, 0)
     desk.rest()
     desk.close()
     desk.session = None

@@ -10,7 +10,7 @@ SLOW = 0.4
 """[s] that a turn takes where a picture is drawn slowly."""
 
 
-class Hand:
+class PictureMouse:
     """Presses at moments; a window that asks for events between pictures of a given length."""
 
     def __init__(self, picture: float, presses: list[float], *, sleeps: bool = False) -> None:
@@ -42,21 +42,21 @@ class Hand:
 @pytest.mark.parametrize("picture", [1 / 60, 0.1, SLOW, 1.5])
 @pytest.mark.parametrize("first", [0.001, 0.05, 0.3, 0.39, 0.6])
 def test_two_clicks_a_tenth_of_a_second_apart_are_a_double_click(picture: float, first: float) -> None:
-    assert Hand(picture, [first, first + 0.1]).doubles == [False, True]
+    assert PictureMouse(picture, [first, first + 0.1]).doubles == [False, True]
 
 
 @pytest.mark.parametrize("picture", [1 / 60, 0.1])
 def test_two_clicks_a_second_apart_are_two(picture: float) -> None:
-    assert Hand(picture, [0.05, 1.05]).doubles == [False, False]
+    assert PictureMouse(picture, [0.05, 1.05]).doubles == [False, False]
 
 
 def test_in_slow_turns_clicks_that_cannot_have_been_one_are_two() -> None:
-    assert Hand(SLOW, [0.05, 1.5]).doubles == [False, False]
+    assert PictureMouse(SLOW, [0.05, 1.5]).doubles == [False, False]
 
 
 @pytest.mark.parametrize(("apart", "double"), [(0.1, True), (0.29, True), (0.5, False), (0.99, False)])
 def test_while_the_window_sleeps_the_moment_is_known(apart: float, double: bool) -> None:
-    assert Hand(0.02, [0.5, 0.5 + apart], sleeps=True).doubles == [False, double]
+    assert PictureMouse(0.02, [0.5, 0.5 + apart], sleeps=True).doubles == [False, double]
 
 
 def test_without_a_press_imgui_keeps_its_own_time() -> None:

@@ -13,14 +13,13 @@ from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
 from playground.live import code_window, errors_list
 from playground.live.code_window import draw_code
-from playground.live.errors_list import draw_errors
 from playground.sketch.load import load
-from playground.workbench import open_source as sources
+from playground.workbench import open_files as sources
 from playground.workbench.editors import Editor
 from playground.workbench.problems import Problems, Warnings, passes_of
 from playground.workbench.text_file import unsaved
 
-from .desk import Bare
+from .desk import Bare, errors_of
 
 LAND = """// land.glsl -- hills
 #include "wave.glsl"
@@ -167,9 +166,9 @@ class Desk(Bare):
 
     def draw(self) -> None:
         area = (330.0, 0.0, 950.0, 720.0)
-        draw_code(self.actions, self.theme, area)
-        self.actions.problems.take(self.session.error)
-        draw_errors(self.actions, self.theme, area)
+        draw_code(self.bench.files, self.bench.problems, self.bench.window.quit, self.theme, area)
+        self.bench.problems.take(self.session.error)
+        errors_of(self.bench).draw(self.theme, area)
         super().draw()
 
 
@@ -198,9 +197,9 @@ def test_an_error_is_listed_copied_folded_and_gone_when_mended(desk: Desk, folde
     desk.click("Copy##errors")
     assert desk.clipboard == str(error)
     desk.click("Fold##errors")
-    assert not desk.actions.problems.open
+    assert not desk.bench.problems.open
     desk.click(next(label for label in desk.places if label.endswith("##badge")))
-    assert desk.actions.problems.open
+    assert desk.bench.problems.open
     (folder / "wave.glsl").write_text(WAVE, encoding="utf-8")
     desk.session.drafts.reload()
     desk.turn(2)
@@ -220,14 +219,14 @@ def test_the_words_can_be_selected(desk: Desk, folder: Path) -> None:
 
 def test_f8_steps_through_them(desk: Desk, folder: Path) -> None:
     broken(desk, folder)
-    count = len(desk.actions.problems.all)
+    count = len(desk.bench.problems.all)
     assert count > 1
     desk.key(imgui.Key.f8)
     desk.key(imgui.Key.f8)
-    assert desk.actions.problems.at == 1
+    assert desk.bench.problems.at == 1
     desk.key(imgui.Key.mod_shift, imgui.Key.f8)
     desk.key(imgui.Key.mod_shift, imgui.Key.f8)
-    assert desk.actions.problems.at == count - 1
+    assert desk.bench.problems.at == count - 1
 
 
 def test_a_click_on_the_place_starts_the_editor(
@@ -240,12 +239,12 @@ def test_a_click_on_the_place_starts_the_editor(
         told.append((editor.name, file, line, column))
         return True
 
-    monkeypatch.setattr(desk.actions.opener, "open", start)
+    monkeypatch.setattr(desk.bench.files.opener, "open", start)
     broken(desk, folder)
-    first = desk.actions.problems.all[0]
+    first = desk.bench.problems.all[0]
     desk.click(f"{first.place}##place")
     assert told == [("code", folder / "wave.glsl", 3, first.column)]
-    assert not desk.actions.editing
+    assert not desk.bench.files.editing
     desk.turn()
     desk.click(next(label for label in desk.places if "##chain" in label))
     assert told[-1] == ("code", folder / "land.glsl", 2, 0)
@@ -256,27 +255,27 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
 ) -> None:
     monkeypatch.setattr(sources, "find_editor", lambda: (None, ""))
     broken(desk, folder)
-    first = desk.actions.problems.all[0]
+    first = desk.bench.problems.all[0]
     desk.click(f"{first.place}##place")
-    (editing,) = desk.actions.editing
+    (editing,) = desk.bench.files.editing
     view = code_window._view_of(editing)
     place = view.editor.get_main_cursor_position()
     assert (place.line, place.index) == (2, first.column - 1)
-    assert view.editor.has_markers() and not unsaved(desk.actions.editing)
+    assert view.editor.has_markers() and not unsaved(desk.bench.files.editing)
     desk.type("// ")
-    assert unsaved(desk.actions.editing) == ["wave.glsl"]
+    assert unsaved(desk.bench.files.editing) == ["wave.glsl"]
     wanted = view.editor.get_text()
     desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert (folder / "wave.glsl").read_text(encoding="utf-8") == wanted != WAVE
-    assert not unsaved(desk.actions.editing)
+    assert not unsaved(desk.bench.files.editing)
     view.editor.undo()
     desk.turn(2)
-    assert unsaved(desk.actions.editing), "what was saved is no longer what is seen"
+    assert unsaved(desk.bench.files.editing), "what was saved is no longer what is seen"
 
 
 def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) -> None:
     wave = folder / "wave.glsl"
-    sources.open_source(desk.actions, wave, 4, 1, here=True)
+    desk.bench.files.open(wave, 4, 1, here=True)
     desk.turn(3)
     desk.type("// mine ")
     theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
@@ -286,29 +285,29 @@ def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) ->
     desk.turn(3)
     desk.click("Merge both")
     assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
-    assert not unsaved(desk.actions.editing)
+    assert not unsaved(desk.bench.files.editing)
 
 
 @pytest.mark.parametrize(
     ("button", "mine", "open_after"), [("Save and close", True, 0), ("Close", False, 0), ("Stay", False, 1)]
 )
 def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_after: int) -> None:
-    sources.open_source(desk.actions, folder / "wave.glsl", 4, 1, here=True)
+    desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
     desk.turn(3)
     desk.type("// mine ")
-    code_window._view_of(desk.actions.editing[0]).closing = True
+    code_window._view_of(desk.bench.files.editing[0]).closing = True
     desk.turn(3)
     desk.click(button)
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine
-    assert len(desk.actions.editing) == open_after
+    assert len(desk.bench.files.editing) == open_after
 
 
 @pytest.mark.parametrize(("button", "quits"), [("Save and quit", True), ("Quit", True), ("Stay", False)])
 def test_quitting_asks(desk: Desk, folder: Path, button: str, quits: bool) -> None:
-    sources.open_source(desk.actions, folder / "wave.glsl", 4, 1, here=True)
+    desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
     desk.turn(3)
     desk.type("// mine ")
-    desk.actions.leaving = True
+    desk.bench.files.leaving = True
     desk.turn(3)
     desk.click(button)
     assert desk.quits == quits
@@ -316,12 +315,12 @@ def test_quitting_asks(desk: Desk, folder: Path, button: str, quits: bool) -> No
 
 
 def test_a_file_that_is_gone_is_a_sentence(desk: Desk, folder: Path) -> None:
-    sources.open_source(desk.actions, folder / "gone.glsl", here=True)
-    assert desk.actions.notices[-1].text == "there is no file gone.glsl to open"
-    assert not desk.actions.editing
+    desk.bench.files.open(folder / "gone.glsl", here=True)
+    assert desk.bench.notices.items[-1].text == "there is no file gone.glsl to open"
+    assert not desk.bench.files.editing
 
 
 def test_nothing_wrong_draws_nothing(desk: Desk) -> None:
     desk.turn(2)
-    assert desk.actions.problems.all == () and errors_list.MOST > 0
+    assert desk.bench.problems.all == () and errors_list.MOST > 0
     assert not any("badge" in label for label in desk.places)

@@ -11,8 +11,8 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.live.code_window import draw_code
 from playground.live.escape_layers import open_layers
-from playground.workbench.open_source import open_source
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -21,18 +21,11 @@ uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform sampler2D mask; //! file() paint
 float kernel(ivec2 texel) { return level; }
 """
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0 }
-"""
+SKETCH = (
+    "format = 1\nsize = 17\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
+)
 
 
 @pytest.fixture
@@ -44,7 +37,8 @@ def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
 
     def both() -> None:
         draw()
-        draw_code(made.actions, made.theme, (330.0, 0.0, 900.0, 720.0))
+        bench, area = made.bench, (330.0, 0.0, 900.0, 720.0)
+        draw_code(bench.files, bench.problems, bench.window.quit, made.theme, area)
 
     monkeypatch.setattr(made, "draw", both)
     yield made
@@ -58,40 +52,40 @@ def escape(bare: Bare) -> None:
 
 
 def test_one_layer_at_a_time_and_then_none(bare: Bare, tmp_path: Path) -> None:
-    actions = bare.actions
+    bench = bare.bench
     full, lesson = [True], [True]
-    actions.fills_screen = lambda: full[0]
-    actions.full_screen = lambda: full.__setitem__(0, not full[0])
-    actions.lesson_shown = lambda: lesson[0]
-    actions.toggle_lessons = lambda: lesson.__setitem__(0, not lesson[0])
-    actions.see.compare.keep()
-    actions.see.inspector.toggle()
-    actions.see.graph.toggle()
-    open_source(actions, tmp_path / "land.glsl", here=True)
-    actions.capture.shown = actions.keymap_shown = True
+    bench.window.is_full = lambda: full[0]
+    bench.window.toggle_full = lambda: full.__setitem__(0, not full[0])
+    bench.lessons.is_shown = lambda: lesson[0]
+    bench.lessons.toggle = lambda: lesson.__setitem__(0, not lesson[0])
+    bench.inspection.compare.keep()
+    bench.inspection.inspector.toggle()
+    bench.inspection.graph.toggle()
+    bench.files.open(tmp_path / "land.glsl", here=True)
+    bench.captures.shown = bench.interface.keymap_shown = True
     bare.turn(3)
     names = ["keys", "capture", "editor land.glsl", "graph", "inspector", "A/B", "full screen", "lesson"]
     for n in range(len(names)):
-        assert open_layers(actions) == names[n:]
+        assert open_layers(bench) == names[n:]
         escape(bare)
-    assert open_layers(actions) == []
-    actions.notices.clear()
+    assert open_layers(bench) == []
+    bench.notices.items.clear()
     escape(bare)
-    assert [n.text for n in actions.notices] == ["nothing is open that Esc could close; Ctrl+Q quits"]
+    assert [n.text for n in bench.notices.items] == ["nothing is open that Esc could close; Ctrl+Q quits"]
 
 
 def test_popups_and_the_lists_in_them_close_before_all_else(bare: Bare) -> None:
-    bare.actions.see.graph.toggle()
+    bare.bench.inspection.graph.toggle()
     for label in ("History", "Random", "Reset", "##preset", "##shown"):
         bare.click(label)
-        assert "popup" in open_layers(bare.actions), label
+        assert "popup" in open_layers(bare.bench), label
         escape(bare)
-        assert open_layers(bare.actions) == ["graph"], label
+        assert open_layers(bare.bench) == ["graph"], label
     bare.click("##height.level", button=1)
-    assert open_layers(bare.actions) == ["popup", "graph"]
+    assert open_layers(bare.bench) == ["popup", "graph"]
     escape(bare)
     escape(bare)
-    assert open_layers(bare.actions) == []
+    assert open_layers(bare.bench) == []
 
 
 def test_a_field_in_a_popup_is_left_before_the_popup(bare: Bare) -> None:
@@ -99,33 +93,33 @@ def test_a_field_in_a_popup_is_left_before_the_popup(bare: Bare) -> None:
     bare.click("##name")
     bare.type("mine")
     escape(bare)
-    assert open_layers(bare.actions) == ["popup"]
+    assert open_layers(bare.bench) == ["popup"]
     escape(bare)
-    assert open_layers(bare.actions) == []
+    assert open_layers(bare.bench) == []
 
 
 def test_an_editor_with_changes_asks_and_esc_answers_that_by_staying(bare: Bare, tmp_path: Path) -> None:
-    open_source(bare.actions, tmp_path / "land.glsl", here=True)
+    bare.bench.files.open(tmp_path / "land.glsl", here=True)
     bare.turn(3)
     bare.type("// more")
     bare.turn(3)
     escape(bare)
-    assert open_layers(bare.actions) == ["popup", "editor land.glsl"], "it asks whether to save"
+    assert open_layers(bare.bench) == ["popup", "editor land.glsl"], "it asks whether to save"
     escape(bare)
-    assert open_layers(bare.actions) == ["editor land.glsl"], "and stays"
+    assert open_layers(bare.bench) == ["editor land.glsl"], "and stays"
     assert "// more" not in (tmp_path / "land.glsl").read_text()
 
 
 def test_the_question_on_quitting_is_answered_by_esc_too(bare: Bare, tmp_path: Path) -> None:
-    open_source(bare.actions, tmp_path / "land.glsl", here=True)
+    bare.bench.files.open(tmp_path / "land.glsl", here=True)
     bare.turn(3)
     bare.type("// more")
     bare.turn(3)
-    bare.actions.leaving = True
+    bare.bench.files.leaving = True
     bare.turn(3)
-    assert open_layers(bare.actions)[0] == "popup"
+    assert open_layers(bare.bench)[0] == "popup"
     escape(bare)
-    assert not bare.actions.leaving and open_layers(bare.actions) == ["editor land.glsl"]
+    assert not bare.bench.files.leaving and open_layers(bare.bench) == ["editor land.glsl"]
 
 
 def test_ctrl_q_quits_also_out_of_a_field(bare: Bare) -> None:
@@ -157,12 +151,13 @@ def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) ->
 
 def test_letters_typed_right_behind_the_search_are_no_shortcuts(bare: Bare) -> None:
     io = imgui.get_io()
-    shown, saved = bare.session.view.map, bare.actions.saved
+    shown, saved = bare.session.view.map, bare.bench.captures.saved
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
         bare.turn()
         io.add_key_event(key, False)
     bare.turn(4)
-    assert bare.session.view.map is shown and bare.actions.saved is saved and not bare.actions.see.compare.on
+    assert bare.session.view.map is shown and bare.bench.captures.saved is saved
+    assert not bare.bench.inspection.compare.on
     assert bare.panel.memory.filter.search == "msa"

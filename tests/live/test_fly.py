@@ -15,35 +15,29 @@ import pytest
 from playground.flight.craft import Controls
 from playground.flight.record import read_record
 
+from ..sketch_texts import passes
 from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 640, 360
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 title = "A small land without end"
 size = 33
 extent = 1920.0
 relief = 900.0
-[[pass]]
-name = "height"
-use = "generation/endless"
-set = { apron = 8, hills = 64, "detail.octaves" = 3 }
-[[pass]]
-name = "colour"
-use = "texturing/endless_ground"
-set = { apron = 8, patches = 16 }
-[[pass]]
-name = "daylight"
-use = "lighting/daylight"
-set = { hour = 10.0 }
-[[pass]]
-name = "light"
-use = "lighting/soft_cone"
-set = { gain = 1.0, ambient = 1.0 }
-[view]
+"""
+    + passes(
+        height=("generation/endless", 'set = { apron = 8, hills = 64, "detail.octaves" = 3 }'),
+        colour=("texturing/endless_ground", "set = { apron = 8, patches = 16 }"),
+        daylight=("lighting/daylight", "set = { hour = 10.0 }"),
+        light=("lighting/soft_cone", "set = { gain = 1.0, ambient = 1.0 }"),
+    )
+    + """[view]
 use = "view/terrain"
 samples = 1
 set = { sky = "daylight", tone = "film", exposure = 0.6 }
 """
+)
 
 pytestmark = ON_LINUX
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from playground.workbench.inspect.pass_graph import placed, wiring_of
 from playground.workbench.inspect.thumbnails import APART, SIDE, Thumbnails, picture_of
 from playground.workbench.session import Session
 
+from ..sketch_texts import passes
 from .desk import Bare
 
 LAND = """// land.glsl -- a slope from west to east
@@ -37,17 +37,9 @@ vec4 kernel(ivec2 texel) {
     return vec4(texelFetch(height, ivec2(0), 0).r + texelFetch(colour, ivec2(0), 0).rgb, 1.0);
 }
 """
-SKETCH = """format = 1
-size = [128, 32]
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "colour"
-use = "./tint"
-[view]
-use = "./both"
-"""
+SKETCH = (
+    "format = 1\nsize = [128, 32]\n" + passes(height="./land", colour="./tint") + '[view]\nuse = "./both"\n'
+)
 
 
 @pytest.fixture
@@ -56,13 +48,6 @@ def folder(tmp_path: Path) -> Path:
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
 
 
 def test_a_pass_stands_right_of_all_that_it_reads() -> None:
@@ -168,12 +153,12 @@ def test_numbers_that_are_none_are_magenta() -> None:
 
 
 def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
-    graph = bare.actions.see.graph
+    graph = bare.bench.inspection.graph
     bare.turn(5)
     assert graph.thumbnails.made == 0 and "node colour" not in bare.places
     bare.key(imgui.Key.g)
     bare.turn(40)
-    assert graph.thumbnails.made == 3 and bare.actions.see.patience(0.0) > 1e6
+    assert graph.thumbnails.made == 3 and bare.bench.inspection.patience(0.0) > 1e6
     bare.click("node colour")
     assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
     bare.click("node view")
@@ -205,7 +190,7 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
         for label in "Undo Redo History Random A/B Reset Copy Save PNG Capture Graph".split():
             x, _, width, _ = bare.places[label]
             assert margin <= x and x + width <= bare.panel.width * scale - margin, label
-        graph = bare.actions.see.graph
+        graph = bare.bench.inspection.graph
         bare.click("Graph")
         assert graph.on
         bare.click("Graph")

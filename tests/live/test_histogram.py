@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import moderngl
@@ -18,6 +17,7 @@ from playground.workbench.inspect.histogram import BINS, Counter, Histogram, cou
 from playground.workbench.inspect.legend import STEPS, colours_of, ends_of, ticks
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 LAND = """// land.glsl -- a slope from west to east
@@ -25,16 +25,7 @@ LAND = """// land.glsl -- a slope from west to east
 uniform float level = 1.0; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
 """
-SKETCH = """format = 1
-size = [64, 8]
-relief = 250.0
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height()
 
 
 @pytest.fixture
@@ -44,18 +35,7 @@ def ctx(ctx: moderngl.Context) -> moderngl.Context:
     return ctx
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
 
 
 def counted(texture: moderngl.Texture, **limits: int) -> tuple[Histogram, int]:
@@ -243,8 +223,8 @@ def test_ticks_are_round_and_few(low: float, high: float, marks: tuple[float, ..
 
 
 def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
-    see = bare.actions.see
-    bare.actions.show("height:height")
+    see = bare.bench.inspection
+    bare.bench.session.show("height:height")
     bare.turn(5)
     assert see.counter.latest is None and see.patience(0.0) > 1e6
     bare.click("Histogram###histogram")

@@ -17,6 +17,7 @@ from playground.terrain.pick import ground_under
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.session import Session
 
+from ..sketch_texts import passes
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -32,24 +33,21 @@ HALF = """// half.glsl -- a texture of half the size
 uniform sampler2D height; //! input
 vec4 kernel(ivec2 texel) { return vec4(texelFetch(height, 2 * texel, 0).r / vec3(1.0, 3.0, -7.0), 1.0); }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 size = [65, 49]
 extent = [1600.0, 1200.0]
 relief = 300.0
 base_elevation = 120.0
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "light"
-use = "./half"
-size = ["size.x // 2", "size.y // 2"]
-[view]
+"""
+    + passes(height="./land", light=("./half", 'size = ["size.x // 2", "size.y // 2"]'))
+    + """[view]
 use = "view/terrain"
 [view.camera]
 azimuth = 200.0
 elevation = 35.0
 """
+)
 SIZE = 96, 64
 
 
@@ -211,16 +209,16 @@ def test_a_key_brings_the_box_and_takes_it_away(folder: Path, any_engine: Engine
     try:
         imgui.get_io().add_mouse_pos_event(800, 600)
         bare.turn(2)
-        assert bare.actions.see.inspector.reads == 0
+        assert bare.bench.inspection.inspector.reads == 0
         bare.key(imgui.Key.i)
         bare.turn(2)
-        assert bare.actions.see.inspector.reads == 1 and not bare.actions.see.inspector.inner
+        assert bare.bench.inspection.inspector.reads == 1 and not bare.bench.inspection.inspector.inner
         imgui.get_io().add_mouse_pos_event(100, 300)  # over the panel
         bare.turn(3)
-        assert bare.actions.see.inspector.reads == 1
+        assert bare.bench.inspection.inspector.reads == 1
         bare.key(imgui.Key.i)
         imgui.get_io().add_mouse_pos_event(800, 500)
         bare.turn(3)
-        assert bare.actions.see.inspector.reads == 1
+        assert bare.bench.inspection.inspector.reads == 1
     finally:
         bare.close()

@@ -9,7 +9,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.workbench.interface_size import SIZES, InterfaceSize, remembered_size
+from playground.workbench.interface import SIZES, InterfaceSize, remembered_size
 
 from .desk import Bare
 
@@ -37,19 +37,19 @@ def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
 )
 def test_ctrl_plus_and_minus_change_the_size(bare: Bare, keys: tuple[imgui.Key, ...], size: float) -> None:
     bare.key(imgui.Key.mod_ctrl, *keys)
-    assert bare.actions.interface.size == size
+    assert bare.bench.interface.size.size == size
     bare.key(imgui.Key.mod_ctrl, imgui.Key._0)
-    assert bare.actions.interface.size == 1.0
+    assert bare.bench.interface.size.size == 1.0
     bare.key(*keys)
-    assert bare.actions.interface.size == 1.0, "without Ctrl they are no such keys"
+    assert bare.bench.interface.size.size == 1.0, "without Ctrl they are no such keys"
 
 
 def test_a_keyboard_whose_plus_is_elsewhere_has_it_there(bare: Bare) -> None:
-    bare.actions.sign_held = lambda: "+"
+    bare.bench.window.sign_held = lambda: "+"
     bare.key(imgui.Key.mod_ctrl, imgui.Key.right_bracket)  # as on a German keyboard
-    assert bare.actions.interface.size == 1.1
+    assert bare.bench.interface.size.size == 1.1
     bare.key(imgui.Key.mod_ctrl, imgui.Key.minus)  # as on a Swedish one
-    assert bare.actions.interface.size == 1.25
+    assert bare.bench.interface.size.size == 1.25
 
 
 def test_it_ends_at_the_smallest_and_at_the_largest() -> None:

@@ -20,24 +20,16 @@ from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.workbench.edits import Draft, Edits
 from playground.workbench.framing import framed
-from playground.workbench.lesson.bugs import BROKEN, MENDED, TOLD
+from playground.workbench.lesson.bugs import BROKEN, FIXED, SHOWN
 from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
 from playground.workbench.lesson.links import play_on
 from playground.workbench.lesson.reader import BOTH
-from playground.workbench.open_source import open_source
 from playground.workbench.resume import StoredEdits
 
+from ..sketch_texts import map_of_height
 from .lesson_desk import RAW, Desk, shelved
 
-OWN = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 FILE = (GLSL / RAW).resolve()
 
 
@@ -63,7 +55,7 @@ def value(desk: Desk, path: str):
 
 def text_window(desk: Desk):
     """Return the editor of the one file that is open."""
-    (editing,) = desk.actions.editing
+    (editing,) = desk.bench.files.editing
     return editing.view.editor
 
 
@@ -105,11 +97,11 @@ def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path,
 
 def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_picture(desk):
     desk.open(show=False)
-    session = desk.actions.session
+    session = desk.bench.session
     scene = read_lesson("halving").named["land"].scene
-    desk.reading.stage.show(replace(scene, pixels=(300, 300)), ("land", 0))
+    desk.reading.figure.show(replace(scene, pixels=(300, 300)), ("land", 0))
     assert session.view.framed_for == (300, 300)
-    desk.reading.stage.go_back()
+    desk.reading.figure.go_back()
     assert session.view.framed_for == (1280, 720)
 
 
@@ -131,7 +123,7 @@ def test_every_picture_in_the_view_is_that_of_the_lesson(desk):
 def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_after(desk):
     own = desk.session.path
     desk.open(show=False)
-    assert desk.session.path == own and desk.reading.stage.own is None
+    assert desk.session.path == own and desk.reading.figure.own is None
     desk.reading.turn_page(1)
     desk.turn(4)
     assert desk.session.path == find("diamond_square_steps")
@@ -140,12 +132,12 @@ def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_a
 
 def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(desk):
     desk.open(3)
-    assert desk.reading.stage.key == ("seeds", 1) and value(desk, "height.seed") == 2
+    assert desk.reading.figure.key == ("seeds", 1) and value(desk, "height.seed") == 2
     desk.reading.show(block(desk, "land"))
     desk.turn(2)
     desk.reading.go(4)
     desk.turn(2)
-    assert desk.reading.stage.key == ("land", 0), "what is shown stays"
+    assert desk.reading.figure.key == ("land", 0), "what is shown stays"
 
 
 def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
@@ -163,7 +155,7 @@ def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
     desk.turn(3)
     assert desk.session.path == own and value(desk, "height.seed") == 5
     np.testing.assert_array_equal(as_seen(desk), seen)
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert not desk.session.shown.edits.values
 
 
@@ -175,7 +167,7 @@ def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_doe
     desk.reading.turn_page(1)
     desk.turn(2)
     assert desk.session.path == own
-    assert any("stays in view" in notice.text for notice in desk.actions.notices)
+    assert any("stays in view" in notice.text for notice in desk.bench.notices.items)
     desk.reading.show(block(desk, "turns"))
     desk.turn(2)
     assert desk.session.path != own
@@ -190,19 +182,19 @@ def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(de
     desk.reading.show(block(desk, "land"))
     desk.turn(4)
     assert value(desk, "height.seed") == 3
-    desk.actions.undo()
+    desk.bench.undo.undo()
     desk.turn(2)
     assert value(desk, "height.seed") == 77
     desk.reading.reset(block(desk, "land"))  # the same sketch
     desk.turn(60)
     assert value(desk, "height.seed") == 3
-    desk.actions.undo()
+    desk.bench.undo.undo()
     desk.turn(2)
     assert value(desk, "height.seed") == 77
 
 
 def test_what_is_compared_with_comes_back_with_what_was_open(desk):
-    compare = desk.actions.see.compare
+    compare = desk.bench.inspection.compare
     desk.session.drafts.set("height.seed", 5)
     desk.turn(2)
     compare.keep()
@@ -260,20 +252,20 @@ def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_asked_again(desk
     own.rename(own.with_name("away.toml"))
     desk.reading.go_back()
     desk.turn(3)
-    assert any("sketch.toml" in notice.text for notice in desk.actions.notices)
+    assert any("sketch.toml" in notice.text for notice in desk.bench.notices.items)
     assert desk.session.path == find("white_noise") and desk.session.error is None
     own.with_name("away.toml").rename(own)
     desk.reading.go_back()
     desk.turn(3)
-    assert desk.session.path == own and desk.reading.stage.own is None
+    assert desk.session.path == own and desk.reading.figure.own is None
 
 
 def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
     own = desk.session.path
     desk.open(3, show=False)
-    desk.reading.faults.edit(block(desk, "mean"))
+    desk.reading.bugs.edit(block(desk, "mean"))
     desk.turn(3)
-    assert desk.session.drafts.texts and desk.reading.stage.own is None
+    assert desk.session.drafts.texts and desk.reading.figure.own is None
     desk.session.drafts.set("height.seed", 7)
     desk.turn(3)
     assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
@@ -313,7 +305,7 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     play_on(desk.reading)
     desk.turn(3)
     assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 41
-    assert desk.reading.stage.own is None and desk.actions.panel_shown
+    assert desk.reading.figure.own is None and desk.bench.interface.panel_shown
 
 
 def test_turns_are_stopped_at_and_played_to_the_last(desk):
@@ -323,8 +315,8 @@ def test_turns_are_stopped_at_and_played_to_the_last(desk):
     desk.turn(2)
     assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, turns.scenes[2]))
-    desk.reading.play_or_rest(turns)
-    assert desk.reading.playing == "turns" and 0 < desk.reading.patience(desk.actions.now()) <= 0.8
+    desk.reading.play_or_pause(turns)
+    assert desk.reading.playing == "turns" and 0 < desk.reading.patience(desk.bench.notices.now()) <= 0.8
     desk.turn(60)
     assert not desk.reading.playing and desk.reading.at["turns"] == 3
     assert steps_of(turns.scenes[3]) == {"height.raw": 4, "phase": 4}
@@ -335,13 +327,13 @@ def test_a_sweep_plays_from_the_first_value_to_the_last(desk):
     desk.open(2)
     rough = block(desk, "rough")
     assert value(desk, "height.smoothing") == 0.0
-    desk.reading.play_or_rest(rough)
+    desk.reading.play_or_pause(rough)
     seen = []
     for _ in range(90):
         desk.turn()
         seen.append(value(desk, "height.smoothing"))
     assert list(dict.fromkeys(seen)) == [0.0, 0.5, 1.0] and not desk.reading.playing
-    desk.reading.play_or_rest(rough)
+    desk.reading.play_or_pause(rough)
     desk.turn(2)
     assert value(desk, "height.smoothing") == 0.0, "from the beginning again"
 
@@ -351,7 +343,7 @@ def test_two_variants_are_parted_by_the_line_of_the_view(desk):
     seeds = block(desk, "seeds")
     desk.reading.choose(seeds, BOTH)
     desk.turn(4)
-    compare = desk.actions.see.compare
+    compare = desk.bench.inspection.compare
     assert compare.on and value(desk, "height.seed") == 2
     second = as_seen(desk)  # in full, and the first with it
     desk.turn()
@@ -368,26 +360,26 @@ def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
     desk.open(3)
     fault = block(desk, "quarter")
     desk.reading.show(fault)
-    desk.reading.faults.break_it(fault)
+    desk.reading.bugs.break_it(fault)
     desk.turn(4)
-    assert desk.reading.faults.state["quarter"] == BROKEN
+    assert desk.reading.bugs.state["quarter"] == BROKEN
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, broken(fault)))
-    assert [editing.text.path for editing in desk.actions.editing] == [FILE]
-    text = desk.actions.editing[0].text
+    assert [editing.text.path for editing in desk.bench.files.editing] == [FILE]
+    text = desk.bench.files.editing[0].text
     assert ": 9.0)" in text.base
     text.save(text.base.replace(": 9.0)", ": 2.0)"))
     desk.turn(6)
-    assert desk.reading.faults.state["quarter"] == BROKEN, "another picture, but not the whole one"
+    assert desk.reading.bugs.state["quarter"] == BROKEN, "another picture, but not the whole one"
     text.save(text.base.replace(": 2.0)", ": float(3))"))
     desk.turn(6)
-    assert desk.reading.faults.state["quarter"] == MENDED
-    assert any("Mended" in notice.text for notice in desk.actions.notices)
+    assert desk.reading.bugs.state["quarter"] == FIXED
+    assert any("Fixed" in notice.text for notice in desk.bench.notices.items)
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
-    desk.reading.faults.break_it(fault)
+    desk.reading.bugs.break_it(fault)
     desk.turn(4)
-    desk.reading.faults.mend_it(fault)
+    desk.reading.bugs.fix_it(fault)
     desk.turn(4)
-    assert desk.reading.faults.state["quarter"] == TOLD and not desk.actions.editing
+    assert desk.reading.bugs.state["quarter"] == SHOWN and not desk.bench.files.editing
     assert not desk.session.drafts.texts
     np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
     assert FILE.read_bytes() == before
@@ -396,29 +388,29 @@ def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
 def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_page(desk):
     desk.open(3)
     fault = block(desk, "quarter")
-    desk.reading.faults.break_it(fault)
+    desk.reading.bugs.break_it(fault)
     desk.turn(4)
-    text = desk.actions.editing[0].text
+    text = desk.bench.files.editing[0].text
     text.save(text.base.replace("total /", "totals /"))
     desk.turn(4)
     assert desk.session.error is not None and "raw.glsl" in str(desk.session.error)
-    assert desk.reading.faults.state["quarter"] == BROKEN
+    assert desk.reading.bugs.state["quarter"] == BROKEN
     desk.reading.turn_page(1)
     desk.turn(4)
-    assert desk.session.error is None and not desk.session.drafts.texts and not desk.actions.editing
+    assert desk.session.error is None and not desk.session.drafts.texts and not desk.bench.files.editing
     desk.reading.turn_page(-1)
-    desk.reading.faults.break_it(fault)
-    assert "totals /" in desk.actions.editing[0].text.base, "what was typed is there again"
+    desk.reading.bugs.break_it(fault)
+    assert "totals /" in desk.bench.files.editing[0].text.base, "what was typed is there again"
 
 
 def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     before = FILE.read_text(encoding="utf-8")
     desk.open(3)
-    code, faults = block(desk, "mean"), desk.reading.faults
+    code, faults = block(desk, "mean"), desk.reading.bugs
     assert "float(2 * r)" in faults.excerpt(code).text and not faults.is_edited(code)
     faults.edit(code)
     desk.turn(3)
-    editing = desk.actions.editing[0]
+    editing = desk.bench.files.editing[0]
     assert editing.text.base == before
     assert before.split("\n")[editing.line - 2].strip() == "// anchor: height"
     editing.text.save(before.replace("float(2 * r)", "float(3 * r)"))
@@ -427,53 +419,53 @@ def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     assert desk.session.drafts.texts == {str(FILE): editing.text.base}
     faults.put_back(code)
     desk.turn(3)
-    assert not faults.is_edited(code) and not desk.session.drafts.texts and not desk.actions.editing
+    assert not faults.is_edited(code) and not desk.session.drafts.texts and not desk.bench.files.editing
     assert FILE.read_text(encoding="utf-8") == before
 
 
 def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(desk):
     desk.open(3)
     fault = block(desk, "quarter")
-    open_source(desk.actions, FILE, here=True)  # the reader has the file itself open
-    (own,) = desk.actions.editing
-    desk.reading.faults.break_it(fault)
+    desk.bench.files.open(FILE, here=True)  # the reader has the file itself open
+    (own,) = desk.bench.files.editing
+    desk.reading.bugs.break_it(fault)
     desk.turn(3)
-    copy = desk.actions.editing[-1]
-    open_source(desk.actions, FILE, 5, here=True)
-    assert (copy.line, copy.asked) == (5, True) and not own.asked
-    desk.actions.editing.remove(copy)
-    open_source(desk.actions, FILE, 6)
-    assert desk.actions.editing == [own, copy] and copy.line == 6
-    desk.reading.faults.mend_it(fault)
-    open_source(desk.actions, FILE, 7, here=True)
-    assert desk.actions.editing == [own] and own.line == 7
+    copy = desk.bench.files.editing[-1]
+    desk.bench.files.open(FILE, 5, here=True)
+    assert (copy.line, copy.focus) == (5, True) and not own.focus
+    desk.bench.files.editing.remove(copy)
+    desk.bench.files.open(FILE, 6)
+    assert desk.bench.files.editing == [own, copy] and copy.line == 6
+    desk.reading.bugs.fix_it(fault)
+    desk.bench.files.open(FILE, 7, here=True)
+    assert desk.bench.files.editing == [own] and own.line == 7
 
 
 def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):
     desk.open(3)
-    fault, code, faults = block(desk, "quarter"), block(desk, "mean"), desk.reading.faults
+    fault, code, faults = block(desk, "quarter"), block(desk, "mean"), desk.reading.bugs
     faults.break_it(fault)
     desk.turn(4)
     text_window(desk).replace_text_in_current_cursor("// mine\n")
     desk.turn(2)
     desk.reading.turn_page(1)
     desk.turn(3)
-    assert not desk.actions.editing
+    assert not desk.bench.files.editing
     desk.reading.turn_page(-1)
     faults.break_it(fault)
     desk.turn(3)
     assert "// mine" in text_window(desk).get_text()
     text_window(desk).replace_text_in_current_cursor("// more\n")
-    desk.actions.editing.clear()  # its window is closed
+    desk.bench.files.editing.clear()  # its window is closed
     desk.turn(2)
     faults.focus(fault)
     assert "// more" in text_window(desk).get_text()
-    faults.mend_it(fault)
+    faults.fix_it(fault)
     desk.turn(3)
     faults.break_it(fault)
     desk.turn(3)
     assert "// mine" not in text_window(desk).get_text(), "the lesson's mend forgets what was typed"
-    faults.mend_it(fault)
+    faults.fix_it(fault)
     faults.edit(code)
     desk.turn(3)
     text_window(desk).replace_text_in_current_cursor("// other\n")
@@ -502,10 +494,10 @@ def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
 
 def test_opening_a_sketch_meanwhile_takes_the_stage_from_the_lesson(desk):
     desk.open()
-    assert desk.reading.stage.own is not None
-    desk.actions.open(find("diamond_square_steps"))
+    assert desk.reading.figure.own is not None
+    desk.bench.commands.open(find("diamond_square_steps"))
     desk.turn(3)
-    assert desk.reading.stage.own is None and desk.reading.stage.key is None
+    assert desk.reading.figure.own is None and desk.reading.figure.key is None
 
 
 def test_a_lesson_is_read_on_in_french_where_it_was(desk):
@@ -516,12 +508,12 @@ def test_a_lesson_is_read_on_in_french_where_it_was(desk):
     assert desk.reading.section.title == "Étape par étape"
     desk.reading.open("after")
     assert desk.reading.lesson.title == "After it"
-    assert any("anglais" in notice.text for notice in desk.actions.notices)
+    assert any("anglais" in notice.text for notice in desk.bench.notices.items)
 
 
 def test_an_unknown_lesson_is_named_with_the_nearest(desk):
     assert not desk.reading.open("halvin")
-    assert any("no lesson 'halvin'" in n.text and "halving" in n.text for n in desk.actions.notices)
+    assert any("no lesson 'halvin'" in n.text and "halving" in n.text for n in desk.bench.notices.items)
     assert desk.reading.lesson is None and library.lesson_files() == ["after", "halving"]
 
 
@@ -543,9 +535,9 @@ def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(desk):
     desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=Silent())
     desk.reading.go(1)
     desk.turn(3)
-    assert desk.reading.stage.busy and desk.session.view.steps == {}
+    assert desk.reading.figure.busy and desk.session.view.steps == {}
     np.testing.assert_array_equal(as_seen(desk), seen)
     desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=None)
     desk.reading.show(block(desk, "turns"))
     desk.turn(3)
-    assert not desk.reading.stage.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}
+    assert not desk.reading.figure.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}

@@ -32,7 +32,7 @@ def desk(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_key_brings_the_lessons_where_they_were_left_and_takes_them_away(desk, tmp_path):
     desk.key(imgui.Key.f2)
-    assert desk.reading.lesson is not None and not desk.actions.panel_shown
+    assert desk.reading.lesson is not None and not desk.bench.interface.panel_shown
     desk.key(imgui.Key.page_down)
     desk.turn(3)
     assert desk.reading.index == 1 and desk.session.path == find("diamond_square_steps")
@@ -40,7 +40,7 @@ def test_a_key_brings_the_lessons_where_they_were_left_and_takes_them_away(desk,
     assert desk.reading.index == 0
     desk.key(imgui.Key.page_down)
     desk.key(imgui.Key.f2)
-    assert not desk.reading.progress.shown and desk.actions.panel_shown
+    assert not desk.reading.progress.shown and desk.bench.interface.panel_shown
     kept = json.loads((tmp_path / "state/terrain-shader-playground/lessons.json").read_text())
     assert kept["lesson"] == "halving" and kept["sections"] == {"halving": 1} and not kept["shown"]
     desk.key(imgui.Key.page_down)
@@ -71,7 +71,7 @@ def test_sliders_of_a_figure_act_on_the_session(desk):
 
 def test_a_slider_over_turns_stops_the_kernels(desk):
     desk.open(1)
-    desk.drag("##turns", 0.05, 0.95)
+    desk.drag("##steps", 0.05, 0.95)
     assert desk.reading.at["turns"] == 3 and desk.session.view.steps == {"height.raw": 4, "phase": 4}
     desk.click("<")
     assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
@@ -99,13 +99,13 @@ def test_an_answer_waits_for_a_choice_and_a_solution_for_its_button(desk):
 
 def test_break_it_and_mend_it_are_buttons(desk):
     desk.open(3)
-    assert "Mend it" not in desk.places
+    assert "Fix it" not in desk.places
     desk.click("Break it")
     desk.turn(2)
-    assert len(desk.actions.editing) == 1
-    desk.click("Mend it")
+    assert len(desk.bench.files.editing) == 1
+    desk.click("Fix it")
     desk.turn(2)
-    assert not desk.actions.editing and desk.reading.faults.state["quarter"] == "told"
+    assert not desk.bench.files.editing and desk.reading.bugs.state["quarter"] == "shown"
 
 
 def test_a_fault_is_mended_by_typing_in_the_copy(desk):
@@ -113,7 +113,7 @@ def test_a_fault_is_mended_by_typing_in_the_copy(desk):
     desk.open(3)
     desk.click("Break it")
     desk.turn(3)
-    (editing,) = desk.actions.editing
+    (editing,) = desk.bench.files.editing
     lines = editing.text.base.split("\n")
     start = next(n for n, line in enumerate(lines) if line.startswith("float kernel("))
     wrong = next(n for n, line in enumerate(lines) if ": 9.0)" in line)
@@ -128,7 +128,7 @@ def test_a_fault_is_mended_by_typing_in_the_copy(desk):
     desk.turn(4)
     assert "4.0 : 3.0)" in editing.text.base
     assert desk.session.error is None
-    assert desk.reading.faults.state["quarter"] == "mended"
+    assert desk.reading.bugs.state["quarter"] == "fixed"
     assert FILE.read_bytes() == before
 
 
@@ -136,7 +136,7 @@ def test_brackets_that_are_typed_stand_as_they_were_typed(desk):
     desk.open(3)
     desk.click("Break it")
     desk.turn(3)
-    (editing,) = desk.actions.editing
+    (editing,) = desk.bench.files.editing
     desk.key(imgui.Key.home)
     desk.type('(all(inside) ? a[0] : "b")')
     desk.turn(2)
@@ -179,9 +179,9 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
         follow(desk.reading, address)
         desk.turn(3)
     assert opened == ["https://doi.org/10.1145/358523.358553"]
-    assert any("section 1.3.2" in notice.text for notice in desk.actions.notices)
+    assert any("section 1.3.2" in notice.text for notice in desk.bench.notices.items)
     assert desk.reading.lesson.name == "after" and desk.session.path == find("white_noise")
-    assert desk.reading.stage.own is None, "it is the reader's own"
+    assert desk.reading.figure.own is None, "it is the reader's own"
 
 
 def test_a_narrow_window_makes_the_panel_no_narrower_for_good(desk):
@@ -223,7 +223,7 @@ def test_lessons_beside_a_sketch_open_where_they_were_left_unless_they_were_clos
     desk.reading.progress.lesson, desk.reading.progress.shown = "after", shown
     assert desk.lessons is not None
     desk.lessons.begin("", "", beside=True)
-    assert desk.reading.stage.own is None, "the sketch stays in view"
+    assert desk.reading.figure.own is None, "the sketch stays in view"
     assert (desk.reading.lesson.name if desk.reading.lesson else "") == ("after" if shown else "")
     desk.lessons.begin("halving", "fr", beside=False)
     desk.turn(3)

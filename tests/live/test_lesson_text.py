@@ -16,7 +16,7 @@ import pytest
 from playground.live.lesson.formulas import Formulas, can_set, set_formula
 from playground.live.lesson.line_breaking import Extent, broken
 from playground.live.lesson.markdown_runs import Run, parts_of, plain
-from playground.workbench.lesson.labels import _ALL, words_in
+from playground.workbench.lesson.labels import _ALL, labels_in
 from playground.workbench.lesson.progress import NARROWEST, Progress, read_progress, write_progress
 
 from ..cases import each
@@ -214,7 +214,7 @@ def test_what_cannot_be_written_is_said_in_a_sentence(tmp_path):
 
 def test_both_languages_have_the_same_words_with_the_same_places():
     english, french = _ALL["en"], _ALL["fr"]
-    assert english.keys() == french.keys() and words_in("xx") is english
+    assert english.keys() == french.keys() and labels_in("xx") is english
     for key, words in english.items():
         places = [
             [p[1] for p in string.Formatter().parse(w) if p[1] is not None] for w in (words, french[key])

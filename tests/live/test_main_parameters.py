@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -17,6 +16,7 @@ from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Filter, Listing
 from playground.workbench.random_targets import targets
 
+from ..sketch_texts import map_of, passes
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -30,34 +30,14 @@ LIGHT = """// light.glsl -- light
 uniform float seed = 3.0; //! slider(0, 9) Which light
 vec4 kernel(ivec2 texel) { return vec4(seed); }
 """
-SKETCH = """format = 1
-size = 33
-main = ["light.seed", "height.seed"]
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "light"
-use = "./light"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = (
+    'format = 1\nsize = 33\nmain = ["light.seed", "height.seed"]\n'
+    + passes(height="./land", light="./light")
+    + map_of("height")
+)
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "light.glsl").write_text(LIGHT, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "light.glsl": LIGHT, "sketch.toml": SKETCH}
 
 
 def value(bare: Bare, path: str) -> object:

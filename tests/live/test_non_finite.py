@@ -13,10 +13,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite
 from playground.live.non_finite import place_in, ref_of
-from playground.workbench.actions import Actions
-from playground.workbench.non_finite import REST, FiniteWatch, said
+from playground.workbench.bench import Bench
+from playground.workbench.interface import WindowControls
+from playground.workbench.non_finite import REST, FiniteWatch, summary
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .desk import Bare
 
 FIRST = """// first.glsl -- with a hole
@@ -29,21 +31,11 @@ SECOND = """// second.glsl -- one more
 uniform sampler2D first; //! input
 float kernel(ivec2 texel) { return 1.0 + texelFetch(first, texel, 0).r; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "first"
-use = "./first"
-set = { root = -0.5 }
-[[pass]]
-name = "second"
-use = "./second"
-inputs = { first = "first" }
-[view]
-use = "view/map"
-inputs = { shown = "second" }
-set = { channel = "red" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(first=("./first", "set = { root = -0.5 }"), second=("./second", 'inputs = { first = "first" }'))
+    + map_of("second", channel="red")
+)
 
 
 class Desk:
@@ -54,13 +46,13 @@ class Desk:
             (folder / name).write_text(text, encoding="utf-8")
         self.time = 100.0
         self.session = Session(engine, folder, now=lambda: self.time)
-        self.actions = Actions(self.session, lambda: None, folder, now=lambda: self.time)
+        self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
         self.watch = FiniteWatch(lambda: self.time)
 
     def turn(self, seconds: float = 0.0, held: bool = False) -> None:
         self.time += seconds
         self.session.frame((40, 40))
-        self.watch.turn(self.actions, held)
+        self.watch.update(self.session, held=held)
 
     def rest(self) -> list[str]:
         self.turn()
@@ -81,7 +73,8 @@ def test_the_first_pass_is_named_and_what_follows_is_counted(desk: Desk) -> None
     assert desk.rest() == ["first", "second"]
     first = desk.watch.found[0]
     assert (first.output, first.texel, first.value, first.count) == ("first", (12, 30), "NaN", 4)
-    assert said(desk.watch.found) == "pass 'first' makes NaN at texel (12, 30), 4 texels; first of 2 passes"
+    expected = "pass 'first' makes NaN at texel (12, 30), 4 texels; first of 2 passes"
+    assert summary(desk.watch.found) == expected
     assert desk.watch.patience is None, "nothing more is waited for"
 
 
@@ -110,7 +103,7 @@ def test_it_goes_when_it_is_mended(desk: Desk) -> None:
 def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) -> None:
     assert desk.rest()
     first = desk.watch.found[0]
-    desk.actions.show(ref_of(first))
+    desk.bench.session.show(ref_of(first))
     assert desk.rest() == ["first", "second"], "what the map does not need is as it was"
     frame = desk.session.read()
     assert frame is not None
@@ -151,7 +144,7 @@ def test_a_map_is_placed_as_its_kernel_places_it() -> None:
     wide = NotFinite("p", "o", (0, 0), "NaN", 1, (200, 100))
     assert place_in(wide, (10.0, 20.0, 100.0, 100.0)) == (10.25, 20 + 100 - 25.25)
     named = replace(wide, path="a.b", output="c", value="infinity")
-    assert said((named,)) == "pass 'a.b', output 'c', makes infinity at texel (0, 0), 1 texel"
+    assert summary((named,)) == "pass 'a.b', output 'c', makes infinity at texel (0, 0), 1 texel"
 
 
 def test_the_words_lead_to_the_texture_and_back(
@@ -168,8 +161,8 @@ def test_the_words_lead_to_the_texture_and_back(
 
         def both() -> None:
             draw()
-            watch.turn(bare.actions, False)
-            finite.draw_not_finite(watch, bare.actions, bare.theme, (400.0, 0.0, 880.0, 720.0))
+            watch.update(bare.session, held=False)
+            finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
 
         monkeypatch.setattr(bare, "draw", both)
         bare.turn(120)
@@ -182,9 +175,9 @@ def test_the_words_lead_to_the_texture_and_back(
 
 
 def test_nothing_is_done_before_there_is_a_picture() -> None:
-    nothing = SimpleNamespace(session=SimpleNamespace(shown=None, plan=None))
+    nothing = SimpleNamespace(shown=None, plan=None)
     watch = FiniteWatch(lambda: 0.0)
-    watch.turn(nothing, False)  # type: ignore[arg-type]
+    watch.update(nothing, held=False)  # type: ignore[arg-type]
     assert watch.patience is None and watch.looks == 0
 
 
@@ -202,18 +195,14 @@ SHOWN = """// shown.glsl -- what a screen takes
 uniform sampler2D picture; //! input
 vec4 kernel(ivec2 texel) { return clamp(texelFetch(picture, texel, 0), 0.0, 1.0); }
 """
-VIEW = """[[pass]]
-name = "lit"
-use = "./lit"
-[[pass]]
-name = "shown"
-use = "./shown"
-inputs = { picture = "lit" }
-[inputs]
+VIEW = (
+    passes(lit="./lit", shown=("./shown", 'inputs = { picture = "lit" }'))
+    + """[inputs]
 height = "lit.height"
 [parameters]
 root = "lit.root"
 """
+)
 IN_VIEW = """format = 1
 size = 33
 [[pass]]
@@ -254,7 +243,7 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     assert (found.path, found.texel, found.size, found.value) == ("view.lit", (7, 5), (40, 40), "NaN")
     ref = ref_of(found)
     assert ref == "view.lit:frame" and desk.session.can_show(ref)
-    desk.actions.show(ref)
+    desk.bench.session.show(ref)
     desk.turn()
     assert desk.session.view.map is not None and desk.session.error is None and not desk.session.notes
     frame = desk.session.read()
@@ -263,7 +252,7 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
     desk.rest()
     assert desk.watch.found == (found,), "it has its own name, whatever the map calls it"
-    desk.actions.show(None)
+    desk.bench.session.show(None)
     desk.turn()
     desk.rest()
     assert desk.watch.found == (found,)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +10,11 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
-from playground.live.drops import take_dropped
 from playground.live.theme import PANEL_WIDTH
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 
+from ..sketch_texts import map_of, passes
 from .desk import Bare
 
 LAND = """// land.glsl -- hills
@@ -29,35 +28,22 @@ uniform int kind = 0; //! menu("round", "sharp") group("Shape") What they are li
 uniform float gone = 0.5; //! slider(0, 1) group("A group whose name is longer than there is room for") Gone
 float kernel(ivec2 texel) { return level; }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 title = "Hills, with a title that is longer than any panel has room for in one line"
 size = 33
-[[pass]]
-name = "height"
-use = "./land"
-set = { level = 0.6 }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
+"""
+    + passes(height=("./land", "set = { level = 0.6 }"))
+    + map_of("height")
+    + """[[preset]]
 name = "high"
 set = { "height.level" = 1.0, "height.count" = 5 }
 """
+)
 LEVEL, COUNT = "##height.level", "##height.count"
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
 
 
 def value(bare: Bare, name: str) -> object:
@@ -66,14 +52,14 @@ def value(bare: Bare, name: str) -> object:
 
 
 def said(bare: Bare) -> str:
-    return "; ".join(notice.text for notice in bare.actions.notices)
+    return "; ".join(notice.text for notice in bare.bench.notices.items)
 
 
 def test_a_drag_sets_a_value_and_is_one_step(bare: Bare) -> None:
     bare.drag(LEVEL, 0.6, 0.9)
     moved = value(bare, "level")
     assert isinstance(moved, float) and 0.8 < moved < 1.0
-    assert len(bare.actions.history.steps) == 1
+    assert len(bare.bench.undo.history.steps) == 1
     bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
     assert value(bare, "level") == 0.6
     bare.key(imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.z)
@@ -99,7 +85,7 @@ def test_a_value_is_typed_as_an_expression(bare: Bare, by: str) -> None:
     bare.type("1/8 + 1/8")
     bare.key(imgui.Key.enter)
     assert value(bare, "level") == 0.25
-    assert [list(s.after.values()) for s in bare.actions.history.steps][-1] == [0.25]
+    assert [list(s.after.values()) for s in bare.bench.undo.history.steps][-1] == [0.25]
 
 
 def test_what_cannot_be_typed_is_said_and_escape_leaves_it(bare: Bare) -> None:
@@ -130,7 +116,7 @@ def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
     change()
     bare.click("##reset height")
     assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
-    bare.actions.undo()
+    bare.bench.undo.undo()
     assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.75, 5, 2.0)
     bare.click("Reset")
     bare.click("All values and techniques")
@@ -148,7 +134,7 @@ def test_a_padlock_locks_and_chance_leaves_it(bare: Bare) -> None:
     first = dict(values_of(bare.session.sketch))  # type: ignore[arg-type]
     bare.click("Mutate")
     assert "Mutation, seed 2" in said(bare)
-    bare.actions.undo()
+    bare.bench.undo.undo()
     assert values_of(bare.session.sketch) == first, "chance is one step"  # type: ignore[arg-type]
 
 
@@ -177,7 +163,7 @@ def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare
     bare.turn(5)
     assert "set = { level = 0.33333334 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
     assert "new value" not in said(bare), "the file says what was set, so nothing gives way"
-    bare.actions.undo()
+    bare.bench.undo.undo()
     assert value(bare, "level") == 0.6
 
 
@@ -193,7 +179,7 @@ def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, f
     bare.click("##preset")
     bare.click("high")
     assert (value(bare, "level"), value(bare, "count")) == (1.0, 5)
-    assert len(bare.actions.history.steps) == 1
+    assert len(bare.bench.undo.history.steps) == 1
     bare.click("Save")
     bare.click("##name")
     bare.type("mine")
@@ -212,7 +198,7 @@ def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
         bare.turn(90)
     bare.click("History")
     bare.click("Level: the file's to 0.1##1")
-    assert value(bare, "level") == 0.1 and bare.actions.history.done == 1
+    assert value(bare, "level") == 0.1 and bare.bench.undo.history.done == 1
     bare.click("Level: 0.2 to 0.3##3")
     assert value(bare, "level") == 0.3
 
@@ -233,7 +219,7 @@ def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
     bare.turn(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
-    assert bare.actions.saved is None, "and no picture"
+    assert bare.bench.captures.saved is None, "and no picture"
 
 
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])
@@ -263,13 +249,13 @@ def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) 
         assert 0 <= window.pos.x and window.pos.x + window.size.x <= size[0]
         assert 0 <= window.pos.y and window.pos.y + window.size.y <= size[1]
         bare.key(imgui.Key.escape)
-        assert not bare.actions.keymap_shown and not bare.quits
+        assert not bare.bench.interface.keymap_shown and not bare.quits
         bare.key(imgui.Key.f1)
-        assert bare.actions.keymap_shown
+        assert bare.bench.interface.keymap_shown
         imgui.get_io().add_mouse_pos_event(5, 5)
         bare.press(True)
         bare.press(False)
-        assert not bare.actions.keymap_shown
+        assert not bare.bench.interface.keymap_shown
         bare.key(imgui.Key.escape)
         assert not bare.quits and "Ctrl+Q" in said(bare)
         bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
@@ -293,25 +279,25 @@ def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_eng
     text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
     (folder / "sketch.toml").write_text(text, encoding="utf-8")
     bare = Bare(any_engine, folder)
-    take_dropped(bare.actions, [image, folder / "other" / "notes.txt"])
+    bare.drops.take([image, folder / "other" / "notes.txt"])
     assert "notes.txt is neither a sketch, a shader nor an image" in said(bare)
     bare.turn(3)
     bare.click("Elevation   height.image##height.image")
-    assert value(bare, "image") == str(image.resolve()) and bare.actions.dropped == []
+    assert value(bare, "image") == str(image.resolve()) and bare.drops.waiting == []
     assert bare.session.read_values("height:height").max() == 1.0  # type: ignore[union-attr]
-    bare.actions.undo()
+    bare.bench.undo.undo()
     assert value(bare, "image") == "none.png"
-    take_dropped(bare.actions, [image, image])
+    bare.drops.take([image, image])
     bare.turn(3)
     bare.click("Elevation   height.image##height.image")
-    assert len(bare.actions.dropped) == 1, "and the next is asked about"
-    bare.actions.undo()
+    assert len(bare.drops.waiting) == 1, "and the next is asked about"
+    bare.bench.undo.undo()
     bare.turn(3)
     imgui.get_io().add_mouse_pos_event(1000, 700)
     bare.press(True)
     bare.press(False)
     bare.turn(2)
-    assert bare.actions.dropped == [] and value(bare, "image") == "none.png", "a click beside it is a no"
+    assert bare.drops.waiting == [] and value(bare, "image") == "none.png", "a click beside it is a no"
     bare.close()
 
 
@@ -321,30 +307,30 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     for name in ("land.glsl", "sketch.toml"):
         (other / name).write_bytes((folder / name).read_bytes())
     bare.session.drafts.set("height.level", 0.25)
-    take_dropped(bare.actions, [other])
+    bare.drops.take([other])
     bare.turn(3)
     assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
     shader = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
     (other / "plain.frag").write_text(shader, encoding="utf-8")
-    take_dropped(bare.actions, [other / "plain.frag"])
+    bare.drops.take([other / "plain.frag"])
     bare.turn(3)
     assert bare.session.path.name == "plain.frag" and bare.session.error is None
     assert bare.session.sketch is not None and bare.session.sketch.name == "plain"
-    take_dropped(bare.actions, [folder / "gone.toml"])
+    bare.drops.take([folder / "gone.toml"])
     assert "gone.toml" in said(bare)
-    take_dropped(bare.actions, [folder / "picture.png"])
+    bare.drops.take([folder / "picture.png"])
     assert "picture.png is neither" in said(bare)
 
 
 def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
     write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
-    take_dropped(bare.actions, [folder / "white.png"])
-    assert "no parameter of this sketch takes a file" in said(bare) and bare.actions.dropped == []
+    bare.drops.take([folder / "white.png"])
+    assert "no parameter of this sketch takes a file" in said(bare) and bare.drops.waiting == []
 
 
 def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
     bare = Bare(any_engine, SKETCHES / "white_noise.toml")
-    bare.actions.folder = tmp_path
+    bare.bench.commands.folder = tmp_path
     bare.session.drafts.set("height.seed", 4)
     bare.turn(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)

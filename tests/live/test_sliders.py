@@ -16,6 +16,7 @@ from playground.live.theme import Theme
 from playground.sketch.assign import values_of
 from playground.sketch.model import Parameter
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
 WIDE = 150.0
@@ -26,15 +27,7 @@ uniform ivec2 part = ivec2(0); //! parts("east", "north") Which
 uniform int method = 0; //! menu("a choice whose name is longer than any closed list is wide", "b")
 float kernel(ivec2 texel) { return corners.x + float(part.x) + float(method); }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height()
 
 
 @pytest.fixture

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.live.mouse import Hand
+from playground.live.mouse import PictureMouse
 from playground.sketch.load import load
 from playground.workbench.clock import Clock
 from playground.workbench.inspect.time_range import marks_of, span_of, stepped, toggle_loop
@@ -42,18 +41,7 @@ set = { "height.level" = 1.0 }
 """
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH + KEYFRAMES, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
-    made = Bare(any_engine, folder)
-    yield made
-    made.close()
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH + KEYFRAMES}
 
 
 def test_a_loop_goes_round_and_keeps_what_is_over() -> None:
@@ -114,7 +102,7 @@ def test_keyframes_move_the_picture_as_time_goes(bare: Bare) -> None:
     assert session.animated and session.plan is not None
     session.clock.playing = False
     for time, azimuth in ((0.0, 100.0), (2.0, 150.0), (3.0, 200.0), (9.0, 200.0)):
-        bare.actions.seek(time)
+        bare.bench.undo.seek(time)
         bare.turn(2)
         assert session.plan.sketch.camera.azimuth == pytest.approx(azimuth)
 
@@ -146,11 +134,11 @@ def test_a_scrub_is_one_step_and_keeps_to_a_mark(bare: Bare) -> None:
     bare.session.clock.playing = False
     bare.drag("##timeline", 0.2, 0.5)
     assert bare.session.clock.time == pytest.approx(1.5, abs=0.01)
-    assert len(bare.actions.history.steps) == 1
+    assert len(bare.bench.undo.history.steps) == 1
     bare.click("##timeline", 1.0 / 3.0 + 0.004)
     assert bare.session.clock.time == 1.0  # the keyframe's very time
-    bare.actions.undo()
-    bare.actions.undo()
+    bare.bench.undo.undo()
+    bare.bench.undo.undo()
     assert bare.session.clock.time == 0.0
 
 
@@ -180,10 +168,10 @@ def test_a_sketch_that_rests_has_no_bar(folder: Path, any_engine: Engine) -> Non
 def test_a_drag_begins_where_the_keyframes_left_the_camera(bare: Bare) -> None:
     session, io = bare.session, imgui.get_io()
     session.clock.playing = False
-    bare.actions.seek(2.0)
+    bare.bench.undo.seek(2.0)
     bare.turn(2)
     assert session.plan is not None and session.plan.sketch.camera.azimuth == pytest.approx(150.0)
-    hand = Hand(session, bare.actions.painting)
+    hand = PictureMouse(session, bare.bench.painting)
 
     def turn(x: float, y: float, down: bool) -> None:
         io.add_mouse_pos_event(x, y)

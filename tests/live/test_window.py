@@ -70,11 +70,7 @@ class App(Program):
         return self.screen.pixels()[60:220, PANEL + 10 : PANEL + 250]
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH, HEIGHT)
-    yield made
-    made.close()
+SCREEN = WIDTH, HEIGHT  # [pixels]
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -35,11 +34,7 @@ shown = "height"
 pytestmark = ON_LINUX
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), 800, 600)
-    yield made
-    made.close()
+SCREEN = 800, 600  # [pixels]
 
 
 def opened(screen: Screen, folder: Path) -> Program:

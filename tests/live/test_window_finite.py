@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ..sketch_texts import map_of_height
 from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 800, 500
@@ -23,24 +23,12 @@ LAND = """// land.glsl -- hills with a hole
 uniform float root = -1.0; //! slider(-1, 1)
 float kernel(ivec2 texel) { return texel / 4 == ivec2(3, 5) ? sqrt(root) : 0.5; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height()
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH, HEIGHT)
-    yield made
-    made.close()
+SCREEN = WIDTH, HEIGHT  # [pixels]
 
 
 def test_the_words_lead_to_the_texels_in_magenta(screen: Screen, tmp_path: Path) -> None:

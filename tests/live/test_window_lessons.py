@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from playground.workbench.lesson.progress import Progress, write_progress
 
+from ..sketch_texts import map_of_height
 from .lesson_desk import write_lessons
 from .screen import ON_LINUX, Program, Screen
 
@@ -22,23 +22,11 @@ library.TEXTS = Path(sys.argv[1])
 from playground.live.app import run
 sys.exit(run(sys.argv[2], size=(1000, 700), beside=True, time_limit=300))
 """
-OWN = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 pytestmark = ON_LINUX
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), 1000, 700)
-    yield made
-    made.close()
+SCREEN = 1000, 700  # [pixels]
 
 
 def opened(screen: Screen, folder: Path) -> Program:

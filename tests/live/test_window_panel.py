@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from ..sketch_texts import map_of, passes
 from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 800, 500
@@ -22,35 +22,22 @@ LAND = """// land.glsl -- hills
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
 """
-SKETCH = """format = 1  # ours
+SKETCH = (
+    """format = 1  # ours
 title = "Hills"
 size = 65
 extent = 1000.0
 relief = 200.0
-[[pass]]
-name = "height"
-use = "./land"
-set = { level = 0.75 }   # by eye
-[view]
-use = "view/map"
-inputs = { shown = "height" }
 """
+    + passes(height=("./land", "set = { level = 0.75 }   # by eye"))
+    + map_of("height")
+)
 
 pytestmark = ON_LINUX
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH + 200, HEIGHT + 100)
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    return tmp_path
+SCREEN = WIDTH + 200, HEIGHT + 100  # [pixels]
+FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
 
 
 def opened(screen: Screen, folder: Path, size: object) -> Program:

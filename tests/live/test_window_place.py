@@ -25,7 +25,7 @@ def opened(live):
     turn(live)
     other = Path(sys.argv[2])
     if other.is_file() and live.session.path != other:
-        live.actions.open(other)
+        live.bench.commands.open(other)
 app.Live._turn = opened
 sys.exit(app.run(sys.argv[1], time_limit=300))
 """
@@ -43,11 +43,7 @@ def test_a_sketch_in_a_folder_is_called_by_its_folder(tmp_path: Path) -> None:
     assert title_of(tmp_path / "land.glsl") == "land – terrain shader playground"
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), 1000, 700)
-    yield made
-    made.close()
+SCREEN = 1000, 700  # [pixels]
 
 
 class Windows:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ..sketch_texts import map_of, passes
 from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 900, 560
@@ -24,34 +25,28 @@ LAND = """// land.glsl -- hills
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
 """
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 title = "Hills"
 size = [65, 33]
 extent = [1000.0, 500.0]
 relief = 200.0
-[[pass]]
-name = "height"
-use = "./land"
-set = { level = 0.75 }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[keyframe]]
+"""
+    + passes(height=("./land", "set = { level = 0.75 }"))
+    + map_of("height")
+    + """[[keyframe]]
 time = 1.0
 set = { "view.lowest" = 0.0 }
 [[keyframe]]
 time = 2.0
 set = { "view.lowest" = -1.0 }
 """
+)
 
 pytestmark = ON_LINUX
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH + 50, HEIGHT + 50)
-    yield made
-    made.close()
+SCREEN = WIDTH + 50, HEIGHT + 50  # [pixels]
 
 
 @pytest.fixture

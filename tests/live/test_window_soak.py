@@ -147,11 +147,7 @@ STYLES: tuple[Save, ...] = (
 )
 
 
-@pytest.fixture
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), 640, 420)
-    yield made
-    made.close()
+SCREEN = 640, 420  # [pixels]
 
 
 @pytest.fixture

@@ -71,11 +71,7 @@ BUSY = LAND.replace("{ return", f"{{ float s = 0.0;{LOOP * 20} if (s == 0.5) ret
 pytestmark = ON_LINUX
 
 
-@pytest.fixture(scope="module")
-def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Screen]:
-    made = Screen(tmp_path_factory.mktemp("screen"), WIDTH, HEIGHT)
-    yield made
-    made.close()
+SCREEN = WIDTH, HEIGHT  # [pixels]
 
 
 @pytest.fixture

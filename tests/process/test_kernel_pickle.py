@@ -11,24 +11,16 @@ from playground.process.kernel_pickle import Decoder, Encoder
 from playground.sketch.load import load
 from playground.sketch.model import Kernel, Sketch, kernels_of
 
+from ..sketch_texts import passes
+
 LAND = """#pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return 0.5; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[[pass]]
-name = "again"
-use = "./land"
-[[pass]]
-name = "light"
-use = "lighting/ray_cast"
-inputs = { height = "height" }
-[view]
-use = "view/terrain"
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(height="./land", again="./land", light=("lighting/ray_cast", 'inputs = { height = "height" }'))
+    + '[view]\nuse = "view/terrain"\n'
+)
 
 
 @dataclass

@@ -19,7 +19,7 @@ from playground.images.files import write_png
 from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.draw_handler import DrawResult, DrawTask
 from playground.reduce.failures import Differs, FailureKind, NotFinite, OffReference, Refused, Side
-from playground.reduce.inline import lay_flat
+from playground.reduce.inline import inline_sketch
 from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
@@ -65,7 +65,7 @@ def shrink(
 ) -> Search:
     """Reduce a sketch to the end, or for so many tries."""
     folder.mkdir(exist_ok=True)
-    case = lay_flat(load(path), frame=frame).looking_at(target)
+    case = inline_sketch(load(path), frame=frame).looking_at(target)
     probe = Probe(failure, [worker], folder, 60.0)
     finding = probe.find(case)
     assert finding is not None, "it fails to begin with"
@@ -315,7 +315,7 @@ def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, wor
         tries=60,
     )
     assert "0.375" in text_of(search)
-    assert search.best.lines < lay_flat(load(path), frame=(8, 8)).lines
+    assert search.best.lines < inline_sketch(load(path), frame=(8, 8)).lines
     assert search.finding.where.sum() == search.confirmed().where.sum() > 0
 
 
@@ -399,7 +399,7 @@ def test_ctrl_c_keeps_the_smallest_so_far(sketch, tmp_path, monkeypatch, capsys)
     assert run(str(path), "--pass", "height", "--command", GREP.replace("python3", sys.executable)) == 130
     text = (tmp_path / "land-reduced" / "height.glsl").read_text()
     assert "magic(0.5)" in text
-    assert text.count("\n") < lay_flat(load(path), frame=(8, 8)).looking_at("height").lines
+    assert text.count("\n") < inline_sketch(load(path), frame=(8, 8)).looking_at("height").lines
     assert "stopped before" in (tmp_path / "land-reduced" / "README.txt").read_text()
 
 
@@ -444,7 +444,7 @@ def test_a_hang_is_kept(sketch, tmp_path):
     with CandidateProcess(software=True, limit=2.0) as impatient:
         folder = tmp_path / "scratch"
         folder.mkdir()
-        case = lay_flat(load(path), frame=(8, 8)).looking_at("height")
+        case = inline_sketch(load(path), frame=(8, 8)).looking_at("height")
         probe = Probe(Died("hang"), [impatient], folder, 2.0)
         finding = probe.find(case)
         assert finding is not None
@@ -484,10 +484,10 @@ WITH_VARIANTS = ("soft_cone", "fault_formation", "splat")
     "name",
     [pytest.param(n, marks=[] if n in WITH_VARIANTS else [pytest.mark.slow]) for n in shipped_sketches()],
 )
-def test_a_shipped_sketch_laid_flat_is_a_sketch_with_the_same_passes(name, tmp_path):
-    case = lay_flat(load(name), frame=(64, 36))
+def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_path):
+    case = inline_sketch(load(name), frame=(64, 36))
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
-    again = lay_flat(load(tmp_path / "sketch.toml"), frame=(64, 36))
+    again = inline_sketch(load(tmp_path / "sketch.toml"), frame=(64, 36))
     assert [one.name for one in again.passes] == [one.name for one in case.live]
     assert [one.text for one in again.passes] == [one.text for one in case.live]
     assert [one.size for one in again.passes] == [one.size for one in case.live]
@@ -497,10 +497,10 @@ def test_a_shipped_sketch_laid_flat_is_a_sketch_with_the_same_passes(name, tmp_p
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["soft_cone", "diamond_square", "splat"])
-def test_a_shipped_sketch_laid_flat_draws_the_same_picture(name, worker, tmp_path):
+def test_a_shipped_sketch_inlined_draws_the_same_picture(name, worker, tmp_path):
     sketch = load(name).with_values({"size": 65})
     frame = (64, 36)
-    case = lay_flat(sketch, frame=frame)
+    case = inline_sketch(sketch, frame=frame)
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
     whole = worker.draw(DrawTask(sketch=sketch, ref="", driver="fragment", frame=frame))
     flat = worker.draw(DrawTask(sketch=str(tmp_path / "sketch.toml"), ref="", driver="fragment", frame=frame))
@@ -523,4 +523,4 @@ def test_a_loop_of_several_passes_is_refused(sketch, worker, tmp_path):
     text = path.read_text().replace("size = 9\n", 'size = 9\n[[pass]]\nname = "start"\nuse = "./start"\n')
     path.write_text(text)
     with pytest.raises(PlaygroundError, match="loop of several passes"):
-        lay_flat(load(path), frame=(8, 8))
+        inline_sketch(load(path), frame=(8, 8))

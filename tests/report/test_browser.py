@@ -152,7 +152,7 @@ def test_a_click_accepts_and_another_undoes(leave, browser: Browser) -> None:
         browser.click(".current [data-do=accept]")
         browser.wait('document.querySelector(".current").dataset.state === "accepted"')
         np.testing.assert_array_equal(read_png(place / "dawn.png")[0], picture(1, 64, 36))
-        assert "wrote screenshots/hills/llvmpipe/dawn.png" in shown(browser, ".current .said")
+        assert "wrote screenshots/hills/llvmpipe/dawn.png" in shown(browser, ".current .message")
         browser.press("u")
         browser.wait('document.querySelector(".current").dataset.state === "open"')
         assert (place / "dawn.png").read_bytes() == before

@@ -302,13 +302,14 @@ def test_accept_writes_the_reference_and_undo_restores_it(client: Client) -> Non
     dawn = records()["dawn"]
     (answer,) = client.act("accept", dawn)
     assert (
-        answer["ok"] and answer["said"] == f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)"
+        answer["ok"]
+        and answer["message"] == f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)"
     )
     np.testing.assert_array_equal(read_png(PLACE / "dawn.png")[0], picture(1))
     assert client.state()["hills/dawn"]["state"] == "accepted"
     assert client.state()["hills/dusk"]["state"] == "open"
     (answer,) = client.act("undo", dawn)
-    assert answer["ok"] and answer["said"] == f"restored {PLACE.as_posix()}/dawn.png"
+    assert answer["ok"] and answer["message"] == f"restored {PLACE.as_posix()}/dawn.png"
     assert files() == before
     assert client.state()["hills/dawn"]["state"] == "open"
 
@@ -327,8 +328,8 @@ def test_several_are_accepted_and_each_refusal_has_its_words(client: Client) -> 
     found = records()
     answers = client.act("accept", found["dawn"], found["night"], found["noon"], found["dusk"])
     assert [answer["ok"] for answer in answers] == [True, False, False, True]
-    assert answers[1]["said"] == "no reference can be made of it (took more than 60 s)"
-    assert "it passed" in str(answers[2]["said"])
+    assert answers[1]["message"] == "no reference can be made of it (took more than 60 s)"
+    assert "it passed" in str(answers[2]["message"])
     assert {"dawn.png", "dusk.png"} <= files().keys()
     assert len(client.review.summary()) == 2
 
@@ -338,11 +339,11 @@ def test_a_second_tab_cannot_accept_or_undo_twice(client: Client) -> None:
     assert client.act("undo", dawn)[0] == {
         "name": "hills/dawn",
         "ok": False,
-        "said": "there is nothing to undo",
+        "message": "there is nothing to undo",
     }
     client.act("accept", dawn)
     before = files()
-    assert client.act("also", dawn)[0]["said"] == "it is accepted already"
+    assert client.act("also", dawn)[0]["message"] == "it is accepted already"
     assert files() == before
 
 
@@ -351,7 +352,7 @@ def test_what_the_tests_have_done_again_is_not_what_was_looked_at(client: Client
     dawn = records()["dawn"]
     write_result(RESULTS, replace(dawn, pictures={}, digest="", when=9.0), {"actual": picture(8)})
     (answer,) = client.act("accept", dawn)
-    assert not answer["ok"] and "the tests have run again since" in str(answer["said"])
+    assert not answer["ok"] and "the tests have run again since" in str(answer["message"])
     assert files() == before
     assert client.state()["hills/dawn"]["stamp"] != dawn.stamp
 
@@ -360,7 +361,7 @@ def test_a_reference_that_changed_meanwhile_stays_as_it_is(client: Client) -> No
     (PLACE / "dawn.png").write_bytes(encode_png(picture(6)))
     before = files()
     (answer,) = client.act("accept", records()["dawn"])
-    assert not answer["ok"] and "the reference has changed since it was checked" in str(answer["said"])
+    assert not answer["ok"] and "the reference has changed since it was checked" in str(answer["message"])
     assert files() == before
 
 
@@ -370,7 +371,7 @@ def test_an_undo_does_not_lose_what_was_written_since(client: Client) -> None:
     (PLACE / "dawn.png").write_bytes(encode_png(picture(6)))
     before = files()
     (answer,) = client.act("undo", dawn)
-    assert not answer["ok"] and "nothing is undone" in str(answer["said"])
+    assert not answer["ok"] and "nothing is undone" in str(answer["message"])
     assert files() == before
 
 

@@ -12,7 +12,7 @@ import pytest
 from playground.shots import checking, collect, fixture  # noqa: F401
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.renderer_process import RendererProcess
-from playground.shots.suite import ShotCase, Taken
+from playground.shots.suite import RenderedShot, ShotCase
 
 # What drew a reference, as one build of Mesa says it.
 OURS = Fingerprint(
@@ -78,7 +78,7 @@ class Lent:
         self._ends = ends  # by shot: what comes instead of a picture
         self.renderer = process.renderer
 
-    def render(self, case: ShotCase) -> Taken:
+    def render(self, case: ShotCase) -> RenderedShot:
         if case.shot.name in self._ends:
             raise self._ends[case.shot.name]
         return self._process.render(case)

@@ -34,7 +34,7 @@ from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.model import DoesNotApply, Rendering
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.suite import ROUNDING
-from playground.shots.suite import ShotCase, Taken, shots_of, take
+from playground.shots.suite import RenderedShot, ShotCase, render_shot, shots_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.source import read_text
@@ -124,17 +124,17 @@ class Judge:
     def __init__(self, engine: Engine, cases: Sequence[ShotCase]) -> None:
         self.engine = engine
         self.cost: dict[ShotCase, float] = {}
-        self.whole: dict[ShotCase, Taken] = {}
+        self.whole: dict[ShotCase, RenderedShot] = {}
         for case in cases:
             start = time.process_time()
             self.whole[case] = self.draw(case, shown_by(case))
             self.cost[case] = time.process_time() - start
 
-    def draw(self, case: ShotCase, shown: Sketch) -> Taken:
+    def draw(self, case: ShotCase, shown: Sketch) -> RenderedShot:
         """Draw a sketch that has what a shot sets, at half the shot's side."""
         shot = case.shot
         size = max(shot.size[0] // 2, 1), max(shot.size[1] // 2, 1)
-        return take(self.engine, ShotCase(shown, Shot(shot.name, size, shot.time, steps=shot.steps)))
+        return render_shot(self.engine, ShotCase(shown, Shot(shot.name, size, shot.time, steps=shot.steps)))
 
     def kills(self, case: ShotCase, defect: Defect) -> bool:
         """Say whether a shot tells of a defect; raise ``DoesNotApply`` where it has nothing of it."""

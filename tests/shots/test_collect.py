@@ -167,5 +167,5 @@ print(sorted(slow & new), sorted(name for name in new if name.startswith("playgr
 def test_being_installed_costs_next_to_nothing() -> None:
     done = subprocess.run([sys.executable, "-c", FRESH], cwd=ROOT, capture_output=True, text=True, check=True)
     small = ["playground", "playground._version", "playground.shots"]
-    small += [f"playground.shots.{name}" for name in ("names", "plugin", "unused_references")]
+    small += [f"playground.shots.{name}" for name in ("plugin", "plugin_constants", "unused_references")]
     assert done.stdout.strip() == f"[] {small}"

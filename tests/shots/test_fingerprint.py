@@ -22,6 +22,7 @@ from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.canonical import compiled_text
 from playground.sketch.load import load
 
+from ..sketch_texts import passes
 from .conftest import OURS
 
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
@@ -151,23 +152,18 @@ float kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 16
-extent = 1000.0
-[[pass]]
-name = "height"
-use = "./land"
-set = { gain = 0.25, stones = "stones.png" }
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-inputs = { height = "height" }
-set = { sun = [135.0, 30.0] }
-[view]
+SKETCH = (
+    "format = 1\nsize = 16\nextent = 1000.0\n"
+    + passes(
+        height=("./land", 'set = { gain = 0.25, stones = "stones.png" }'),
+        light=("lighting/l_dot_n", 'inputs = { height = "height" }', "set = { sun = [135.0, 30.0] }"),
+    )
+    + """[view]
 use = "view/terrain"
 set = { grid = 9 }
 camera = { azimuth = 200.0, elevation = 30.0 }
 """
+)
 
 
 @pytest.fixture

@@ -13,10 +13,11 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite, not_finite_in
-from playground.shots.suite import shots_of, take
+from playground.shots.suite import render_shot, shots_of
 from playground.sketch.load import load
 
 from ..cases import each
+from ..sketch_texts import map_of_height, passes
 
 NAN, INFINITY = "uintBitsToFloat(0x7fc00000u)", "uintBitsToFloat(0x7f800000u)"
 
@@ -57,23 +58,15 @@ vec4 kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 16
-[[pass]]
-name = "land"
-use = "./sound"
-[[pass]]
-name = "middle"
-use = "./ill"
-inputs = { height = "land" }
-[[pass]]
-name = "end"
-use = "./after"
-inputs = { shown = "middle" }
-[view]
-use = "./bytes"
-inputs = { shown = "end" }
-"""
+SKETCH = (
+    "format = 1\nsize = 16\n"
+    + passes(
+        land="./sound",
+        middle=("./ill", 'inputs = { height = "land" }'),
+        end=("./after", 'inputs = { shown = "middle" }'),
+    )
+    + '[view]\nuse = "./bytes"\ninputs = { shown = "end" }\n'
+)
 
 
 @pytest.fixture(params=["fragment", "compute"])
@@ -241,10 +234,7 @@ def test_turns_that_go_on_in_place_are_looked_at_again(ctx: moderngl.Context, tm
         f"    return iteration == 2 ? {INFINITY} : 0.5;\n"
         "}\n"
     )
-    (tmp_path / "chain.toml").write_text(
-        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./walk"\n[view]\nuse = "view/map"\n'
-        'inputs = { shown = "height" }\nset = { channel = "red" }\n'
-    )
+    (tmp_path / "chain.toml").write_text("format = 1\nsize = 16\n" + map_of_height("./walk", channel="red"))
     with Engine(ctx) as engine:
         for turns, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
             engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": turns})
@@ -275,10 +265,10 @@ def test_gaps_that_a_source_fills_are_no_alarm(ctx: moderngl.Context, tmp_path: 
 def test_a_shot_that_is_taken_says_so(drawing: Engine, folder: Path) -> None:
     (folder / "chain.toml").write_text(f'{SKETCH}[[shot]]\nname = "one"\nsize = [32, 16]\n')
     (case,) = shots_of([folder / "chain.toml"])
-    assert take(drawing, case).not_finite == ""
+    assert render_shot(drawing, case).not_finite == ""
     write(folder, "middle:r32f", ILL, NAN)
     (case,) = shots_of([folder / "chain.toml"])
-    assert take(drawing, case).not_finite.startswith("pass 'middle', output 'middle': NaN")
+    assert render_shot(drawing, case).not_finite.startswith("pass 'middle', output 'middle': NaN")
 
 
 def test_it_leaves_no_object_and_no_error_behind(

@@ -287,14 +287,14 @@ def test_structural_defects_fail_on_another_renderer(defect: str) -> None:
     base = shot("jacksboro/morning")
     found = by_eye(np.ascontiguousarray(DEFECTS[defect](base)), base)
     assert (found.word, found.tier) == ("structure", OTHER_RENDERER)
-    assert found.seen is not None
+    assert found.perceived is not None
     assert found.sentence.startswith("structure: FLIP ")
 
 
 def test_to_within_one_level_another_renderers_picture_is_simply_the_same() -> None:
     base = picture()
     found = by_eye(changed(base, scattered(99), 1), base)
-    assert (found.word, found.tier, found.seen) == ("same", OTHER_RENDERER, None)
+    assert (found.word, found.tier, found.perceived) == ("same", OTHER_RENDERER, None)
 
 
 def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one() -> None:

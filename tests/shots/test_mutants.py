@@ -17,14 +17,14 @@ from playground.errors import DataError
 from playground.images.files import read_png
 from playground.shots import judge
 from playground.shots.compare import compare
-from playground.shots.mutants import repeatability as again_module
+from playground.shots.mutants import repeatability as repeatability_module
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
 from playground.shots.mutants.redraw_handler import commented
 from playground.shots.mutants.render_mutants import rendering_mutants
-from playground.shots.mutants.repeatability import Redrawn, again
+from playground.shots.mutants.repeatability import Redrawn, redraw
 from playground.shots.mutants.suite import (
     Bench,
     Result,
@@ -35,9 +35,11 @@ from playground.shots.mutants.suite import (
     survivors,
 )
 from playground.shots.mutants.tiers import TIERS
-from playground.shots.suite import ShotCase, take
+from playground.shots.suite import ShotCase, render_shot
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+
+from ..sketch_texts import map_of_height
 
 SIZE = (160, 90)
 SMALLER = {"size": (86, 101), "view.grid": 97}  # the file's is 344 × 403, the colour sixteen times that
@@ -49,21 +51,11 @@ float kernel(ivec2 texel) {
     return previous(texel) + rise * (0.3 + time) * fract(dot(vec2(texel), vec2(0.2, 0.3)));
 }
 """
-MINE = """format = 1
-title = "A slope"
-size = 33
-[[pass]]
-name = "height"
-use = "./slope"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[shot]]
-name = "dark"
-size = [66, 44]
-set = { "height.rise" = 0.25 }
-"""
+MINE = (
+    'format = 1\ntitle = "A slope"\nsize = 33\n'
+    + map_of_height("./slope", channel="red")
+    + '[[shot]]\nname = "dark"\nsize = [66, 44]\nset = { "height.rise" = 0.25 }\n'
+)
 
 
 def mutant(name: str) -> Rendering:
@@ -180,7 +172,7 @@ def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
         line.text for line in edited.graph.passes[2].technique.passes[-1].technique.source.lines
     )
     with Engine(bench.engine.ctx) as engine:
-        found = take(engine, ShotCase(edited, shot))
+        found = render_shot(engine, ShotCase(edited, shot))
     np.testing.assert_array_equal(found.array, expected.array)
     assert found.drawn == expected.drawn != ""
 
@@ -316,7 +308,7 @@ def redrawn(bench: Bench, sketch: Sketch, count: int) -> list[Redrawn]:
     shot = shot_of(sketch, size=SIZE)
     # A process loads the file, which says nothing of a smaller land; so the shot does.
     smaller = replace(shot, values=tuple(SMALLER.items()))
-    return list(again(sketch, smaller, bench.unbroken(shot), bench.engine.info, count))
+    return list(redraw(sketch, smaller, bench.unbroken(shot), bench.engine.info, count))
 
 
 HARMLESS = Process(
@@ -331,10 +323,10 @@ HARMLESS = Process(
 
 
 def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(again_module, "processes", lambda count, drivers: [HARMLESS])
+    monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
-    found = list(again(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
+    found = list(redraw(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
 
@@ -342,7 +334,7 @@ def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypat
 def test_nor_does_it_to_the_default_sketch(
     bench: Bench, default_sketch: Sketch, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(again_module, "processes", lambda count, drivers: [HARMLESS])
+    monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
     found = redrawn(bench, default_sketch, 2)
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
@@ -351,10 +343,10 @@ def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
     arguments = (bench.sketch, shot, bench.unbroken(shot), any_engine.info, 1)
-    (late,) = again(*arguments, limit=0.01)
+    (late,) = redraw(*arguments, limit=0.01)
     assert late.refused == "the process took more than 0.01 s and was stopped"
     (mine / "slope.glsl").write_text(SLOPE.replace("rise *", "ryse *"))
-    (wrong,) = again(*arguments)
+    (wrong,) = redraw(*arguments)
     assert "slope.glsl:" in wrong.refused and "ryse" in wrong.refused and not wrong.identical
 
 
@@ -363,7 +355,7 @@ def test_a_picture_that_is_not_the_same_is_refused(mine: Path, any_engine: Engin
     shot = shot_of(bench.sketch)
     unbroken = bench.unbroken(shot)
     expected = replace(unbroken, array=finished("two-levels-brighter")(unbroken.array))
-    (found,) = again(bench.sketch, shot, expected, any_engine.info, 1)
+    (found,) = redraw(bench.sketch, shot, expected, any_engine.info, 1)
     assert found.refused.startswith("differs: max difference 2") and not found.identical
 
 

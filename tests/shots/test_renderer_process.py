@@ -20,8 +20,10 @@ from playground.engine.engine import Engine
 from playground.errors import ContextError, ParameterError, SandboxCrash, SandboxTimeout, ShaderError
 from playground.shots import renderer_process as renderer_module
 from playground.shots.renderer_process import RendererProcess
-from playground.shots.suite import ShotCase, shots_of, take
+from playground.shots.suite import ShotCase, render_shot, shots_of
 from playground.sketch.model import Graph, Shot, Sketch
+
+from ..sketch_texts import map_of_height
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"),
@@ -39,16 +41,10 @@ float kernel(ivec2 texel) {
 }
 """
 
-SKETCH = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[preset]]
+SKETCH = (
+    "format = 1\nsize = 32\n"
+    + map_of_height(channel="red")
+    + """[[preset]]
 name = "dim"
 set = { "height.gain" = 0.1 }
 [[shot]]
@@ -71,6 +67,7 @@ name = "first"
 size = [32, 32]
 steps = { height = 1 }
 """
+)
 
 
 @pytest.fixture
@@ -97,7 +94,7 @@ def test_the_child_draws_what_an_engine_here_draws(
     if any_engine.info.slug != renderer.renderer.slug:
         pytest.skip(f"OpenGL here is {any_engine.info.renderer}")
     for case in cases.values():
-        np.testing.assert_array_equal(renderer.render(case).array, take(any_engine, case).array)
+        np.testing.assert_array_equal(renderer.render(case).array, render_shot(any_engine, case).array)
 
 
 def test_a_shot_obeys_each_of_its_settings(cases: dict[str, ShotCase], renderer: RendererProcess) -> None:
@@ -177,7 +174,7 @@ if Path("cannot start").exists():
 import numpy as np
 from playground.gpu.context import ContextInfo
 from playground.process.child import Service
-from playground.shots.suite import Taken
+from playground.shots.suite import RenderedShot
 
 def open_service(parent, renderer):
     def take(case):
@@ -195,7 +192,7 @@ def open_service(parent, renderer):
         if name == "memory":
             raise MemoryError
         print("drew", name, flush=True)
-        return Taken(np.zeros((2, 3, 4), np.uint8), drawn=name)
+        return RenderedShot(np.zeros((2, 3, 4), np.uint8), drawn=name)
 
     return Service(take, ContextInfo(450, "llvmpipe (made up)", "", "", 4))
 
@@ -305,21 +302,11 @@ def test_a_child_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProc
         assert lives.read() == b""  # waits until the child is gone
 
 
-ENDING = """format = 1
-size = 32
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[shot]]
-name = "crash"
-[[shot]]
-name = "hang"
-[[shot]]
-name = "next"
-"""
+ENDING = (
+    "format = 1\nsize = 32\n"
+    + map_of_height()
+    + '[[shot]]\nname = "crash"\n[[shot]]\nname = "hang"\n[[shot]]\nname = "next"\n'
+)
 
 
 def test_a_real_childs_ends_are_told_by_the_plugin(

@@ -17,8 +17,10 @@ from playground.images.files import write_png
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
 from playground.shots.references import read_reference, reference_path, write_reference
-from playground.shots.suite import Outcome, ShotCase, Taken, check, images_of, shots_of, take
+from playground.shots.suite import Outcome, RenderedShot, ShotCase, check, images_of, render_shot, shots_of
 from playground.sketch.model import Graph, Shot, Sketch
+
+from ..sketch_texts import map_of_height
 
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 NEWER = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa", "4.5 Mesa 25.0.7", 4)
@@ -44,8 +46,8 @@ def smooth(by: int = 0) -> np.ndarray:
     return found
 
 
-def taken(pixels: np.ndarray, **more: str) -> Taken:
-    return Taken(pixels, "hills", **{"drawn": "ab12", **more})
+def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
+    return RenderedShot(pixels, "hills", **{"drawn": "ab12", **more})
 
 
 def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: str) -> Outcome:
@@ -183,21 +185,20 @@ def slope(folder: Path) -> ShotCase:
         "float kernel(ivec2 texel) { return float(texel.x) / 16.0; }\n"
     )
     (folder / "slope.toml").write_text(
-        'format = 1\nsize = 16\n[[pass]]\nname = "height"\nuse = "./land"\n[view]\nuse = "view/map"\n'
-        'inputs = { shown = "height" }\n[[shot]]\nname = "one"\nsize = [16, 16]\n'
+        "format = 1\nsize = 16\n" + map_of_height() + '[[shot]]\nname = "one"\nsize = [16, 16]\n'
     )
     return shots_of([folder / "slope.toml"])[0]
 
 
 def test_a_shot_that_is_taken_knows_what_was_drawn(drawing: Engine, tmp_path: Path) -> None:
     case = slope(tmp_path)
-    one = take(drawing, case)
+    one = render_shot(drawing, case)
     assert (one.not_finite, one.gl_error, one.size) == ("", "", (16, 16))
-    assert one.drawn and one.drawn == take(drawing, case).drawn
+    assert one.drawn and one.drawn == render_shot(drawing, case).drawn
     found = check(case, one, drawing.info)
     assert found.word == "missing"
     write_reference(case.sketch, "one", drawing.info, one.array, one.drawn)
-    found = check(case, take(drawing, case), drawing.info)
+    found = check(case, render_shot(drawing, case), drawing.info)
     assert (found.ok, found.differences) == (True, ())
 
 
@@ -205,7 +206,7 @@ def test_an_opengl_error_left_behind_is_told(
     drawing: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     case = slope(tmp_path)
-    take(drawing, case)
+    render_shot(drawing, case)
     render = drawing.render
 
     def careless(*arguments: object, **named: object) -> Frame:
@@ -214,7 +215,7 @@ def test_an_opengl_error_left_behind_is_told(
         return frame
 
     monkeypatch.setattr(drawing, "render", careless)
-    one = take(drawing, case)
+    one = render_shot(drawing, case)
     assert one.gl_error == "GL_INVALID_ENUM"
     assert check(case, one, drawing.info).word == "gl-error"
 
@@ -231,6 +232,6 @@ def test_an_opengl_error_within_a_pass_has_its_own_kind(
 
     monkeypatch.setattr(drawing.runner, "run", careless)
     with pytest.raises(OpenGLFault, match="OpenGL reports GL_INVALID_ENUM") as caught:
-        take(drawing, slope(tmp_path))
+        render_shot(drawing, slope(tmp_path))
     assert isinstance(caught.value, ContextError)
     assert drawing.ctx.error == "GL_NO_ERROR"

@@ -16,6 +16,8 @@ from playground.sketch.assign import (
     values_of,
 )
 
+from ..sketch_texts import passes
+
 NOISE = """\
 #pragma kernel(output = "height:r32f")
 uniform float gain = 1.0;      //! slider(0, 8)
@@ -23,31 +25,20 @@ uniform int octaves = 4;       //! slider(1, 9)
 uniform vec2 sun = vec2(1.0);  //! direction
 float kernel(ivec2 texel) { return gain; }
 """
-INNER = """\
-[[pass]]
-name = "coarse"
-use = "./noise"
-set = { gain = 2 }
-[[pass]]
-name = "fine"
-use = "./noise"
-set = { gain = 3, octaves = 6 }
-[parameters]
+INNER = (
+    passes(coarse=("./noise", "set = { gain = 2 }"), fine=("./noise", "set = { gain = 3, octaves = 6 }"))
+    + """[parameters]
 gain = ["coarse.gain", "fine.gain"]
 detail = "fine.octaves"
 """
-OUTER = """\
-[[pass]]
-name = "one"
-use = "./inner"
-set = { gain = 4 }
-[[pass]]
-name = "two"
-use = "./inner"
-[parameters]
+)
+OUTER = (
+    passes(one=("./inner", "set = { gain = 4 }"), two="./inner")
+    + """[parameters]
 strength = ["one.gain", "two.coarse.gain"]
 detail = "two.detail"
 """
+)
 
 
 @pytest.fixture

@@ -13,19 +13,16 @@ from playground.sketch.keyframes import EASES, Track
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 
-LAND = """format = 1
-title = "Keyframes"
-size = 33
-[[pass]]
-name = "height"
-use = "generation/diamond_square"
-[[pass]]
-name = "light"
-use = "lighting/ray_cast"
-[view]
+from ..sketch_texts import passes
+
+LAND = (
+    'format = 1\ntitle = "Keyframes"\nsize = 33\n'
+    + passes(height="generation/diamond_square", light="lighting/ray_cast")
+    + """[view]
 use = "view/terrain"
 camera = { azimuth = 100.0, elevation = 30.0, distance = 9000.0 }
 """
+)
 KEYS = """
 [[keyframe]]
 time = 1.0

@@ -12,22 +12,15 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.edits import Draft, Edits, reload_draft
 
+from ..sketch_texts import map_of, passes
+
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
 uniform float other = 0.5; //! slider(0, 1)
 float kernel(ivec2 texel) { return level + other; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-set = { other = 0.25 }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + passes(height=("./land", "set = { other = 0.25 }")) + map_of("height")
 
 
 @pytest.fixture

@@ -13,17 +13,10 @@ from playground.paths import GLSL
 from playground.sketch.variant_record import NAME
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
 from ..variants import trust
 
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./diamond_square"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./diamond_square")
 BEFORE, AFTER = "number * share * smoothing", "number * share * share * smoothing"
 SIZE = (64, 48)
 

@@ -12,9 +12,12 @@ from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.workbench.actions import Actions
-from playground.workbench.save_commands import rounded, save_a_copy, save_as_preset, save_values
+from playground.workbench.bench import Bench
+from playground.workbench.commands import rounded
+from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
+
+from ..sketch_texts import map_of_height
 
 SIZE = (48, 32)
 KERNEL = """// land.glsl -- a slope
@@ -23,18 +26,11 @@ uniform float level = 0.25; //! slider(0, 1)
 uniform float other = 0.0; //! slider(0, 1)
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + other; }
 """
-SKETCH = """format = 1  # ours
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0, "height.other" = 0.5 }
-"""
+SKETCH = (
+    "format = 1  # ours\nsize = 33\n"
+    + map_of_height()
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
+)
 
 
 class Desk:
@@ -48,15 +44,15 @@ class Desk:
             (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
         self.session = Session(engine, path or folder)
         self.time = 0.0
-        self.actions = Actions(self.session, lambda: None, folder, now=lambda: self.time)
+        self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
         self.turn()
 
     def turn(self) -> np.ndarray:
         """Let a turn of the window pass, a second after the one before; return the picture."""
         self.time += 1.0
         self.session.frame(SIZE)
-        self.actions.look_back(False)
-        self.actions.take_notes()
+        self.bench.undo.record()
+        self.bench.take_notes()
         frame = self.session.read()
         assert frame is not None and self.session.error is None
         return frame.array
@@ -71,7 +67,7 @@ class Desk:
 
     @property
     def said(self) -> str:
-        return "; ".join(notice.text for notice in self.actions.notices)
+        return "; ".join(notice.text for notice in self.bench.notices.items)
 
 
 @pytest.fixture
@@ -82,37 +78,37 @@ def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
 
 
 def test_everything_is_undone_and_done_again(desk: Desk) -> None:
-    session, actions = desk.session, desk.actions
+    session, bench = desk.session, desk.bench
     pictures = [desk.turn()]
     for act in (
         lambda: session.drafts.set("height.level", 0.5),
-        lambda: actions.apply_preset("high"),
+        lambda: bench.commands.apply_preset("high"),
         lambda: session.drafts.choose("height", "./other"),
         lambda: session.drafts.set_camera(Camera(azimuth=3.0)),
         lambda: session.drafts.lock("height.other", True),
-        lambda: actions.reset_values(),
-        lambda: actions.seek(2.5),
-        lambda: actions.set_all("Random, seed 1", {"height.level": 0.125}),
+        lambda: bench.commands.reset_values(),
+        lambda: bench.undo.seek(2.5),
+        lambda: bench.commands.set_all("Random, seed 1", {"height.level": 0.125}),
     ):
         act()
         pictures.append(desk.turn())
-    assert len(actions.history.steps) == 8
+    assert len(bench.undo.history.steps) == 8
     assert desk.value("other") == 0.5, "the reset left what is locked"
     for picture in reversed(pictures[:-1]):
-        actions.undo()
+        bench.undo.undo()
         np.testing.assert_array_equal(desk.turn(), picture)
     assert session.clock.time == 0.0 and session.shown is not None
     assert session.shown.edits.values == () and session.sketch == session.shown.file
     for picture in pictures[1:]:
-        actions.redo()
+        bench.undo.redo()
         np.testing.assert_array_equal(desk.turn(), picture)
     assert session.clock.time == 2.5 and session.shown.edits.locked == ("height.other",)
-    actions.go_to(2)
+    bench.undo.go_to(2)
     np.testing.assert_array_equal(desk.turn(), pictures[2])
-    actions.redo()
-    actions.go_to(0)
+    bench.undo.redo()
+    bench.undo.go_to(0)
     desk.turn()
-    actions.undo()
+    bench.undo.undo()
     assert "nothing to undo" in desk.said
 
 
@@ -124,19 +120,19 @@ def test_undo_goes_on_after_a_reload_and_a_broken_one(desk: Desk) -> None:
         land.write_text(text, encoding="utf-8")
         desk.session.drafts.reload()
         desk.session.frame(SIZE)
-        desk.actions.look_back(False)
+        desk.bench.undo.record()
     desk.session.drafts.set("height.other", 0.75)
     desk.turn()
     assert (desk.value("level"), desk.value("other")) == (0.5, 0.75)
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert (desk.value("level"), desk.value("other")) == (0.5, 0.0)
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert (desk.value("level"), desk.value("other")) == (0.25, 0.0)
 
 
 def test_a_locked_parameter_is_left_by_presets(desk: Desk) -> None:
     desk.session.drafts.lock("height.level", True)
-    desk.actions.apply_preset("high")
+    desk.bench.commands.apply_preset("high")
     desk.turn()
     assert (desk.value("level"), desk.value("other")) == (0.25, 0.5)
     assert "1 parameter; 1 locked parameter left alone" in desk.said
@@ -147,24 +143,24 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     desk.turn()
     desk.session.drafts.set_camera(Camera(azimuth=12.3456, elevation=30.0))
     before = desk.turn()
-    save_values(desk.actions)
+    desk.bench.commands.save_values()
     assert 'use = "./land"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
     assert desk.text.startswith("format = 1  # ours\n")
     np.testing.assert_array_equal(desk.turn(), before)
     assert desk.session.shown is not None
     assert desk.session.shown.edits.values == () and desk.session.shown.edits.camera is None
     assert "saved 1 value and the camera" in desk.said and "is taken" not in desk.said
-    desk.actions.undo()
+    desk.bench.undo.undo()
     desk.turn()
     assert desk.session.sketch is not None
     assert desk.session.sketch.camera == Camera() and desk.value("level") == 0.5
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert desk.value("level") == 0.25, "what the file said before"
-    save_values(desk.actions)
+    desk.bench.commands.save_values()
     desk.turn()
     assert "set = { level = 0.25 }" in desk.text and "azimuth = 200" in desk.text
     for _ in range(2):
-        desk.actions.redo()
+        desk.bench.undo.redo()
         desk.turn()
     assert desk.value("level") == 0.5 and desk.session.sketch.camera.azimuth == 12.35
 
@@ -172,21 +168,21 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
 def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
     desk.session.drafts.choose("height", "./other")
     desk.turn()
-    save_values(desk.actions)
+    desk.bench.commands.save_values()
     desk.turn()
     assert 'use = "./other"' in desk.text and desk.session.shown is not None
     assert desk.session.shown.edits.techniques == ()
-    desk.actions.undo()
+    desk.bench.undo.undo()
     desk.turn()
     spec = desk.session.shown.base.graph.find("height")
     assert spec is not None and spec.use == "./land"
 
 
 def test_values_by_hand_become_a_preset(desk: Desk) -> None:
-    save_as_preset(desk.actions, "low")
+    desk.bench.commands.save_as_preset("low")
     assert "would be empty" in desk.said and "low" not in desk.text
     desk.session.drafts.set("height.level", 0.125)
-    save_as_preset(desk.actions, " low ")
+    desk.bench.commands.save_as_preset(" low ")
     desk.turn()
     assert desk.session.sketch is not None
     assert [p.name for p in desk.session.sketch.presets] == ["high", "low"]
@@ -199,7 +195,7 @@ def test_a_file_changed_meanwhile_is_said(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
     text = SKETCH.replace("size = 33", "size = 17")
     (desk.folder / "sketch.toml").write_text(text, encoding="utf-8")
-    save_values(desk.actions)
+    desk.bench.commands.save_values()
     assert "changed meanwhile" in desk.said and desk.text == text
 
 
@@ -208,14 +204,14 @@ def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engin
     before = (SKETCHES / "white_noise.toml").read_bytes()
     desk.session.drafts.set("height.seed", 4)
     picture = desk.turn()
-    save_values(desk.actions)
-    assert desk.actions.offer == "This sketch belongs to the playground itself."
-    save_a_copy(desk.actions)
+    desk.bench.commands.save_values()
+    assert desk.bench.file.offer == "This sketch belongs to the playground itself."
+    desk.bench.commands.save_a_copy()
     np.testing.assert_array_equal(desk.turn(), picture)
     assert desk.session.path == tmp_path / "white_noise" / "sketch.toml"
     assert desk.session.shown is not None and desk.session.shown.edits.values == ()
     assert (SKETCHES / "white_noise.toml").read_bytes() == before
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert desk.value("seed") != 4
     desk.session.release()
 
@@ -226,9 +222,9 @@ def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
     other.parent.mkdir()
     for name in ("land.glsl", "sketch.toml"):
         (other.parent / name).write_bytes((tmp_path / name).read_bytes())
-    desk.actions.open(other)
+    desk.bench.commands.open(other)
     desk.turn()
-    assert desk.value("level") == 0.25 and not desk.actions.history.can_undo
+    assert desk.value("level") == 0.25 and not desk.bench.undo.history.can_undo
 
 
 def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
@@ -265,17 +261,17 @@ def test_with_the_brush_in_the_hand_strokes_are_undone_and_redone_and_no_values(
     desk.session.drafts.set("height.level", 0.5)
     desk.turn()
     brush = Brush(1)
-    desk.actions.painting = brush  # type: ignore[assignment]
-    desk.actions.undo()
+    desk.bench.undo.painting = brush  # type: ignore[assignment]
+    desk.bench.undo.undo()
     assert brush.strokes == 0 and desk.value("level") == 0.5
     assert "took the last stroke back; put the brush down (B) to undo values" in desk.said
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert "no stroke to take back" in desk.said and desk.value("level") == 0.5
-    desk.actions.redo()
+    desk.bench.undo.redo()
     assert brush.strokes == 1 and desk.value("level") == 0.5
     assert "painted the stroke again; put the brush down (B) to redo values" in desk.said
-    desk.actions.redo()
+    desk.bench.undo.redo()
     assert "no stroke to paint again" in desk.said
     brush.on = False
-    desk.actions.undo()
+    desk.bench.undo.undo()
     assert desk.value("level") == 0.25

@@ -18,6 +18,8 @@ from playground.workbench.painted_mask import MOST_TEXELS, Canvas
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
+from ..sketch_texts import passes
+
 EXTENT = (1000.0, 500.0)
 HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
 
@@ -176,33 +178,25 @@ def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
         Canvas.begun(tmp_path / "missing", "mask", None, SIZE)
 
 
-SKETCH = """format = 1
+SKETCH = (
+    """format = 1
 size = 65
 extent = [2000.0, 2000.0]
 relief = 200.0
-[[pass]]
-name = "height"
-use = "generation/layered_noise"
-[[pass]]
-name = "painted"
-use = "texturing/alpha_map/mask"
-size = 128
-set = { image = "none.png" }
-[[pass]]
-name = "weights"
-use = "texturing/alpha_map"
-set = { path = 0.0 }
-[[pass]]
-name = "colour"
-use = "view/weights"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-[view]
+"""
+    + passes(
+        height="generation/layered_noise",
+        painted=("texturing/alpha_map/mask", "size = 128", 'set = { image = "none.png" }'),
+        weights=("texturing/alpha_map", "set = { path = 0.0 }"),
+        colour="view/weights",
+        light="lighting/l_dot_n",
+    )
+    + """[view]
 use = "view/terrain"
 samples = 1
 camera = { azimuth = 180, elevation = 60, distance = 3500 }
 """
+)
 
 
 @pytest.fixture

@@ -18,21 +18,15 @@ from playground.workbench.parameter_list import Filter, Listing, set_words
 from playground.workbench.randomise import at_random, mutated
 from playground.workbench.typed_values import read_typed
 
+from ..sketch_texts import map_of_height
+
 KERNEL = """// land.glsl -- level land
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high it lies
 uniform float other = 0.5; //! slider(0, 1) group("More") label("Beside it")
 float kernel(ivec2 texel) { return level + other; }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./both"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./both")
 BOTH = '[[pass]]\nname = "inner"\nuse = "./land"\n[parameters]\nhigh = "inner.level"\n'
 
 

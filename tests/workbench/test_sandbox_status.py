@@ -8,7 +8,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport
-from playground.live.overlay import PATIENCE, trial_text
+from playground.live.overlay import PATIENCE, checking_text
 from playground.workbench.reload import Follower
 from playground.workbench.session import Session
 
@@ -63,5 +63,5 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
 
 
 def test_the_words() -> None:
-    assert trial_text("land.glsl", PATIENCE) == "trying land.glsl …"
-    assert trial_text("land.glsl", 3.9) == "trying land.glsl … 3 s"
+    assert checking_text("land.glsl", PATIENCE) == "checking land.glsl …"
+    assert checking_text("land.glsl", 3.9) == "checking land.glsl … 3 s"

@@ -19,6 +19,8 @@ from playground.workbench.framing import framed
 from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of_height
+
 SIZE = (64, 48)
 KERNEL = """// land.glsl -- a slope
 #include "inc/tilt.glsl"
@@ -31,19 +33,11 @@ float kernel(ivec2 texel) {
 TILT = """// tilt.glsl -- a slope
 float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }
 """
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-set = { channel = "red" }
-[[preset]]
-name = "high"
-set = { "height.level" = 1.0 }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + map_of_height(channel="red")
+    + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
+)
 
 SKETCH_3D = """format = 1
 size = 33

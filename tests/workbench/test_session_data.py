@@ -21,19 +21,15 @@ from playground.workbench.inspect.thumbnails import Thumbnails
 from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 
+from ..sketch_texts import map_of, passes
 from .test_session import FakeTrial
 
 SIZE = (32, 32)
-SKETCH = """format = 1
-extent = 100.0
-[[pass]]
-name = "height"
-use = "generation/heightmap"
-set = { elevation = "land.npy" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+SKETCH = (
+    "format = 1\nextent = 100.0\n"
+    + passes(height=("generation/heightmap", 'set = { elevation = "land.npy" }'))
+    + map_of("height")
+)
 
 
 @pytest.fixture

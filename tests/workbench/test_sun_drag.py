@@ -11,20 +11,13 @@ from playground.sketch.load import load
 from playground.workbench.session import Session
 from playground.workbench.sun_drag import suns_of, turned
 
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "generation/layered_noise"
-[[pass]]
-name = "light"
-use = "lighting/l_dot_n"
-set = { sun = { azimuth = 350.0, elevation = 20.0 } }
-[[pass]]
-name = "second"
-use = "lighting/l_dot_n"
-set = { sun = { azimuth = 90.0, elevation = 85.0 } }
-"""
+from ..sketch_texts import passes
+
+SKETCH = "format = 1\nsize = 17\n" + passes(
+    height="generation/layered_noise",
+    light=("lighting/l_dot_n", "set = { sun = { azimuth = 350.0, elevation = 20.0 } }"),
+    second=("lighting/l_dot_n", "set = { sun = { azimuth = 90.0, elevation = 85.0 } }"),
+)
 
 
 @pytest.fixture

@@ -11,6 +11,8 @@ from playground.sketch.assign import value_of, values_of
 from playground.sketch.load import load
 from playground.sketch.replace_technique import choices, with_technique
 
+from ..sketch_texts import map_of, passes
+
 FLAT = """// flat.glsl -- level land
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
@@ -34,24 +36,15 @@ uniform sampler2D height; //! input
 vec4 kernel(ivec2 texel) { return texelFetch(height, texel, 0).rrrr; }
 """
 LIBRARY = "// library.glsl -- nothing to run\nfloat twice(float x) { return 2.0 * x; }\n"
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./flat"
-set = { level = 0.75, smoothing = 0.2 }
-[[pass]]
-name = "upper"
-use = "./raised"
-inputs = { height = "height" }
-[[pass]]
-name = "colour"
-use = "./paint"
-inputs = { height = "upper" }
-[view]
-use = "view/map"
-inputs = { shown = "colour" }
-"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(
+        height=("./flat", "set = { level = 0.75, smoothing = 0.2 }"),
+        upper=("./raised", 'inputs = { height = "height" }'),
+        colour=("./paint", 'inputs = { height = "upper" }'),
+    )
+    + map_of("colour")
+)
 
 
 @pytest.fixture

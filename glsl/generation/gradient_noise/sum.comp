@@ -11,8 +11,8 @@
 // A thread goes along 32 rows of one column. The two finest octaves cross a lattice row every few
 // texels; the coarser ones seldom do, so their sum is worked out apart, and moved along. Only
 // the plain sum of Perlin noise goes this way; the rest is worked out texel by texel.
-#include "generation/gradient_noise/seed.glsl"
 #include "noise/columns.glsl"
+#include "generation/gradient_noise/seed.glsl"
 #pragma compute(groups = "(size.x + 63) // 64, (size.y + 31) // 32", local = "64, 1", \
                 overwrites = "height", agrees = "1e-4")
 

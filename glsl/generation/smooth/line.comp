@@ -9,8 +9,8 @@
 //
 // Each thread goes along a run of texels, with two fetches a texel at any radius: it sums one
 // whole window, then adds what comes in and takes away what goes out. A run is as long as its
-// first window, so that the window costs no more than the rest; it begins anew at each run, so that
-// roundings cannot gather for long. Threads that lie beside each other go beside each other.
+// first window, so that the window costs no more than the rest; it begins anew at each run, so
+// that roundings cannot gather for long. Threads that lie beside each other go beside each other.
 #pragma compute(where = "lines = size.y if axis == 0 else size.x; \
                          texels = size.x if axis == 0 else size.y; \
                          run = max(64, 2 * radius + 1)", \

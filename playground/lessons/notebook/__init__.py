@@ -7,7 +7,7 @@
     lesson.fix("fault", '''…''')          # the picture that other lines of a shader make
 
 Pictures are drawn by the notebook's own Python, without a window. Sliders need the extra
-``notebook`` (anywidget); without it each block is a picture, as it stands in the lesson.
+``notebook`` (anywidget); without it each block is a picture, as it is in the lesson.
 """
 
 from playground.lessons.notebook.lesson import NotebookLesson, open_lesson

@@ -14,7 +14,7 @@ from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.model import Value
 from playground.sketch.values import is_whole
 
-_STEPS = 200  # positions of a slider whose parameter says no step
+_STEPS = 200  # positions of a slider whose parameter has no step
 
 
 @dataclass(frozen=True)

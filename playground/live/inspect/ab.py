@@ -8,12 +8,12 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
 from playground.live.dividers import REACH, moved
-from playground.live.overlay import Area
+from playground.live.draw import OVERLAY, Area, button, choose, window
 from playground.live.sliders import slide
 from playground.live.theme import Theme
-from playground.workbench.actions import Actions
-from playground.workbench.inspect.blend import Beside
+from playground.workbench.inspect.blend import Blend
 from playground.workbench.inspect.compare import PERIOD, Compare, Mode
+from playground.workbench.undo import Undo
 
 if TYPE_CHECKING:
     import moderngl
@@ -26,27 +26,27 @@ def paint_both(
     area: tuple[int, int, int, int],
     now: float,
 ) -> bool:
-    """Paint A and B as they are to be seen; say whether there is an A."""
+    """Paint A and B as they are shown; return whether there is an A."""
     first = compare.picture
     if first is None:
         return False
-    if compare.beside is None or compare.beside.ctx is not compare.session.engine.ctx:
-        compare.beside = Beside(compare.session.engine.ctx)
+    if compare.blend is None or compare.blend.ctx is not compare.session.engine.ctx:
+        compare.blend = Blend(compare.session.engine.ctx)
     split = compare.split
     if compare.mode is Mode.FLICKER:
         split = 1.0 if shows_first(now) else 0.0
     gain = compare.gain if compare.mode is Mode.DIFFERENCE else 0.0
-    compare.beside.paint((first, second), target, area, split=split, gain=gain)
+    compare.blend.paint((first, second), target, area, split=split, gain=gain)
     return True
 
 
 def shows_first(now: float) -> bool:
-    """Say whether A is seen at a moment [s] of flickering."""
+    """Say whether A is shown at a moment [s] of flickering."""
     return int(now / PERIOD) % 2 == 0
 
 
 def drag_line(compare: Compare, area: Area) -> bool:
-    """Move the line where the mouse holds it; say whether it does."""
+    """Move the line where the mouse holds it; return whether it does."""
     io = imgui.get_io()
     if not compare.on or compare.mode is not Mode.DIVIDER:
         compare.held = False
@@ -64,9 +64,8 @@ def drag_line(compare: Compare, area: Area) -> bool:
     return compare.held
 
 
-def draw_ab(actions: Actions, look: Theme, area: Area) -> None:
+def draw_ab(compare: Compare, undo: Undo, look: Theme, area: Area) -> None:
     """Draw the line, the letters and the bar."""
-    compare = actions.see.compare
     if not compare.on:
         return
     x, y, wide, high = area
@@ -76,32 +75,24 @@ def draw_ab(actions: Actions, look: Theme, area: Area) -> None:
         draw = imgui.get_background_draw_list()
         draw.add_line(ImVec2(line, y), ImVec2(line, y + high), theme.packed(theme.INK, 0.9), 1.5 * scale)
         middle = y + high / 2
-        for letter, beside in (("A", -18.0), ("B", 10.0)):
-            place = ImVec2(line + beside * scale, middle)
+        for letter, away in (("A", -18.0), ("B", 10.0)):
+            place = ImVec2(line + away * scale, middle)
             draw.add_text(ImVec2(place.x + 1, place.y + 1), theme.packed((0.0, 0.0, 0.0)), letter)
             draw.add_text(place, theme.packed(theme.INK), letter)
     margin = 12 * scale
     imgui.set_next_window_pos(ImVec2(x + margin, y + margin))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
-    flags |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
-    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_nav_inputs
-    imgui.push_style_var(imgui.StyleVar_.window_rounding, 8 * scale)
-    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.9))
-    imgui.begin("ab", None, flags)
-    _bar(actions, look)
-    imgui.end()
-    imgui.pop_style_color()
-    imgui.pop_style_var()
+    with window("ab", OVERLAY, ground=theme.colour(theme.GROUND, 0.9), rounding=8 * scale):
+        _bar(compare, undo, look)
 
 
-def below_bar(actions: Actions, look: Theme, area: Area) -> Area:
+def below_bar(compare: Compare, look: Theme, area: Area) -> Area:
     """Return what the bar leaves free of an area."""
-    taken = 52 * look.scale if actions.see.compare.on else 0.0
+    taken = 52 * look.scale if compare.on else 0.0
     return area[0], area[1] + taken, area[2], max(area[3] - taken, 1.0)
 
 
-def _bar(actions: Actions, look: Theme) -> None:
-    compare, now = actions.see.compare, actions.now()
+def _bar(compare: Compare, undo: Undo, look: Theme) -> None:
+    now = undo.notices.now()
     letters = {
         Mode.DIVIDER: "A | B",
         Mode.FLICKER: "A" if shows_first(now) else "B",
@@ -112,11 +103,8 @@ def _bar(actions: Actions, look: Theme) -> None:
         imgui.text_colored(theme.colour(theme.WARM), f"{letters[compare.mode]:5}")
     imgui.same_line()
     imgui.set_next_item_width(100 * look.scale)
-    if imgui.begin_combo("##how", compare.mode.value):
-        for mode in Mode:
-            if imgui.selectable(mode.value, mode is compare.mode)[0]:
-                compare.mode = mode
-        imgui.end_combo()
+    mode = choose("##how", compare.mode.value, Mode, compare.mode, name=lambda m: m.value)
+    compare.mode = mode or compare.mode
     if compare.mode is Mode.DIFFERENCE:
         imgui.same_line()
         imgui.set_next_item_width(90 * look.scale)
@@ -129,10 +117,6 @@ def _bar(actions: Actions, look: Theme) -> None:
         ("End", "Let A go (A)", compare.end),
     ):
         imgui.same_line()
-        if imgui.button(label):
-            actions.look_back(False)
-            actions.history.call(label)
-            act()
-            actions.look_back(False)
-            actions.history.call("")  # where nothing changed, the name is no later step's
-        imgui.set_item_tooltip(note)
+        if button(label, note):
+            with undo.step(label):
+                act()

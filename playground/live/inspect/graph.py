@@ -8,12 +8,13 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import counted
 from playground.live import theme
-from playground.live.overlay import Area
+from playground.live.draw import QUIET, Area, styled
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
-from playground.workbench.actions import Actions
 from playground.workbench.inspect.pass_graph import Wiring
-from playground.workbench.inspect.toggles import Graph
+from playground.workbench.inspect.thumbnails import Thumbnails
+from playground.workbench.inspect.toggles import Inspection
+from playground.workbench.session import Session
 
 _THUMB = 84.0
 _WIDE, _GAP_X, _GAP_Y = 108.0, 46.0, 16.0
@@ -21,19 +22,20 @@ _WIDE, _GAP_X, _GAP_Y = 108.0, 46.0, 16.0
 
 @dataclass
 class _Drawing:
-    """What every node of one turn needs."""
+    """What every node in one frame uses."""
 
     wiring: Wiring
-    actions: Actions
+    session: Session
+    thumbnails: Thumbnails
     look: Theme
     origin: ImVec2
     high: float = 0.0
     boxes: dict[str, tuple[float, float]] = field(default_factory=dict)  # each node's corner
 
 
-def draw_graph(actions: Actions, look: Theme, area: Area) -> None:
-    """Draw it while it is asked for."""
-    graph, sketch = actions.see.graph, actions.session.sketch
+def draw_graph(session: Session, inspection: Inspection, look: Theme, area: Area) -> None:
+    """Draw it while it is open."""
+    graph, sketch = inspection.graph, session.sketch
     if not graph.on or sketch is None:
         return
     x, y, wide, high = area
@@ -41,32 +43,27 @@ def draw_graph(actions: Actions, look: Theme, area: Area) -> None:
     imgui.set_next_window_pos(ImVec2(x + margin, y + margin), imgui.Cond_.appearing)
     size = ImVec2(max(wide - 2 * margin, 200.0), max(min(0.62 * high, high - 2 * margin), 160.0))
     imgui.set_next_window_size(size, imgui.Cond_.appearing)
-    flags = imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
-    flags |= imgui.WindowFlags_.horizontal_scrollbar | imgui.WindowFlags_.no_nav_inputs
-    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.95))
-    imgui.push_style_var(imgui.StyleVar_.window_rounding, 8 * scale)
-    visible, stays = imgui.begin("Passes###graph", True, flags)
-    graph.on = bool(stays)
-    if visible:
-        wiring = graph.wiring(sketch)
-        _switches(graph, actions)
-        corner = imgui.get_cursor_screen_pos()
-        lines = 3 if actions.session.engine.profiling else 2
-        drawing = _Drawing(
-            wiring, actions, look, corner, (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
-        )
-        _nodes(drawing)
-    imgui.end()
-    imgui.pop_style_var()
-    imgui.pop_style_color()
+    flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.horizontal_scrollbar
+    ground, rounding = theme.colour(theme.GROUND, 0.95), 8 * scale
+    with styled({imgui.Col_.window_bg: ground}, {imgui.StyleVar_.window_rounding: rounding}):
+        visible, stays = imgui.begin("Passes###graph", True, flags)
+        graph.on = bool(stays)
+        if visible:
+            _switches(inspection)
+            corner = imgui.get_cursor_screen_pos()
+            lines = 3 if session.engine.profiling else 2
+            high = (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
+            _nodes(_Drawing(graph.wiring(sketch), session, graph.thumbnails, look, corner, high))
+        imgui.end()
 
 
-def _switches(graph: Graph, actions: Actions) -> None:
+def _switches(inspection: Inspection) -> None:
+    graph = inspection.graph
     _, graph.inner = imgui.checkbox("Inside techniques", graph.inner)
     imgui.same_line()
     _, graph.timed = imgui.checkbox("Time each pass", graph.timed)
     if graph.timed:
-        actions.see.costs_shown = True
+        inspection.costs_shown = True
     imgui.same_line()
     imgui.text_disabled("a click shows a texture from above")
 
@@ -89,17 +86,16 @@ def _nodes(drawing: _Drawing) -> None:
 
 
 def _node(node: str, ref: str, drawing: _Drawing) -> None:
-    actions, scale = drawing.actions, drawing.look.scale
-    session, thumbnails = actions.session, actions.see.graph.thumbnails
+    session, thumbnails, scale = drawing.session, drawing.thumbnails, drawing.look.scale
     x, y = drawing.boxes[node]
     corner, far = ImVec2(x, y), ImVec2(x + _WIDE * scale, y + drawing.high)
     imgui.set_cursor_screen_pos(corner)
     is_view = node.partition(".")[0] == "view"
     if imgui.invisible_button(f"node {node}", ImVec2(far.x - x, far.y - y)):
-        actions.show(None if is_view else ref)
+        session.show(None if is_view else ref)
     hovered = imgui.is_item_hovered()
     if hovered:
-        imgui.set_tooltip(_told(node, actions))
+        imgui.set_tooltip(_tooltip(node, session))
     shown = session.view.map.ref == ref if session.view.map is not None else node == "view"
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, far, theme.packed(theme.RAISED if hovered else theme.FIELD), 6 * scale)
@@ -129,9 +125,8 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
         draw.add_text(ImVec2(across, high.y + number * line), theme.packed(ink), text)
 
 
-def _told(node: str, actions: Actions) -> str:
+def _tooltip(node: str, session: Session) -> str:
     """Return what a node's tooltip says: its technique, its texture's size and format."""
-    session = actions.session
     plan = session.plan
     lines = [node]
     spec = plan.flat.specs.get(node) if plan is not None else None

@@ -8,13 +8,16 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from playground.live import theme
+from playground.live.draw import button
 from playground.live.inspect import plots
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
 from playground.sketch.map_sketch import Map
-from playground.workbench.actions import Actions
 from playground.workbench.inspect.histogram import BINS, Histogram
 from playground.workbench.inspect.legend import STEPS, ends_of, ticks
+from playground.workbench.inspect.toggles import Inspection
+from playground.workbench.session import Session
+from playground.workbench.view import View
 
 _HIGH = 120.0
 _CHANNELS = ("red", "green", "blue", "alpha")
@@ -22,51 +25,49 @@ _INKS = ((0.95, 0.42, 0.38), (0.45, 0.80, 0.45), (0.45, 0.62, 0.98), (0.75, 0.75
 _SHARE = 0.02
 
 
-def draw_spread(actions: Actions, look: Theme) -> None:
+def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
     """Draw it where a map is shown."""
-    session = actions.session
-    if session.view.map is None:
+    shown = session.view.map
+    if shown is None:
         return
-    if session.view.map.value("channel") != 0:
-        _legend(session.view.map, actions, look)
+    if shown.value("channel") != 0:
+        _legend(shown, session, inspection, look)
     if not imgui.tree_node_ex("Histogram###histogram"):
         return
-    actions.see.spread_shown = True
-    found = actions.see.counter.latest
+    inspection.spread_shown = True
+    found = inspection.counter.latest
     if found is None:
         imgui.text_disabled("counting …")
     else:
-        _plot(found, actions, look)
+        _plot(found, shown, inspection, look)
         _table(found)
         if not found.whole:
             imgui.text_disabled(fitting(f"of {found.read:,} texels, whole rows of it", 300 * look.scale))
-        if not actions.see.counter.fresh:
+        if not inspection.counter.fresh:
             imgui.text_disabled("of a moment ago; counting anew …")
-        _ranges(found, session.view.map, actions)
+        _ranges(found, session.view)
     imgui.tree_pop()
 
 
-def metres_of(actions: Actions) -> float | None:
+def metres_of(session: Session) -> float | None:
     """Return how many metres the map's number 1 is, where it shows heights; None elsewhere."""
-    session = actions.session
-    if session.view.map is None or session.plan is None or session.view.map.ref.partition(":")[2] != "height":
-        return None
-    return session.plan.terrain.relief
+    shown, plan = session.view.map, session.plan
+    return plan.terrain.relief if shown and plan and shown.ref.partition(":")[2] == "height" else None
 
 
-def _legend(shown: Map, actions: Actions, look: Theme) -> None:
+def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -> None:
     """Draw the ramp's colours with round numbers under them, metres where heights are shown."""
     ramp = shown.value("ramp")
-    colours = actions.see.colours(int(ramp) if isinstance(ramp, int) else 0)
+    colours = inspection.colours(int(ramp) if isinstance(ramp, int) else 0)
     low, high = ends_of(shown)
-    metres = metres_of(actions)
+    metres = metres_of(session)
     unit, factor = (" m", metres) if metres is not None else ("", 1.0)
     corner, wide = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
     bar, line = 12 * look.scale, imgui.get_text_line_height()
     imgui.invisible_button("##legend", ImVec2(wide, bar + line + 4 * look.scale))
     draw = imgui.get_window_draw_list()
     for step, colour in enumerate(colours):
-        # Each goes to the end, under the next, so that no seam is seen.
+        # Each goes to the end, under the next, so that no seam is visible.
         start, end = ImVec2(corner.x + wide * step / STEPS, corner.y), ImVec2(corner.x + wide, corner.y + bar)
         draw.add_rect_filled(start, end, theme.packed(colour))
     if high == low:
@@ -87,25 +88,23 @@ def _legend(shown: Map, actions: Actions, look: Theme) -> None:
         imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
 
 
-def _plot(found: Histogram, actions: Actions, look: Theme) -> None:
-    plots.begin()
-    shown = actions.session.view.map
-    assert shown is not None
-    _, logarithmic = imgui.checkbox("Logarithmic", actions.see.logarithmic)
-    actions.see.logarithmic = logarithmic
+def _plot(found: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
+    _, logarithmic = imgui.checkbox("Logarithmic", inspection.logarithmic)
+    inspection.logarithmic = logarithmic
     span = found.high - found.low
     edges = found.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
     tallest = max(int(channel.bins.max()) for channel in found.channels)
-    implot.push_style_var(implot.StyleVar_.plot_padding, ImVec2(4, 4))
-    flags = plots.PLAIN | implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
-    if implot.begin_plot("##spread", ImVec2(-1, _HIGH * look.scale), flags):
+    flags = implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
+    floor = 0.5 if logarithmic else 0.0
+    top = 1.3 * tallest if logarithmic else 1.05 * tallest
+    with plots.plot("##spread", ImVec2(-1, _HIGH * look.scale), flags) as drawn:
+        if not drawn:
+            return
         locked = implot.AxisFlags_.lock.value
         implot.setup_axes("", "", locked, locked | implot.AxisFlags_.no_tick_labels.value)
         implot.setup_axis_limits(implot.ImAxis_.x1, found.low, found.low + (span or 1.0), imgui.Cond_.always)
         if logarithmic:
             implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
-        floor = 0.5 if logarithmic else 0.0
-        top = 1.3 * tallest if logarithmic else 1.05 * tallest
         implot.setup_axis_limits(implot.ImAxis_.y1, floor, max(top, 1.0), imgui.Cond_.always)
         for number, channel in enumerate(found.channels):
             spec = implot.Spec()
@@ -115,10 +114,7 @@ def _plot(found: Histogram, actions: Actions, look: Theme) -> None:
             heights = np.maximum(channel.bins.astype(np.float64), floor)
             implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
             implot.plot_shaded(_CHANNELS[number], edges, heights, floor, spec)
-        limits = plots.line(0, 1.0)
-        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), limits)
-        implot.end_plot()
-    implot.pop_style_var()
+        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plots.line(0, 1.0))
 
 
 def _table(found: Histogram) -> None:
@@ -142,25 +138,22 @@ def _table(found: Histogram) -> None:
             imgui.text_colored(theme.colour(theme.ALARM), text)
 
 
-def _ranges(found: Histogram, shown: Map, actions: Actions) -> None:
+def _ranges(found: Histogram, view: View) -> None:
     """Draw what sets the map's range from the numbers."""
-    channel = shown.value("channel")
+    channel = view.map.value("channel") if view.map is not None else 0
     which = max(int(channel) - 1, 0) if isinstance(channel, int) else 0
     if which >= len(found.channels) or not found.channels[which].count:
         return
     mine = found.channels[which]
     wanted: tuple[float, float] | None = None
-    if imgui.button("All of it"):
+    if button("All of it", "The map's range from the least to the greatest number"):
         wanted = mine.lowest, mine.highest
-    imgui.set_item_tooltip("The map's range from the least to the greatest number")
     imgui.same_line()
-    if imgui.button("All but outliers"):
+    if button("All but outliers", "Without the least and the greatest 2 in 100"):
         wanted = found.between(which, _SHARE)
-    imgui.set_item_tooltip("Without the least and the greatest 2 in 100")
     imgui.same_line()
-    if imgui.button("Around the mean"):
-        actions.session.view.set_map("middle", mine.mean)
-    imgui.set_item_tooltip('The middle of "cool and warm" is the mean')
+    if button("Around the mean", 'The middle of "cool and warm" is the mean'):
+        view.set_map("middle", mine.mean)
     if wanted is not None and wanted[0] < wanted[1]:
         for name, value in zip(("lowest", "highest"), wanted, strict=True):
-            actions.session.view.set_map(name, value)
+            view.set_map(name, value)

@@ -1,8 +1,11 @@
-"""What every plot here shares: ImPlot made ready, colours that all eyes tell apart."""
+"""What every plot here shares: ImPlot set up, colours that all eyes tell apart."""
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec4, implot
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from imgui_bundle import ImVec2, ImVec4, implot
 
 # Okabe and Ito 2008, "Color Universal Design", without black.
 COLOURS = (
@@ -18,10 +21,17 @@ PLAIN = implot.Flags_.no_menus.value | implot.Flags_.no_box_select.value | implo
 """A plot that is only looked at."""
 
 
-def begin() -> None:
-    """Have ImPlot ready; it is made when the first plot is shown."""
+@contextmanager
+def plot(name: str, size: ImVec2, flags: int) -> Iterator[bool]:
+    """Draw the block in a plot, where it is given True; ImPlot is set up by the first."""
     if implot.get_current_context() is None:
         implot.create_context()
+    implot.push_style_var(implot.StyleVar_.plot_padding, ImVec2(4, 4))
+    drawn = implot.begin_plot(name, size, PLAIN | flags)
+    yield drawn
+    if drawn:
+        implot.end_plot()
+    implot.pop_style_var()
 
 
 def line(number: int, weight: float = 1.5) -> implot.Spec:

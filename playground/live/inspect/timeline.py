@@ -5,80 +5,81 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.overlay import Area
+from playground.live.draw import QUIET, Area, button, choose, styled, window
 from playground.live.theme import Theme
 from playground.sketch.model import Sketch
-from playground.workbench.actions import Actions
 from playground.workbench.inspect.time_range import SPEEDS, marks_of, span_of
+from playground.workbench.interface import Interface
+from playground.workbench.session import Session
+from playground.workbench.undo import Undo
 
 _HIGH = 40.0
+_NO_ARROW = imgui.ComboFlags_.no_arrow_button.value
 _NEAR = 5.0  # a mark this near to the mouse is taken for the time meant
 
 
-def height_of_timeline(actions: Actions, look: Theme) -> float:
+def height_of_timeline(session: Session, interface: Interface, look: Theme) -> float:
     """Return how much of the picture it covers from below, in the window's units; 0 where there is none."""
-    return _HIGH * look.scale if actions.session.animated and actions.panel_shown else 0.0
+    return _HIGH * look.scale if session.animated and interface.panel_shown else 0.0
 
 
-def draw_timeline(actions: Actions, look: Theme, area: Area) -> None:
+def draw_timeline(undo: Undo, interface: Interface, look: Theme, area: Area) -> None:
     """Draw it, and do what the mouse says on it; ``area`` is the picture."""
-    session, sketch = actions.session, actions.session.sketch
-    high = height_of_timeline(actions, look)
+    session, sketch = undo.session, undo.session.sketch
+    high = height_of_timeline(session, interface, look)
     if sketch is None or not high:
         return
     x, y, wide, tall = area
     imgui.set_next_window_pos(ImVec2(x, y + tall - high))
     imgui.set_next_window_size(ImVec2(wide, high))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
-    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
-    flags |= imgui.WindowFlags_.no_nav_inputs | imgui.WindowFlags_.no_bring_to_front_on_focus
-    imgui.push_style_color(imgui.Col_.window_bg, theme.colour(theme.GROUND, 0.82))
-    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(10 * look.scale, 8 * look.scale))
-    imgui.begin("timeline", None, flags)
-    clock = session.clock
-    if imgui.button("Pause" if clock.playing else "Play", ImVec2(58 * look.scale, 0)):
+    flags = QUIET | imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_bring_to_front_on_focus
+    padding = {imgui.StyleVar_.window_padding: ImVec2(10 * look.scale, 8 * look.scale)}
+    with window("timeline", flags, ground=theme.colour(theme.GROUND, 0.82), sizes=padding):
+        _controls(undo, look)
+        imgui.same_line(0, 10 * look.scale)
+        _bar(sketch, undo, look)
+
+
+def _controls(undo: Undo, look: Theme) -> None:
+    clock, gap = undo.session.clock, 4 * look.scale
+    if button("Pause" if clock.playing else "Play", "Space", wide=58 * look.scale):
         clock.toggle()
-    imgui.set_item_tooltip("Space")
     for label, frames, note in (("<", -1, "a frame back  ,"), (">", 1, "a frame on  .")):
-        imgui.same_line(0, 4 * look.scale)
-        if imgui.button(label):
-            actions.step_time(frames)
-        imgui.set_item_tooltip(note)
-    imgui.same_line(0, 4 * look.scale)
-    if imgui.button("To 0"):
-        actions.rewind()
-    imgui.same_line(0, 4 * look.scale)
-    looping = clock.loop is not None
-    if looping:
-        imgui.push_style_color(imgui.Col_.button, theme.colour(theme.ACCENT, 0.5))
-    if imgui.button("Loop"):
-        actions.toggle_loop()
-    if looping:
-        imgui.pop_style_color()
-    imgui.set_item_tooltip("Go round and round (L); Shift+drag on the bar chooses from when to when")
-    imgui.same_line(0, 4 * look.scale)
+        imgui.same_line(0, gap)
+        if button(label, note):
+            undo.step_time(frames)
+    imgui.same_line(0, gap)
+    if button("To 0"):
+        undo.seek(0.0)
+    imgui.same_line(0, gap)
+    with styled({imgui.Col_.button: theme.colour(theme.ACCENT, 0.5)} if clock.loop else {}):
+        if button("Loop"):
+            undo.toggle_loop()
+    imgui.set_item_tooltip("Repeat a span of time (L); Shift+drag on the bar chooses from when to when")
+    imgui.same_line(0, gap)
     imgui.set_next_item_width(64 * look.scale)
-    if imgui.begin_combo("##speed", f"{clock.speed:g} x", imgui.ComboFlags_.no_arrow_button):
-        for speed in SPEEDS:
-            if imgui.selectable(f"{speed:g} x", speed == clock.speed)[0]:
-                clock.speed = speed
-        imgui.end_combo()
+    no_arrow = imgui.ComboFlags_.no_arrow_button
+    speed = choose(
+        "##speed", f"{clock.speed:g} x", SPEEDS, clock.speed, name=lambda s: f"{s:g} x", flags=no_arrow
+    )
+    clock.speed = speed or clock.speed
     imgui.set_item_tooltip("Seconds of the sketch in a second")
-    imgui.same_line(0, 4 * look.scale)
+    imgui.same_line(0, gap)
     imgui.set_next_item_width(84 * look.scale)
     changed, time = imgui.drag_float("##time", clock.time, 0.02, 0.0, 1e6, "%.2f s")
     if changed:
-        actions.seek(time)
+        undo.seek(time)
     imgui.set_item_tooltip("Drag, or Ctrl+click to type")
-    imgui.same_line(0, 10 * look.scale)
-    _bar(sketch, actions, look)
-    imgui.end()
-    imgui.pop_style_var()
-    imgui.pop_style_color()
 
 
-def _bar(sketch: Sketch, actions: Actions, look: Theme) -> None:
-    clock, span, marks = actions.session.clock, span_of(sketch, actions.session.clock), marks_of(sketch)
+def _times(speed: float) -> str:
+    return f"{speed:g} x"
+
+
+def _bar(sketch: Sketch, undo: Undo, look: Theme) -> None:
+    clock = undo.session.clock
+    span, marks = span_of(sketch, clock), marks_of(sketch)
     corner = imgui.get_cursor_screen_pos()
     wide, high = max(imgui.get_content_region_avail().x, 30.0), imgui.get_frame_height()
     imgui.invisible_button("##timeline", ImVec2(wide, high))
@@ -94,7 +95,7 @@ def _bar(sketch: Sketch, actions: Actions, look: Theme) -> None:
             start = mouse - imgui.get_mouse_drag_delta(0, 0.0).x
             clock.set_loop(time_at(start - corner.x), time)
         else:
-            actions.seek(time)
+            undo.seek(time)
     elif imgui.is_item_hovered():
         imgui.set_tooltip(f"{time_at(mouse - corner.x):.2f} s")
     draw = imgui.get_window_draw_list()

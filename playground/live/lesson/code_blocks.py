@@ -1,4 +1,4 @@
-"""Blocks of code: an excerpt of the real shader, and a fault to be found in it."""
+"""Blocks of code: an excerpt of the real shader, and a bug to be found in it."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from playground.errors import PlaygroundError
 from playground.lessons.model import Break, Code
 from playground.live import theme
 from playground.live.lesson.page import Page
-from playground.workbench.lesson.bugs import BROKEN, MENDED, TOLD
+from playground.workbench.lesson.bugs import BROKEN, FIXED, SHOWN
 
 
 def draw_code_block(block: Code, page: Page) -> None:
     """Draw an excerpt of a shader as it is now, with a way to edit a copy of it."""
-    faults = page.reading.faults
-    edited = faults.is_edited(block)
+    bugs = page.reading.bugs
+    edited = bugs.is_edited(block)
     with page.frame(block.name, theme.WARM if edited else theme.LINE):
         try:
-            found = faults.excerpt(block)
+            found = bugs.excerpt(block)
         except PlaygroundError as error:
             page.text(str(error), dim=True)
         else:
@@ -26,35 +26,35 @@ def draw_code_block(block: Code, page: Page) -> None:
             fence = "```"
             page.prose.draw(f"{fence}\n{found.text}\n{fence}", page.look, size=theme.SMALL + 1)
         if page.button(page.say("edit"), page.say("edit_note")):
-            faults.edit(block)
+            bugs.edit(block)
         if edited:
-            page.beside(page.say("put_back"))
+            page.same_line(page.say("put_back"))
             if page.button(page.say("put_back"), f"glsl/{block.file}"):
-                faults.put_back(block)
+                bugs.put_back(block)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
 def draw_break(block: Break, page: Page) -> None:
-    """Draw a fault: it is put into the picture, looked for, and mended."""
-    faults = page.reading.faults
-    state = faults.state.get(block.name, "")
-    rgb = theme.ALARM if state == BROKEN else theme.ACCENT if state in (MENDED, TOLD) else theme.WARM
+    """Draw a bug: it is put into the picture, searched for, and fixed."""
+    bugs = page.reading.bugs
+    state = bugs.state.get(block.name, "")
+    rgb = theme.ALARM if state == BROKEN else theme.ACCENT if state in (FIXED, SHOWN) else theme.WARM
     with page.frame(block.name, rgb):
-        page.label(page.say("fault"), rgb)
+        page.label(page.say("bug"), rgb)
         page.text(block.ask)
         if page.button(page.say("break"), block.alt, on=state == BROKEN):
-            (faults.focus if state == BROKEN else faults.break_it)(block)
+            (bugs.focus if state == BROKEN else bugs.break_it)(block)
         if state == BROKEN:
             imgui.same_line()
-            if page.button(page.say("mend"), f"glsl/{block.file}"):
-                faults.mend_it(block)
+            if page.button(page.say("fix"), f"glsl/{block.file}"):
+                bugs.fix_it(block)
         _hint(block, page)
         if state == BROKEN:
             page.text(page.say("broken"), size=theme.SMALL)
-        elif state == MENDED:
+        elif state == FIXED:
             with page.look.font(page.look.bold):
-                imgui.text_wrapped(page.say("mended"))
-        if state in (MENDED, TOLD):
+                imgui.text_wrapped(page.say("fixed"))
+        if state in (FIXED, SHOWN):
             page.text(block.fix)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
@@ -64,6 +64,6 @@ def _hint(block: Break, page: Page) -> None:
     if key in known:
         page.text(block.hint)
         return
-    page.beside(page.say("hint"))
+    page.same_line(page.say("hint"))
     if page.button(page.say("hint")):
         known.add(key)

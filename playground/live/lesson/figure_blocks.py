@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from imgui_bundle import imgui
@@ -10,14 +11,13 @@ from playground.errors import ParameterError
 from playground.lessons.model import Compare, Figure, Slider, Steps
 from playground.live import theme
 from playground.live.lesson.page import Page
-from playground.live.parameter_row import draw_menu, draw_parameter
+from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.sketch.assign import resolve
 from playground.sketch.values import write
 from playground.workbench.lesson.figure_state import path_of
 from playground.workbench.lesson.figure_view import comparable
 from playground.workbench.lesson.reader import BOTH
-from playground.workbench.parameter_list import Item
 
 _ON, _OFF = theme.ACCENT, theme.LINE
 
@@ -31,14 +31,14 @@ def draw_figure(block: Figure, page: Page) -> None:
 
 
 def draw_steps(block: Steps, page: Page) -> None:
-    """Draw the turns of a repeated kernel: a slider over them, and buttons to play them."""
+    """Draw the steps of a repeated kernel: a slider over them, and buttons to play them."""
     reading, last = page.reading, len(block.scenes) - 1
     at = min(reading.at.get(block.name, 0), last)
     with page.frame(block.name, _bar(page, block)):
         _player(block, page, at, last)
         imgui.set_next_item_width(-1)
         chosen = slide_whole(
-            "##turns", at, (0, last), lambda n: page.say("turn", block.iterations[n], block.iterations[-1])
+            "##steps", at, (0, last), lambda n: page.say("step", block.iterations[n], block.iterations[-1])
         )
         if chosen is not None:
             reading.playing = ""
@@ -77,7 +77,7 @@ def draw_compare(block: Compare, page: Page) -> None:
                 reading.choose(block, BOTH)
         for index, label in enumerate(block.labels):
             if not first:
-                page.beside(label)
+                page.same_line(label)
             first = False
             if page.button(f"{label}##{index}", block.alt, on=on == index):
                 reading.choose(block, index)
@@ -89,10 +89,10 @@ def draw_compare(block: Compare, page: Page) -> None:
 def _show(block: Figure, page: Page) -> None:
     reading = page.reading
     on = reading.is_on(block)
-    shows = page.say("show" if not on else "coming" if reading.stage.busy else "on_view")
+    shows = page.say("show" if not on else "coming" if reading.figure.busy else "on_view")
     if page.button(shows, block.alt or page.say("show_note"), on=on) and not on:
         reading.show(block)
-    if on and reading.stage.changed:
+    if on and reading.figure.changed:
         imgui.same_line()
         if page.button(page.say("reset"), page.say("reset_note")):
             reading.reset(block)
@@ -106,7 +106,7 @@ def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
             reading.show(block)
         imgui.same_line()
     playing = reading.playing == block.name
-    for label, by in (("<", -1), (page.say("rest" if playing else "play"), 0), (">", 1)):
+    for label, by in (("<", -1), (page.say("pause" if playing else "play"), 0), (">", 1)):
         if by >= 0:
             imgui.same_line()
         if page.button(label, "" if by else block.alt, on=playing and not by, enabled=0 <= at + by <= last):
@@ -114,43 +114,34 @@ def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
                 reading.playing = ""
                 reading.move(block, at + by)
             else:
-                reading.play_or_rest(block)
-    if on and reading.stage.changed and isinstance(block, Slider):
+                reading.play_or_pause(block)
+    if on and reading.figure.changed and isinstance(block, Slider):
         imgui.same_line()
         if page.button(page.say("reset"), page.say("reset_note")):
             reading.reset(block)
 
 
 def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> None:
-    """Draw parameters of the picture in view, as the panel draws them."""
-    actions, draft = page.actions, page.actions.session.shown
+    """Draw parameters of the figure that is shown, as the panel draws them."""
+    bench, memory = page.reading.bench, page.memory
+    session, draft = bench.session, bench.session.shown
     scene = block.scene if isinstance(block, Figure) else block.scenes[0]
     if not paths or scene is None or draft is None or not page.reading.is_on(block):
         return
-    if actions.session.path != path_of(scene) or page.reading.stage.busy:
+    if session.path != path_of(scene) or page.reading.figure.busy:
         return
-    listing = page.memory.listing
-    items = {item.leaf: item for section in listing.sections(draft) for item in section.items}
-    values = listing.values(draft)
+    items = {item.leaf: item for section in memory.listing.sections(draft) for item in section.items}
+    values = memory.listing.values(draft)
+    rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, page.look)
     for path in paths:
-        item = _item(path, items, page)
-        if item is None:
-            continue
-        draw_parameter(item, values, Path(draft.sketch.folder), page.memory, actions, page.look)
-    if actions.session.shown is not draft:
+        with suppress(ParameterError):
+            item = items.get(resolve(draft.base.graph, path)[0].path)
+            if item is not None:
+                rows.draw(item, Path(draft.sketch.folder))
+    if session.shown is not draft:
         page.reading.playing = ""
-    if page.memory.menu:
-        draw_menu({item.label: item for item in items.values()}, values, page.memory, actions)
-
-
-def _item(path: str, items: dict[str, Item], page: Page) -> Item | None:
-    draft = page.actions.session.shown
-    assert draft is not None
-    try:
-        leaf = resolve(draft.base.graph, path)[0].path
-    except ParameterError:
-        return None
-    return items.get(leaf)
+    if memory.menu:
+        rows.draw_menu({item.label: item for item in items.values()})
 
 
 def _named(block: Slider, at: int) -> str:
@@ -159,5 +150,5 @@ def _named(block: Slider, at: int) -> str:
     return f"{block.label or parameter.title}: {write(parameter, block.values[at])}"
 
 
-def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> tuple[float, float, float]:
+def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> theme.Rgb:
     return _ON if page.reading.is_on(block) else _OFF

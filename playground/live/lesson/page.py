@@ -1,4 +1,4 @@
-"""What every block of a page is drawn with: the reader, the texts, the buttons' look."""
+"""What every block of a page is drawn with: the reader, the texts, the buttons."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.lessons.model import Lesson, Markdown
 from playground.live import theme
+from playground.live.draw import button, pushed_id, styled
 from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.prose import Prose
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
-from playground.workbench.actions import Actions
-from playground.workbench.lesson.labels import words_in
+from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.reader import Reading
 
 TEXT = theme.TEXT_SIZE + 1.0
@@ -24,7 +24,7 @@ TEXT = theme.TEXT_SIZE + 1.0
 
 @dataclass
 class Page:
-    """One turn's."""
+    """One frame's."""
 
     reading: Reading
     lesson: Lesson
@@ -32,14 +32,9 @@ class Page:
     prose: Prose
     memory: Memory  # of the parameters' rows
 
-    @property
-    def actions(self) -> Actions:
-        """The session's."""
-        return self.reading.actions
-
     def say(self, key: str, *given: object) -> str:
-        """Return words of the interface."""
-        return words_in(self.reading.language)[key].format(*given)
+        """Return a label of the interface."""
+        return labels_in(self.reading.language)[key].format(*given)
 
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
@@ -48,43 +43,33 @@ class Page:
             filled = self.reading.numbers.fill(words, self.lesson)
             self.prose.draw(filled, self.look, size=size, ink=ink)
 
-    def label(self, text: str, rgb: tuple[float, float, float] = theme.ACCENT) -> None:
+    def label(self, text: str, rgb: theme.Rgb = theme.ACCENT) -> None:
         """Write what a block is."""
         with self.look.font(self.look.bold, theme.SMALL):
             imgui.text_colored(theme.colour(rgb), text)
 
     @contextmanager
-    def frame(self, name: str, rgb: tuple[float, float, float] = theme.LINE) -> Iterator[None]:
+    def frame(self, name: str, rgb: theme.Rgb = theme.LINE) -> Iterator[None]:
         """Set off what is drawn inside by a bar on its left."""
         scale = self.look.scale
-        imgui.push_id(name)
-        top = imgui.get_cursor_screen_pos()
-        imgui.indent(12 * scale)
-        imgui.begin_group()
-        yield
-        imgui.end_group()
-        imgui.unindent(12 * scale)
-        bottom = imgui.get_item_rect_max().y
-        draw = imgui.get_window_draw_list()
-        low, high = ImVec2(top.x, top.y), ImVec2(top.x + 3 * scale, bottom)
-        draw.add_rect_filled(low, high, theme.packed(rgb), 1.5 * scale)
-        imgui.pop_id()
+        with pushed_id(name):
+            top = imgui.get_cursor_screen_pos()
+            imgui.indent(12 * scale)
+            imgui.begin_group()
+            yield
+            imgui.end_group()
+            imgui.unindent(12 * scale)
+            corner = ImVec2(top.x + 3 * scale, imgui.get_item_rect_max().y)
+            draw = imgui.get_window_draw_list()
+            draw.add_rect_filled(ImVec2(top.x, top.y), corner, theme.packed(rgb), 1.5 * scale)
 
     def button(self, text: str, note: str = "", *, on: bool = False, enabled: bool = True) -> bool:
-        """Draw a button; ``on``: what it asks for is so already. Return whether it is pressed."""
-        imgui.begin_disabled(not enabled)
-        if on:
-            imgui.push_style_color(imgui.Col_.button, theme.colour(theme.ACCENT, 0.45))
-        pressed = imgui.button(written(text))
-        if on:
-            imgui.pop_style_color()
-        imgui.end_disabled()
-        if note:
-            imgui.set_item_tooltip(written(note))
-        return bool(pressed)
+        """Draw a button; ``on``: it is in effect already. Return whether it is pressed."""
+        with styled({imgui.Col_.button: theme.colour(theme.ACCENT, 0.45)} if on else {}):
+            return button(written(text), written(note), enabled=enabled)
 
-    def beside(self, text: str) -> None:
-        """Go on on the same line where a button with this text has room there."""
+    def same_line(self, text: str) -> None:
+        """Stay on the same line where a button with this text has room there."""
         style = imgui.get_style()
         wide = imgui.calc_text_size(text, True).x + 2 * style.frame_padding.x
         right = imgui.get_item_rect_max().x + style.item_spacing.x + wide

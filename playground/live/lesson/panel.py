@@ -23,6 +23,7 @@ from playground.lessons.model import (
     Steps,
 )
 from playground.live import theme
+from playground.live.draw import SIDE_PANEL, button, inked, styled, window
 from playground.live.lesson.code_blocks import draw_break, draw_code_block
 from playground.live.lesson.figure_blocks import draw_compare, draw_figure, draw_slider, draw_steps
 from playground.live.lesson.formulas import Formulas
@@ -78,23 +79,18 @@ class LessonPanel:
         imgui.set_next_window_size_constraints(
             ImVec2(min(NARROWEST * scale, widest), room.y), ImVec2(min(WIDEST * scale, widest), room.y)
         )
-        flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_collapse
-        flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
-        flags |= imgui.WindowFlags_.no_nav_inputs | imgui.WindowFlags_.no_scrollbar
-        imgui.push_style_color(imgui.Col_.window_bg, theme.colour((0.110, 0.119, 0.127)))
-        imgui.begin("lesson", None, flags)
-        page = Page(reading, lesson, look, self._texts, self.memory)
-        _head(page)
-        imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, imgui.WindowFlags_.always_vertical_scrollbar)
-        if reading.to_top:
-            reading.to_top = False
-            imgui.set_scroll_y(0.0)
-        _page(page)
-        imgui.end_child()
-        _foot(page)
-        width = imgui.get_window_size().x
-        imgui.end()
-        imgui.pop_style_color()
+        with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
+            page = Page(reading, lesson, look, self._texts, self.memory)
+            _head(page)
+            scrolls = imgui.WindowFlags_.always_vertical_scrollbar
+            imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, scrolls)
+            if reading.to_top:
+                reading.to_top = False
+                imgui.set_scroll_y(0.0)
+            _page(page)
+            imgui.end_child()
+            _foot(page)
+            width = imgui.get_window_size().x
         if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
             reading.progress.width = width / scale
         return float(width)
@@ -106,7 +102,7 @@ class LessonPanel:
         self._formulas = None
 
     def _formulas_of(self, reading: Reading) -> Formulas:
-        ctx = reading.actions.session.engine.ctx
+        ctx = reading.bench.session.engine.ctx
         if self._formulas is None or self._formulas.ctx is not ctx:
             self._formulas = Formulas(ctx)  # those before went with a context that was lost
         return self._formulas
@@ -125,12 +121,10 @@ def _head(page: Page) -> None:
     ):
         for one in reading.summaries:
             done = one.name in reading.progress.done  # read to its end: in green
-            imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if done else theme.INK))
-            if imgui.selectable(f"{one.number}  {written(one.title)}##{one.name}", one.name == lesson.name)[
-                0
-            ]:
-                reading.open(one.name)
-            imgui.pop_style_color()
+            label = f"{one.number}  {written(one.title)}##{one.name}"
+            with inked(theme.ACCENT if done else theme.INK):
+                if imgui.selectable(label, one.name == lesson.name)[0]:
+                    reading.open(one.name)
             imgui.set_item_tooltip(f"{plain(one.goal)}\n{page.say('minutes', one.minutes)}")
         imgui.end_combo()
     for code in LANGUAGES:
@@ -143,7 +137,7 @@ def _head(page: Page) -> None:
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_wrapped(written(lesson.title))
     with look.font(look.text, theme.SMALL):
-        parts = [page.say("minutes", lesson.minutes), page.say("step", reading.index + 1, _count(page))]
+        parts = [page.say("minutes", lesson.minutes), page.say("page", reading.index + 1, _count(page))]
         imgui.text_disabled("   ".join(parts))
     _pages(page)
 
@@ -162,9 +156,8 @@ def _pages(page: Page) -> None:
             ImVec2(low.x - gap / 2, low.y - 4 * scale), reach
         )
         rgb = theme.ACCENT if index <= at else theme.RAISED
-        draw.add_rect_filled(
-            low, high_corner, theme.packed(rgb, 1.0 if index == at or over else 0.5), high / 2
-        )
+        alpha = 1.0 if index == at or over else 0.5
+        draw.add_rect_filled(low, high_corner, theme.packed(rgb, alpha), high / 2)
         if over:
             imgui.set_tooltip(plain(section.title or page.lesson.title))
             if imgui.is_mouse_clicked(0):
@@ -211,37 +204,30 @@ def _foot(page: Page) -> None:
     reading, count = page.reading, _count(page)
     imgui.separator()
     half = (imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2
-    imgui.begin_disabled(reading.index == 0)
-    if imgui.button(f"{page.say('previous')}##previous", ImVec2(half, 0)):
+    if button(f"{page.say('previous')}##previous", "PgUp", enabled=reading.index > 0, wide=half):
         reading.turn_page(-1)
-    imgui.end_disabled()
-    imgui.set_item_tooltip("PgUp")
     imgui.same_line()
-    imgui.push_style_color(imgui.Col_.button, theme.colour((0.29, 0.46, 0.32)))
     last = reading.index == count - 1
     following = next((one for one in reading.summaries if one.number > page.lesson.number), None)
     text = page.say("next_lesson") if last else page.say("next")
-    imgui.begin_disabled(last and following is None)
-    if imgui.button(f"{text}##next", ImVec2(half, 0)):
-        if not last:
-            reading.turn_page(1)
-        elif following is not None:
-            reading.open(following.name, page=0)
-    imgui.end_disabled()
-    imgui.pop_style_color()
-    imgui.set_item_tooltip("PgDn" if not last else following.title if following else "")
-    if reading.stage.own is not None:
-        own = reading.stage.own.path
+    note = "PgDn" if not last else following.title if following else ""
+    with styled({imgui.Col_.button: theme.colour((0.29, 0.46, 0.32))}):
+        if button(f"{text}##next", note, enabled=not last or following is not None, wide=half):
+            if not last:
+                reading.turn_page(1)
+            elif following is not None:
+                reading.open(following.name, page=0)
+    if reading.figure.own is not None:
+        own = reading.figure.own.path
         name = own.parent.name if own.name == "sketch.toml" else own.stem
-        if imgui.button(fitting(page.say("back"), half) + "##back", ImVec2(half, 0)):
+        if button(fitting(page.say("back"), half) + "##back", page.say("back_note", name), wide=half):
             reading.go_back()
-        imgui.set_item_tooltip(page.say("back_note", name))
     else:
         imgui.dummy(ImVec2(half, imgui.get_frame_height()))
     imgui.same_line()
-    if imgui.button(fitting(page.say("play_on"), half) + "##play on", ImVec2(half, 0)):
+    note = page.say("play_on_note", page.lesson.sketch)
+    if button(fitting(page.say("play_on"), half) + "##play on", note, wide=half):
         play_on(reading)
-    imgui.set_item_tooltip(page.say("play_on_note", page.lesson.sketch))
 
 
 def _foot_height() -> float:

@@ -1,4 +1,4 @@
-"""Blocks that ask or tell: questions, exercises, numbers, prose."""
+"""Blocks of text: questions, exercises, numbers, prose."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from imgui_bundle import imgui
 from playground.lessons.measuring import named_in
 from playground.lessons.model import Exercise, Measure, Prose, Question
 from playground.live import theme
+from playground.live.draw import pushed_id, styled
 from playground.live.lesson.markdown_runs import plain
 from playground.live.lesson.page import Page
 
@@ -43,7 +44,7 @@ def draw_exercise(block: Exercise, page: Page) -> None:
         page.text(block.ask)
         if block.hint:
             _behind(block.name, "hint", block.hint, page)
-            page.beside(page.say("solution"))
+            page.same_line(page.say("solution"))
         _behind(block.name, "solution", block.solution, page)
         if (block.name, "solution") in reading.shown and block.scene is not None:
             if page.button(page.say("solution_picture"), block.alt, on=reading.is_on(block)):
@@ -67,21 +68,17 @@ def draw_measure(block: Measure, page: Page) -> None:
 def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -> None:
     """Draw one of several answers, as wide as the page."""
     on = chosen == index
-    imgui.push_id(index)
-    if on:
-        good = index == block.right
-        imgui.push_style_color(imgui.Col_.text, theme.colour(theme.ACCENT if good else theme.ALARM))
-    marked = imgui.radio_button("##choice", on)
-    imgui.same_line()
-    if on:
-        imgui.pop_style_color()
-    imgui.begin_group()
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + imgui.get_style().frame_padding.y / 2)
-    page.text(choice)
-    imgui.end_group()
-    if marked or imgui.is_item_clicked(0):
-        page.reading.chosen[block.name] = index
-    imgui.pop_id()
+    ink = theme.ACCENT if index == block.right else theme.ALARM
+    with pushed_id(index):
+        with styled({imgui.Col_.text: theme.colour(ink)} if on else {}):
+            marked = imgui.radio_button("##choice", on)
+        imgui.same_line()
+        imgui.begin_group()
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + imgui.get_style().frame_padding.y / 2)
+        page.text(choice)
+        imgui.end_group()
+        if marked or imgui.is_item_clicked(0):
+            page.reading.chosen[block.name] = index
     if imgui.is_item_hovered():
         imgui.set_tooltip(plain(choice))
 

@@ -33,8 +33,8 @@ def broken(mutant: Rendering, sketch: Sketch) -> Sketch:
     sketch = with_texts(sketch, edited_texts(mutant.edits, sketch, mutant.name))
     if mutant.later and not _reads_time(sketch.graph):
         raise DoesNotApply("nothing in the sketch changes with time")
-    if mutant.turns:
-        sketch = replace(sketch, graph=_with_turns(sketch.graph, mutant.turns))
+    if mutant.steps:
+        sketch = replace(sketch, graph=_with_steps(sketch.graph, mutant.steps))
     for path, source in mutant.wires:
         sketch = replace(sketch, graph=_rewired(sketch.graph, path, source, path))
     for path, share in mutant.times:
@@ -97,8 +97,8 @@ def _passes(graph: Graph) -> Iterator[PassSpec]:
             yield from _passes(spec.technique)
 
 
-def _with_turns(graph: Graph, more: int) -> Graph:
-    """Return the technique with other turns of every pass and kernel that repeats; a draw has none."""
+def _with_steps(graph: Graph, more: int) -> Graph:
+    """Return the technique with another number of steps of all that repeats; a draw has none."""
     changed = _turned(graph, more)
     if changed == graph:
         raise DoesNotApply("nothing in the sketch repeats")

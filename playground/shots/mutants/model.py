@@ -38,7 +38,7 @@ class Rendering:
     wires: tuple[tuple[str, str], ...] = ()  # path of an input → the pass that it is wired to
     samples: int | None = None
     later: float = 0.0  # [s] it is drawn so much later
-    turns: int = 0  # added to the turns of what repeats
+    steps: int = 0  # added to the iterations of what repeats
     shot: str = ""  # the shot that shows it, if the sketch has one of that name
 
     kind = "rendering"

@@ -16,7 +16,7 @@ from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing
 from playground.shots.mutants.model import DoesNotApply
 from playground.shots.mutants.render_mutants import rendering_mutants
-from playground.shots.suite import ShotCase, Taken, take
+from playground.shots.suite import RenderedShot, ShotCase, render_shot
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
 from playground.sketch.source import read_text
@@ -51,7 +51,7 @@ class _Redraw:
         self.engine: Engine | None = None
         self.driver = ""
 
-    def draw(self, drawing: Drawing) -> Taken:
+    def draw(self, drawing: Drawing) -> RenderedShot:
         if self.engine is None or drawing.fresh or drawing.driver != self.driver:
             if self.engine is not None:
                 self.engine.release()
@@ -68,7 +68,7 @@ class _Redraw:
         for sketch, shot in self._before(drawing.before):
             self.engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
         sketch = commented(self.sketch) if drawing.commented else self.sketch
-        return take(self.engine, ShotCase(sketch, self.subject.shot))
+        return render_shot(self.engine, ShotCase(sketch, self.subject.shot))
 
     def _before(self, what: str) -> Iterator[tuple[Sketch, Shot]]:
         shot = self.subject.shot

@@ -12,7 +12,7 @@ from playground.shots.mutants.model import Edit, Rendering
 
 TABLE = Path(__file__).with_name("rendering.toml")
 
-_KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "later", "turns", "shot"}
+_KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "later", "steps", "shot"}
 
 
 @cache
@@ -43,7 +43,7 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
         wires=tuple(entry.get("wire", {}).items()),
         samples=entry.get("samples"),
         later=entry.get("later", 0.0),
-        turns=entry.get("turns", 0),
+        steps=entry.get("steps", 0),
         shot=entry.get("shot", ""),
     )
     broken = (
@@ -53,7 +53,7 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
         mutant.times,
         mutant.wires,
         mutant.later,
-        mutant.turns,
+        mutant.steps,
     )
     if not any(broken) and mutant.samples is None:
         raise DataError(f"mutant '{name}' breaks nothing", file=table)

@@ -18,7 +18,7 @@ from playground.process.worker import Launch, Worker, WorkerDied, WorkerTimeout
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.redraw_handler import Subject
 from playground.shots.mutants.tiers import judged
-from playground.shots.suite import Taken
+from playground.shots.suite import RenderedShot
 from playground.sketch.allowed_files import is_absolute, is_file
 from playground.sketch.assign import values_of
 from playground.sketch.model import Shot, Sketch, kernels_of
@@ -43,10 +43,10 @@ class Redrawn:
         return f"process: {self.process.words}; drawing: {self.drawing.words}"
 
 
-def again(
+def redraw(
     sketch: Sketch,
     shot: Shot,
-    expected: Taken,
+    expected: RenderedShot,
     renderer: ContextInfo,
     count: int,
     *,
@@ -91,9 +91,9 @@ def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
 
 def _drawn_by(
     process: Process, sketch: Sketch, shot: Shot, software: bool, device: int | None, limit: float
-) -> list[Taken | str]:
+) -> list[RenderedShot | str]:
     """Return the image of each drawing, the last an error's text where one fails."""
-    found: list[Taken | str] = []
+    found: list[RenderedShot | str] = []
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         file = _moved(sketch, folder / "moved") if process.moved else sketch.file
@@ -110,9 +110,9 @@ def _drawn_by(
         try:
             with Worker(launch) as worker:
                 for drawing in process.drawings:
-                    taken = worker.ask(drawing, limit)
-                    assert isinstance(taken, Taken)
-                    found.append(taken)
+                    rendered = worker.ask(drawing, limit)
+                    assert isinstance(rendered, RenderedShot)
+                    found.append(rendered)
         except WorkerTimeout:
             found.append(f"the process took more than {limit:g} s and was stopped")
         except WorkerDied as died:

@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 from playground.engine.engine import Engine
 from playground.errors import ContextError, SketchError, nearest
 from playground.shots.compare import Comparison, compare
-from playground.shots.judge import Judgement, Seen
+from playground.shots.judge import Judgement, Perceived
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.tiers import TIERS, judged
-from playground.shots.suite import ShotCase, Taken, take
+from playground.shots.suite import RenderedShot, ShotCase, render_shot
 from playground.sketch.model import Shot, Sketch
 
 ROUNDING = 1
@@ -66,9 +66,9 @@ class Result:
         return self.comparison.over / (self.comparison.size[0] * self.comparison.size[1])
 
     @property
-    def seen(self) -> Seen | None:
+    def perceived(self) -> Perceived | None:
         """FLIP's numbers; None where there is nothing to see, or no picture to compare."""
-        return next((judgement.seen for judgement in self.tiers if judgement.seen), None)
+        return next((judgement.perceived for judgement in self.tiers if judgement.perceived), None)
 
     @property
     def well(self) -> bool:
@@ -88,8 +88,8 @@ class Result:
             "unseen": self.unseen,
             "most": None if found is None else found.most,
             "share_over_1": None if found is None else self.share,
-            "flip_mean": None if self.seen is None else self.seen.mean,
-            "flip_tile": None if self.seen is None else self.seen.tile,
+            "flip_mean": None if self.perceived is None else self.perceived.mean,
+            "flip_tile": None if self.perceived is None else self.perceived.tile,
             "tiers": {
                 tier: {"caught": not judgement.ok, "word": judgement.word, "sentence": judgement.sentence}
                 for tier, judgement in zip(TIERS, self.tiers, strict=False)
@@ -130,7 +130,7 @@ class Bench:
         self.sketch = sketch
         self.shot = shot  # which is drawn, whatever mutants ask for; "": each the one that shows it
         self.size = size  # [pixels] None: the shot's
-        self.expected: dict[str, Taken] = {}  # unbroken, by the shot's name
+        self.expected: dict[str, RenderedShot] = {}  # unbroken, by the shot's name
 
     def run(self, mutants: Sequence[Mutant]) -> Iterator[Result]:
         """Yield what came of each mutant.
@@ -142,18 +142,18 @@ class Bench:
             shot = shot_of(self.sketch, self.shot or (mutant.shot if has else ""), self.size)
             yield self._result(mutant, shot)
 
-    def unbroken(self, shot: Shot) -> Taken:
+    def unbroken(self, shot: Shot) -> RenderedShot:
         """Return the picture that a shot should be; raise ``ContextError`` for one that is not sound."""
         if shot.name not in self.expected:
-            taken = self._take(self.sketch.for_shot(shot), shot, shot.time)
-            if wrong := taken.gl_error or taken.not_finite:
+            rendered = self._take(self.sketch.for_shot(shot), shot, shot.time)
+            if wrong := rendered.gl_error or rendered.not_finite:
                 raise ContextError(f"drawing {self.sketch.name}/{shot.name}, with nothing broken: {wrong}")
-            self.expected[shot.name] = taken
+            self.expected[shot.name] = rendered
         return self.expected[shot.name]
 
-    def _take(self, shown: Sketch, shot: Shot, time: float) -> Taken:
+    def _take(self, shown: Sketch, shot: Shot, time: float) -> RenderedShot:
         # What the shot sets is set already: it must not be set over what a mutant breaks.
-        return take(self.engine, ShotCase(shown, Shot(shot.name, shot.size, time, steps=shot.steps)))
+        return render_shot(self.engine, ShotCase(shown, Shot(shot.name, shot.size, time, steps=shot.steps)))
 
     def _result(self, mutant: Mutant, shot: Shot) -> Result:
         expected = self.unbroken(shot)
@@ -162,12 +162,14 @@ class Bench:
                 sketch = broken(mutant, self.sketch.for_shot(shot))
             except DoesNotApply as reason:
                 return Result(mutant=mutant, shot=shot.name, why_not=str(reason))
-            taken = self._take(sketch, shot, shot.time + mutant.later)
+            rendered = self._take(sketch, shot, shot.time + mutant.later)
         else:
-            taken = replace(expected, array=mutant.change(expected.array))
-        tiers = judged(taken, expected, self.engine.info)
-        comparison = compare(taken.array, expected.array)
-        return Result(mutant=mutant, shot=shot.name, comparison=comparison, tiers=tiers, picture=taken.array)
+            rendered = replace(expected, array=mutant.change(expected.array))
+        tiers = judged(rendered, expected, self.engine.info)
+        comparison = compare(rendered.array, expected.array)
+        return Result(
+            mutant=mutant, shot=shot.name, comparison=comparison, tiers=tiers, picture=rendered.array
+        )
 
 
 def survivors(results: Sequence[Result], tier: int) -> list[str]:

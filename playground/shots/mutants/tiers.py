@@ -9,13 +9,13 @@ from playground.gpu.context import ContextInfo
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, Judgement, judge
 from playground.shots.references import Reference
-from playground.shots.suite import Taken
+from playground.shots.suite import RenderedShot
 
 TIERS = (SAME_BUILD, OTHER_BUILD, OTHER_RENDERER)
 """The tiers, the strictest first."""
 
 
-def judged(actual: Taken, expected: Taken, renderer: ContextInfo) -> tuple[Judgement, ...]:
+def judged(actual: RenderedShot, expected: RenderedShot, renderer: ContextInfo) -> tuple[Judgement, ...]:
     """Return the judgement of each of `TIERS` of a picture and the one that it should be.
 
     The same ``renderer`` drew both. The pixels are the same in all three tiers: what other

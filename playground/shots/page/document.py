@@ -120,27 +120,27 @@ def _facts(records: Sequence[Record], notes: Sequence[str]) -> Markup:
         tag("li", chip(word), f" {words[word]}")
         for word in sorted(words, key=lambda word: (word == "same", order.index(word)))
     ]
-    said: list[Markup] = []
+    summary: list[Markup] = []
     builds = Counter(
         ", ".join(record.texts[key] for key in _BUILD if key in record.texts) or record.renderer
         for record in records
         if record.renderer
     )
     for build, number in builds.most_common():
-        said.append(tag("li", f"drawn by {build}{f' ({number})' if len(builds) > 1 else ''}"))
+        summary.append(tag("li", f"drawn by {build}{f' ({number})' if len(builds) > 1 else ''}"))
     checked = [record.when for record in records if record.when]
     if checked:
-        said.append(tag("li", f"checked {moment(max(checked))}"))
+        summary.append(tag("li", f"checked {moment(max(checked))}"))
         latest = max(records, key=lambda record: record.when).run
         older = sum(record.run != latest for record in records)
         if older:
             notes = [*notes, f"{counted(older, 'shot')} of them in an earlier run."]
     taken = sum(record.seconds for record in records)
     if taken:
-        said.append(tag("li", f"took {taken:.3g} s"))
+        summary.append(tag("li", f"took {taken:.3g} s"))
     return joined(
         tag("ul", *counts, class_="counts", aria_label="Results"),
-        tag("ul", *said, class_="said-of-run"),
+        tag("ul", *summary, class_="run-summary"),
         *(tag("p", note, class_="note") for note in notes),
     )
 

@@ -6,8 +6,8 @@
 "use strict";
 
 const EVERY = 2000; // [ms]
-let ended = false; // whether this page said that it is done
-let states = {}; // name → {stamp, state, said}, as the server last gave them
+let ended = false; // whether this page reported that it is done
+let states = {}; // name → {stamp, state, message}, as the server last gave them
 
 async function ask(path, body) {
   const options = body && {
@@ -41,11 +41,11 @@ function paint() {
     for (const button of article.querySelectorAll("[data-do]")) {
       button.disabled = now === "outdated" || (button.dataset.do === "undo") !== (now in ACCEPTED);
     }
-    const said = article.querySelector(".said");
-    if (!said) continue;
-    if (now === "outdated") said.textContent = "The tests have run again since this page was loaded: load it again.";
-    else if (found.said !== said.dataset.from) said.textContent = found.said;
-    said.dataset.from = found?.said ?? "";
+    const message = article.querySelector(".message");
+    if (!message) continue;
+    if (now === "outdated") message.textContent = "The tests have run again since this page was loaded: load it again.";
+    else if (found.message !== message.dataset.from) message.textContent = found.message;
+    message.dataset.from = found?.message ?? "";
   }
   if (!byId("accept-shown")) return;
   byId("accept-shown").disabled = !toAccept().length;
@@ -80,13 +80,13 @@ async function act(action, some) {
   try {
     const results = await ask("act", { action, shots });
     const refused = results.filter((result) => !result.ok);
-    for (const { name, ok, said } of results) {
-      const place = articles.find((article) => article.dataset.name === name).querySelector(".said");
-      place.textContent = said;
+    for (const { name, ok, message } of results) {
+      const place = articles.find((article) => article.dataset.name === name).querySelector(".message");
+      place.textContent = message;
       place.classList.toggle("refused", !ok);
     }
     if (some.length > 1 && refused.length)
-      tell("Some were refused", "Nothing has changed for these:", refused.map((r) => `${r.name}: ${r.said}`));
+      showDialog("Some were refused", "Nothing has changed for these:", refused.map((r) => `${r.name}: ${r.message}`));
   } catch (error) {
     banner(error.message);
     return;
@@ -96,7 +96,7 @@ async function act(action, some) {
 
 // Asking first
 
-function tell(title, text, lines, action, label) {
+function showDialog(title, text, lines, action, label) {
   byId("ask-title").textContent = title;
   byId("ask-text").textContent = text;
   byId("ask-list").replaceChildren(...lines.map((line) => make("li", { textContent: line })));
@@ -121,7 +121,7 @@ byId("accept-shown")?.addEventListener("click", () => {
   const text =
     "Each takes the place of its reference, and of the further ones accepted for it. It can be undone, one by one or all.";
   const accept = () => act(byId("ask-also").checked ? "also" : "accept", some);
-  tell(`Accept ${many(some)}?`, text, namesOf(some), accept, `Accept ${many(some)}`);
+  showDialog(`Accept ${many(some)}?`, text, namesOf(some), accept, `Accept ${many(some)}`);
   byId("ask-also").checked = false;
   byId("ask-also").closest("p").hidden = false;
 });
@@ -129,7 +129,7 @@ byId("accept-shown")?.addEventListener("click", () => {
 byId("undo-shown")?.addEventListener("click", () => {
   const some = toUndo();
   const text = "Their references are put back as they were.";
-  tell(`Undo ${many(some)}?`, text, namesOf(some), () => act("undo", some), `Undo ${many(some)}`);
+  showDialog(`Undo ${many(some)}?`, text, namesOf(some), () => act("undo", some), `Undo ${many(some)}`);
 });
 
 byId("done").addEventListener("click", async () => {

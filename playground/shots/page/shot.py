@@ -88,7 +88,7 @@ def failure(record: Record, setting: Setting) -> Markup:
             tag("span", record.tier, class_="tier") if record.tier else None,
             _buttons(record) if setting.review and can_be_accepted(record) else None,
         ),
-        tag("p", class_="said", role="status") if setting.review else None,
+        tag("p", class_="message", role="status") if setting.review else None,
         tag("p", _verdict(record), class_="verdict"),
         tag("p", " ".join(filter(None, explained)), class_="meaning") if any(explained) else None,
         _error(record),

@@ -1,8 +1,8 @@
-// my_land.glsl -- land of your own: layers of smooth random heights, with ridges.
+// my_land.glsl -- a terrain of your own: layers of smooth random heights, with ridges.
 //
 // A kernel is one function that computes one texel of a texture. The next lines make it
 // one: what it includes, what it gives (here a texture "height" of one float a texel),
-// and its parameters. Save this file while the window is open, and the land changes.
+// and its parameters. Save this file while the window is open, and the terrain changes.
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 
@@ -10,9 +10,9 @@
 // tooltip. The panel shows it, and so does  --set height.frequency=8.
 uniform float frequency = 5.0;  //! log_slider(1, 64) Hills from west to east
 uniform int   layers    = 8;    //! slider(1, 12)     How many layers, each twice as fine
-uniform float roughness = 0.42; //! slider(0, 1) step(0.01) Strength of each layer beside the one before
+uniform float roughness = 0.42; //! slider(0, 1) step(0.01) Strength of each layer relative to the one before
 uniform float ridges    = 0.6;  //! slider(0, 1) step(0.01) 0 gives round hills, 1 gives sharp crests
-uniform uint  seed      = 7u;   //! slider(0, 9999)   Which land
+uniform uint  seed      = 7u;   //! slider(0, 9999)   Which terrain
 
 // Random heights on a lattice, smoothly joined: from 0 to 1.
 float smooth_noise(vec2 place, uint layer) {
@@ -39,7 +39,7 @@ float kernel(ivec2 texel) {
         most += strength;
         strength *= roughness;
         place *= 2.0;
-        // Try it: turn each layer against the one before.
+        // Try it: rotate each layer against the one before.
         // place = mat2(0.8, 0.6, -0.6, 0.8) * place;
     }
     return total / most;

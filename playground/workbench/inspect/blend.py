@@ -29,7 +29,7 @@ void main() {
 """
 
 
-class Beside:
+class Blend:
     """Paints into whatever framebuffer it is given."""
 
     def __init__(self, ctx: moderngl.Context) -> None:

@@ -20,7 +20,7 @@ from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 from playground.workbench.edits import Draft
-from playground.workbench.inspect.blend import Beside
+from playground.workbench.inspect.blend import Blend
 from playground.workbench.last_frame import Painter, Picture
 from playground.workbench.memory import Compared
 from playground.workbench.preview import as_preview
@@ -66,7 +66,7 @@ class Compare:
         self.gain = 8.0  # of the difference
         self.held = False  # the line between them is in the hand
         self.draws = 0  # pictures of A that were drawn
-        self.beside: Beside | None = None  # who paints the two
+        self.blend: Blend | None = None  # who paints the two
         self._kept: Kept | None = None
         self._painter: Painter | None = None
         self._picture: Picture | None = None
@@ -219,10 +219,10 @@ class Compare:
 
     def release(self) -> None:
         """Give back what was made in the engine's context; it is drawn again where it is needed."""
-        for made in (self._picture, self._painter, self.beside):
+        for made in (self._picture, self._painter, self.blend):
             if made is not None:
                 made.release()
-        self._picture = self._painter = self.beside = self._drawn = None
+        self._picture = self._painter = self.blend = self._drawn = None
 
     def _wanted(self, kept: Kept, plan: Plan) -> object:
         shown = self.session.view.map

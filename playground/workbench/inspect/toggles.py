@@ -41,8 +41,8 @@ class Graph:
             self._wiring = sketch.graph, self.inner, wiring_of(sketch, inner=self.inner)
         return self._wiring[2]
 
-    def look(self, now: float) -> None:
-        """Draw what thumbnail is stale; give all back while none is seen."""
+    def update(self, now: float) -> None:
+        """Draw one stale thumbnail; release all while the graph is hidden."""
         sketch = self.session.sketch
         if not self.on or sketch is None:
             self._stale = False
@@ -57,17 +57,17 @@ class Graph:
 
 
 @dataclass
-class See:
+class Inspection:
     """What one session shows of itself."""
 
     session: Session
     inspector: Inspector = field(init=False)
     record: Record = field(default_factory=Record)
-    costs_shown: bool = False  # the costs are on the screen in this turn
+    costs_shown: bool = False  # the costs are on the screen in this frame
     counter: Counter = field(init=False)
     compare: Compare = field(init=False)
     graph: Graph = field(init=False)
-    spread_shown: bool = False  # the histogram is on the screen in this turn
+    spread_shown: bool = False  # the histogram is on the screen in this frame
     logarithmic: bool = False
     _colours: dict[int, tuple[Colour, ...]] = field(default_factory=dict)  # of each ramp that was shown
     _recorded: int = -1  # the picture that was taken in last
@@ -87,11 +87,11 @@ class See:
         return APART if self.graph.waits else math.inf
 
     def begin(self) -> None:
-        """Begin a turn: nothing is on the screen yet."""
+        """Begin a frame: nothing is on the screen yet."""
         self.costs_shown = self.spread_shown = False
 
-    def look(self) -> None:
-        """Take in the turn's picture; passes are timed only while somebody looks at the times."""
+    def update(self) -> None:
+        """Take in the frame's picture; passes are timed only while their times are shown."""
         session = self.session
         engine, before = session.engine, self._recorded
         if self.costs_shown and engine.profiling and session.draws != before and before >= 0:
@@ -107,14 +107,14 @@ class See:
             self.counter.stop()
 
     def colours(self, ramp: int) -> tuple[Colour, ...]:
-        """Return the colours of a map's ramp, asked of the graphics card once."""
+        """Return the colours of a map's ramp, read from the graphics card once."""
         if ramp not in self._colours:
             with self.session.engine.borrowed():
                 self._colours[ramp] = colours_of(self.session.engine.ctx, ramp)
         return self._colours[ramp]
 
     def release(self) -> None:
-        """Give back what was made in the engine's context; it is made again where it is needed."""
+        """Release what was made in the engine's context; it is made again where it is needed."""
         self.inspector.release()
         self.counter.stop()
         self.compare.release()

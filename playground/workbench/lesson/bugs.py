@@ -1,6 +1,6 @@
-"""Shaders that a reader breaks, mends or edits: each as a copy that is drawn in place of its file.
+"""Shaders that a reader breaks, fixes or edits: each as a copy that is drawn in place of its file.
 
-Nothing is written. A page that is turned puts its copies away; what was typed in them is
+Nothing is written. Turning a page closes its copies; what was typed in them is
 there again when they are opened the next time.
 """
 
@@ -21,49 +21,50 @@ from playground.paths import GLSL, shown
 from playground.sketch.model import kernels_of
 from playground.sketch.source import read_text
 from playground.sketch.text_overrides import with_texts
-from playground.workbench.actions import Actions
 from playground.workbench.inspect.compare import as_before
-from playground.workbench.lesson.figure_view import Stage
+from playground.workbench.lesson.figure_view import FigureView
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
 _SAME = 0.25
 """Mean difference of two pictures, of 255, below which they are the same."""
 
-WHOLE, BROKEN, MENDED, TOLD = "", "broken", "mended", "told"
-"""How far a fault has come: TOLD where the lesson has mended it."""
+WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
+"""How far a bug has come: SHOWN where the lesson has fixed it."""
 
 
-@dataclass
-class Faults:
-    """Those of one reader; ``say`` gives words of the interface by key."""
+@dataclass(kw_only=True)
+class Bugs:
+    """Those of one reader."""
 
-    actions: Actions
-    stage: Stage
-    say: Callable[[str], str]
-    state: dict[str, str] = field(default_factory=dict)  # of each fault, by block
+    session: Session
+    notices: Notices
+    copies: Copies
+    figure: FigureView
+    label: Callable[[str], str]  # of the interface, by key
+    state: dict[str, str] = field(default_factory=dict)  # of each bug, by block
     typed: dict[str, str] = field(default_factory=dict)  # what was typed in a copy, by block
 
     def __post_init__(self) -> None:
-        self.copies = Copies(self.actions)
-        self._on: Break | None = None  # the fault whose copy stands in
-        self._editing: dict[Path, str] = {}  # which block each copy is of
+        self._on: Break | None = None  # the bug whose copy is drawn
         self._to_check = False
 
     @property
     def texts(self) -> Mapping[str, str]:
-        """What stands in for files, by absolute path."""
+        """What replaces files, by absolute path."""
         return {str(path): copy.base for path, copy in self.copies.open.items()}
 
     @property
     def waits(self) -> bool:
-        """Whether a mend is still to be looked at."""
-        return self._to_check and not self.stage.busy
+        """Whether a fix is still to be checked."""
+        return self._to_check and not self.figure.busy
 
-    # ── faults ───────────────────────────────────────────────────────────────
+    # ── bugs ─────────────────────────────────────────────────────────────────
 
     def break_it(self, block: Break) -> None:
-        """Draw a fault, and open the text that it is in."""
+        """Draw a bug, and open the text that it is in."""
         if block.scene is None:
             return
         self.leave()
@@ -71,33 +72,33 @@ class Faults:
         try:
             text = self.typed.get(block.name) or with_bug(block)
         except PlaygroundError as error:
-            self.actions.say(str(error))
+            self.notices.say(str(error))
             return
         begins = _KERNEL.search(text)
-        line = line_of(text, begins[0]) if begins else 1  # the fault itself is to be found
+        line = line_of(text, begins[0]) if begins else 1  # the bug itself is to be found
         self._open(block, path, text, line)
         self._on, self.state[block.name] = block, BROKEN
-        self.stage.show(block.scene, (block.name, 1), self.texts)
+        self.figure.show(block.scene, (block.name, 1), self.texts)
         self._to_check = text != with_bug(block)
 
     def focus(self, block: Break) -> None:
-        """Bring the copy of a fault to the front, also where its window was closed."""
+        """Bring the copy of a bug to the front, also where its window was closed."""
         self.copies.focus(file_of(block))
 
-    def mend_it(self, block: Break) -> None:
+    def fix_it(self, block: Break) -> None:
         """Draw the file's own text again."""
         if block.scene is None:
             return
         self.copies.close(file_of(block))
         self.typed.pop(block.name, None)
         self._on, self._to_check = None, False
-        self.state[block.name] = TOLD
-        self.stage.show(block.scene, (block.name, 0), self.texts)
+        self.state[block.name] = SHOWN
+        self.figure.show(block.scene, (block.name, 0), self.texts)
 
     def check(self) -> bool:
-        """Look whether the reader's own mend shows the whole picture; say whether there was one."""
-        session, block = self.actions.session, self._on
-        if not self._to_check or block is None or block.scene is None or self.stage.busy:
+        """Check whether the reader's own fix shows the whole picture; return whether there was one."""
+        session, block = self.session, self._on
+        if not self._to_check or block is None or block.scene is None or self.figure.busy:
             return False
         self._to_check = False
         if session.error is not None or session.plan is None or not session.rests:
@@ -110,16 +111,16 @@ class Faults:
             with as_before(session.engine, session.plan):
                 same = self._difference(block.scene, {str(path): text}) < _SAME
         except PlaygroundError as error:
-            self.actions.say(str(error))
+            self.notices.say(str(error))
             return True
-        if same and self.state[block.name] != MENDED:
-            self.actions.say(self.say("mended"))
-        self.state[block.name] = MENDED if same else BROKEN
+        if same and self.state[block.name] != FIXED:
+            self.notices.say(self.label("fixed"))
+        self.state[block.name] = FIXED if same else BROKEN
         return True
 
     def _difference(self, scene: Scene, texts: Mapping[str, str]) -> float:
         small = Picture("", scene).smaller().scene
-        engine = self.actions.session.engine
+        engine = self.session.engine
         whole = draw(engine, small).array.astype(np.float64)
         mine = draw(engine, replace(small, sketch=with_texts(small.sketch, texts))).array
         return float(np.abs(whole - mine)[..., :3].mean())
@@ -142,14 +143,14 @@ class Faults:
                 self._open(block, path, text, line)
                 self._draw()
         except PlaygroundError as error:
-            self.actions.say(str(error))
+            self.notices.say(str(error))
             return
-        sketch = self.actions.session.sketch
+        sketch = self.session.sketch
         if sketch is not None and not _uses(sketch.graph, path):
-            self.actions.say(self.say("not_in_view").format(shown(path)))
+            self.notices.say(self.label("not_in_view").format(shown(path)))
 
     def is_edited(self, block: Code) -> bool:
-        """Say whether a copy with another text stands in for the code's file."""
+        """Say whether a copy with another text replaces the code's file."""
         text = self.copies.text_of(file_of(block))
         return text is not None and text != read_text(file_of(block))
 
@@ -165,24 +166,24 @@ class Faults:
     # ── copies ───────────────────────────────────────────────────────────────
 
     def leave(self) -> None:
-        """Take a fault off the stage: another picture comes."""
+        """Stop drawing a bug: another picture comes."""
         if self._on is not None:
             self.copies.close(file_of(self._on))
             if self.state[self._on.name] == BROKEN:
                 self.state[self._on.name] = WHOLE
             self._on, self._to_check = None, False
 
-    def put_away(self, *, drawn: bool = True) -> None:
+    def close_all(self, *, drawn: bool = True) -> None:
         """Close all copies; ``drawn``: and draw the files themselves."""
         self.leave()
         if self.copies.open:
             self.copies.close()
-        if drawn and self.actions.session.drafts.texts:
+        if drawn and self.session.drafts.texts:
             self._draw()
 
     def forget(self) -> None:
-        """Forget what was typed and mended: another lesson is opened."""
-        self.put_away()
+        """Forget what was typed and fixed: another lesson is opened."""
+        self.close_all()
         self.state.clear()
         self.typed.clear()
 
@@ -195,11 +196,13 @@ class Faults:
         def leave(new: str) -> None:
             self.typed[block.name] = new
 
-        copy = Copy(path, text, apply=apply, leave=leave, note=self.say("applied"), label=self.say("copy"))
+        copy = Copy(
+            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
+        )
         self.copies.edit(copy, line)
 
     def _draw(self) -> None:
-        self.stage.set_texts(self.texts)
+        self.figure.set_texts(self.texts)
 
 
 def file_of(block: Break | Code) -> Path:

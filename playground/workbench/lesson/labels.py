@@ -1,4 +1,4 @@
-"""What is written around lessons in the window, in each language."""
+"""The labels around lessons in the window, in each language."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _ENGLISH = {
     "lesson": "Lesson {}",
     "minutes": "{} min",
     "close": "Close the lessons (F2)",
-    "step": "{} of {}",
+    "page": "{} of {}",
     "previous": "Previous",
     "next": "Next",
     "next_lesson": "Next lesson",
@@ -23,10 +23,9 @@ _ENGLISH = {
     "coming": "Drawing…",
     "reset": "Reset",
     "reset_note": "This picture as the lesson has it; undo brings yours back",
-    "turn": "turn {} of {}",
-    "all_turns": "all {} turns",
+    "step": "step {} of {}",
     "play": "Play",
-    "rest": "Pause",
+    "pause": "Pause",
     "both": "Side by side",
     "edit": "Edit a copy",
     "edit_note": "Drawn in place of the file at each save; the file stays as it is",
@@ -35,13 +34,13 @@ _ENGLISH = {
     "applied": "drawn from the copy; the file stays as it is",
     "not_in_view": "the picture in view does not use {}: press Show first",
     "break": "Break it",
-    "mend": "Mend it",
+    "fix": "Fix it",
     "hint": "Hint",
-    "broken": "Broken. Find the fault in the copy, mend it there, and press Ctrl+S.",
-    "mended": "Mended: your text draws the whole picture again.",
+    "broken": "Broken. Find the bug in the copy, fix it there, and press Ctrl+S.",
+    "fixed": "Fixed: your text draws the whole picture again.",
     "question": "Question",
     "exercise": "Exercise",
-    "fault": "A fault to find",
+    "bug": "A bug to find",
     "answer": "Show the answer",
     "right": "Right.",
     "wrong": "Not that one. Try again, or look at the answer.",
@@ -63,7 +62,7 @@ _FRENCH = {
     "lesson": "Leçon {}",
     "minutes": "{} min",
     "close": "Fermer les leçons (F2)",
-    "step": "{} sur {}",
+    "page": "{} sur {}",
     "previous": "Précédent",
     "next": "Suivant",
     "next_lesson": "Leçon suivante",
@@ -77,10 +76,9 @@ _FRENCH = {
     "coming": "Dessin en cours…",
     "reset": "Rétablir",
     "reset_note": "L’image telle que la leçon la donne\u00a0; Annuler ramène la vôtre",
-    "turn": "étape {} sur {}",
-    "all_turns": "les {} étapes",
+    "step": "étape {} sur {}",
     "play": "Jouer",
-    "rest": "Pause",
+    "pause": "Pause",
     "both": "Côte à côte",
     "edit": "Modifier une copie",
     "edit_note": "Dessinée à la place du fichier à chaque enregistrement\u00a0; le fichier reste tel quel",
@@ -89,13 +87,13 @@ _FRENCH = {
     "applied": "dessiné d’après la copie\u00a0; le fichier reste tel quel",
     "not_in_view": "l’image affichée n’utilise pas {}\u00a0: appuyez d’abord sur Montrer",
     "break": "Casser",
-    "mend": "Réparer",
+    "fix": "Corriger",
     "hint": "Indice",
-    "broken": "Cassé. Trouvez la faute dans la copie, réparez-la sur place, puis appuyez sur Ctrl+S.",
-    "mended": "Réparé\u00a0: votre texte dessine de nouveau l’image entière.",
+    "broken": "Cassé. Trouvez le bogue dans la copie, corrigez-le sur place, puis appuyez sur Ctrl+S.",
+    "fixed": "Corrigé\u00a0: votre texte dessine de nouveau l’image entière.",
     "question": "Question",
     "exercise": "Exercice",
-    "fault": "Une faute à trouver",
+    "bug": "Un bogue à trouver",
     "answer": "Voir la réponse",
     "right": "C’est juste.",
     "wrong": "Non. Essayez encore, ou regardez la réponse.",
@@ -115,6 +113,6 @@ _FRENCH = {
 _ALL: Mapping[str, Mapping[str, str]] = {"en": _ENGLISH, "fr": _FRENCH}
 
 
-def words_in(language: str) -> Mapping[str, str]:
-    """Return the words of a language by key; those of English where it has none."""
+def labels_in(language: str) -> Mapping[str, str]:
+    """Return the labels of a language by key; those of English where it has none."""
     return _ALL.get(language, _ENGLISH)

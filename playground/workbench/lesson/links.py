@@ -9,7 +9,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError
 from playground.sketch.find import find
 from playground.workbench.history import History
-from playground.workbench.lesson.labels import words_in
+from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.reader import Reading
 
 
@@ -21,9 +21,9 @@ def follow(reading: Reading, address: str) -> None:
     elif kind == "sketch":
         open_sketch(reading, name)
     elif kind == "thesis":
-        reading.actions.say(words_in(reading.language)["thesis_section"].format(name))
+        reading.bench.notices.say(labels_in(reading.language)["thesis_section"].format(name))
     elif kind in ("https", "http") and not webbrowser.open(address):
-        reading.actions.say(address)
+        reading.bench.notices.say(address)
 
 
 def play_on(reading: Reading) -> None:
@@ -33,19 +33,19 @@ def play_on(reading: Reading) -> None:
 
 
 def open_sketch(reading: Reading, name: str) -> None:
-    """Open a sketch as the reader's own, with what was set by hand in it the last time."""
-    actions, stage = reading.actions, reading.stage
+    """Open a sketch as the reader's own, with the user's edits of the last time."""
+    bench, figure = reading.bench, reading.figure
     try:
         path = find(name)
     except PlaygroundError as error:
-        actions.say(str(error))
+        bench.notices.say(str(error))
         return
     reading.playing = ""
-    reading.faults.put_away(drawn=False)
-    if stage.own is None:
+    reading.bugs.close_all(drawn=False)
+    if figure.own is None:
         reading.begins()
-    stage.let_go()
-    actions.panel_shown = True
-    opens: Callable[[Path], None] = reading.play or actions.open
+    figure.let_go()
+    bench.interface.panel_shown = True
+    opens: Callable[[Path], None] = reading.play or bench.commands.open
     opens(path)
-    actions.history = History()
+    bench.undo.history = History()

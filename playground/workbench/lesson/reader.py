@@ -1,6 +1,6 @@
-"""A reader and the lessons: which page is open, what of it is on the stage, what was asked and answered.
+"""A reader and the lessons: which page is open, which figure is shown, what was asked and answered.
 
-Draws nothing. Whoever does calls ``turn`` once a turn.
+Draws nothing; ``update`` is called once a frame.
 """
 
 from __future__ import annotations
@@ -14,18 +14,19 @@ from playground.errors import PlaygroundError
 from playground.lessons.library import LANGUAGES, preferred_language
 from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, Scene, Section, Slider, Steps
 from playground.lessons.read import Summary
-from playground.workbench.actions import Actions
-from playground.workbench.lesson.bugs import Faults
+from playground.workbench.bench import Bench
+from playground.workbench.lesson.bugs import Bugs
 from playground.workbench.lesson.figure_state import steps_of
-from playground.workbench.lesson.figure_view import Stage, comparable
-from playground.workbench.lesson.labels import words_in
+from playground.workbench.lesson.figure_view import FigureView, comparable
+from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.measurements import Numbers
 from playground.workbench.lesson.progress import Progress, progress_file, write_progress
+from playground.workbench.lesson.shader_copies import Copies
 from playground.workbench.lesson.shelf import Shelf
 from playground.workbench.text_file import unsaved
 
-_TURN, _VALUE = 0.8, 0.5
-"""[s] that a turn, and a value of a sweep, is seen while it plays."""
+_STEP, _VALUE = 0.8, 0.5
+"""[s] that a step, and a value of a sweep, is shown while it plays."""
 
 BOTH = -1
 """The place of a comparison where two pictures are seen at once."""
@@ -37,10 +38,10 @@ Seen = Steps | Slider | Compare | Figure | Exercise
 class Reading:
     """One reader's."""
 
-    actions: Actions
+    bench: Bench
     progress: Progress
     file: Path = field(default_factory=progress_file)  # where the progress is remembered
-    begins: Callable[[], None] = lambda: None  # told before a lesson takes the stage
+    begins: Callable[[], None] = lambda: None  # called before a lesson shows its first figure
     play: Callable[[Path], None] | None = None  # opens a sketch as the reader's own
     lesson: Lesson | None = None
     at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
@@ -50,10 +51,17 @@ class Reading:
     to_top: bool = False  # a page was turned: it is to be seen from its top
 
     def __post_init__(self) -> None:
-        self.stage = Stage(self.actions, self.begins)
-        self.numbers = Numbers(self.actions.session)
-        self.faults = Faults(self.actions, self.stage, lambda key: words_in(self.language)[key])
-        self._shelf = Shelf(self.actions.say)
+        bench = self.bench
+        self.figure = FigureView(bench.undo, bench.inspection.compare, self.begins)
+        self.numbers = Numbers(bench.session)
+        self.bugs = Bugs(
+            session=bench.session,
+            notices=bench.notices,
+            copies=Copies(bench.files),
+            figure=self.figure,
+            label=lambda key: labels_in(self.language)[key],
+        )
+        self._shelf = Shelf(bench.notices.say)
         self._due = math.inf  # when what plays goes on
         self._hid = False  # the parameters' panel, to make room
 
@@ -85,20 +93,20 @@ class Reading:
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
         """Open a lesson, at the page where it was left; say whether that could be done.
 
-        By default the one read last, or the first. ``show``: its picture takes the stage.
+        By default the one read last, or the first. ``show``: its figure is shown.
         """
         names = [one.name for one in self.summaries]
         name = name or (self.progress.lesson if self.progress.lesson in names else next(iter(names), ""))
         if language:
             self.progress.language = language
         try:
-            lesson = self._shelf.read(name, self.language, words_in(self.language)["untranslated"])
+            lesson = self._shelf.read(name, self.language, labels_in(self.language)["untranslated"])
         except PlaygroundError as error:
-            self.actions.say(str(error))
+            self.bench.notices.say(str(error))
             return False
         if self.lesson is None or lesson.name != self.lesson.name:
             self.at, self.shown, self.chosen = {}, set(), {}
-            self.faults.forget()
+            self.bugs.forget()
         if self.lesson is None or not self.progress.shown:
             self._make_room()
         self.lesson, self.progress.lesson, self.progress.shown = lesson, name, True
@@ -111,7 +119,7 @@ class Reading:
             self.open(self.lesson.name, language=language, show=False)
 
     def go(self, page: int, *, show: bool = True) -> None:
-        """Open a page of the lesson; ``show``: its first picture takes the stage."""
+        """Open a page of the lesson; ``show``: its first figure is shown."""
         if self.lesson is None:
             return
         last = len(self.lesson.sections) - 1
@@ -120,15 +128,15 @@ class Reading:
         if page == last and self.lesson.name not in self.progress.done:
             self.progress.done.append(self.lesson.name)
         self.playing, self.to_top = "", True
-        self.faults.put_away()
+        self.bugs.close_all()
         section = self.lesson.sections[page]
         self.numbers.want(self.lesson, section.blocks)
         self.remember()
         first = self._picture_of(page)
         if not show or first is None:
             return
-        if unsaved(self.actions.editing) or (self.stage.own is None and self.stage.changed):
-            self.actions.say(words_in(self.language)["yours_stays"])
+        if unsaved(self.bench.files.editing) or (self.figure.own is None and self.figure.changed):
+            self.bench.notices.say(labels_in(self.language)["yours_stays"])
             return
         self.show(first)
 
@@ -139,7 +147,7 @@ class Reading:
             [b for b in section.blocks if isinstance(b, Figure | Steps | Slider | Compare)]
             for section in reversed(sections[: page + 1])
         ]
-        if mine or self.stage.key is not None:
+        if mine or self.figure.key is not None:
             return next(iter(mine), None)
         return next((blocks[-1] for blocks in earlier if blocks), None)
 
@@ -158,32 +166,32 @@ class Reading:
             self._make_room()
         else:
             self.playing = ""
-            self.actions.panel_shown = self.actions.panel_shown or self._hid
-            if self.stage.own is not None and self.stage.changed:
-                self.actions.say(words_in(self.language)["not_kept"])
+            self.bench.interface.panel_shown = self.bench.interface.panel_shown or self._hid
+            if self.figure.own is not None and self.figure.changed:
+                self.bench.notices.say(labels_in(self.language)["not_kept"])
         self.remember()
 
     def _make_room(self) -> None:
         """Hide the parameters: a page has those that it is about."""
-        self._hid, self.actions.panel_shown = self.actions.panel_shown, False
+        self._hid, self.bench.interface.panel_shown = self.bench.interface.panel_shown, False
 
     def remember(self) -> None:
         """Write down where the reader is."""
         complaint = write_progress(self.progress, self.file)
         if complaint:
-            self.actions.say(complaint)
+            self.bench.notices.say(complaint)
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
     def is_on(self, block: Seen, index: int | None = None) -> bool:
-        """Say whether a picture of a block is on the stage."""
-        key = self.stage.key
+        """Say whether a figure of a block is shown."""
+        key = self.figure.key
         return (
             key is not None and key[0] == block.name and (index is None or self.at.get(block.name) == index)
         )
 
     def show(self, block: Block) -> None:
-        """Put a block's picture on the stage; of a series the one it was left at."""
+        """Show a block's figure; of a series the one it was left at."""
         if isinstance(block, Figure | Exercise) and block.scene is not None:
             self._put(block.scene, block.name, 0)
         elif isinstance(block, Compare):
@@ -193,34 +201,34 @@ class Reading:
             self.move(block, self.at.get(block.name, 0))
 
     def move(self, block: Steps | Slider, index: int) -> None:
-        """Show another turn, or another value."""
+        """Show another step, or another value."""
         index = min(max(index, 0), len(block.scenes) - 1)
         scene = block.scenes[index]
-        if not self.is_on(block) or self.stage.busy:
+        if not self.is_on(block) or self.figure.busy:
             self._put(scene, block.name, index)
         elif isinstance(block, Steps):
-            self.stage.stop_at(steps_of(scene), (block.name, index))
+            self.figure.stop_at(steps_of(scene), (block.name, index))
         else:
-            self.actions.session.drafts.set(block.parameter, block.values[index])
+            self.bench.session.drafts.set(block.parameter, block.values[index])
         self.at[block.name] = index
 
     def choose(self, block: Compare, index: int) -> None:
         """Show one of several pictures, or ``BOTH``."""
         if index == BOTH:
-            self.faults.leave()
-            self.stage.compare(block.scenes[0], block.scenes[1], block.name)
+            self.bugs.leave()
+            self.figure.compare(block.scenes[0], block.scenes[1], block.name)
         else:
             self._put(block.scenes[index], block.name, index)
         self.at[block.name] = index
 
-    def play_or_rest(self, block: Steps | Slider) -> None:
-        """Have a series play from where it is, from its beginning when it is over; or rest."""
+    def play_or_pause(self, block: Steps | Slider) -> None:
+        """Play a series from where it is, from its beginning when it is over; or pause."""
         if self.playing == block.name:
             self.playing = ""
             return
         at = self.at.get(block.name, 0)
         self.move(block, 0 if at >= len(block.scenes) - 1 else at)
-        self.playing, self._due = block.name, self.actions.now() + _pause(block)
+        self.playing, self._due = block.name, self.bench.notices.now() + _pause(block)
 
     def reset(self, block: Seen) -> None:
         """Show a block's picture as the lesson has it."""
@@ -230,27 +238,27 @@ class Reading:
     def go_back(self) -> None:
         """Show again what was open before the lessons."""
         self.playing = ""
-        self.faults.put_away(drawn=False)
-        self.stage.go_back()
-        if self.stage.own is not None:  # it is gone: the lesson's picture stays, without copies
-            self.faults.put_away()
+        self.bugs.close_all(drawn=False)
+        self.figure.go_back()
+        if self.figure.own is not None:  # it is gone: the lesson's picture stays, without copies
+            self.bugs.close_all()
 
     def _put(self, scene: Scene, name: str, index: int) -> None:
         if self.playing != name:
             self.playing = ""
-        self.faults.leave()
-        self.stage.show(scene, (name, index), self.faults.texts)
+        self.bugs.leave()
+        self.figure.show(scene, (name, index), self.bugs.texts)
 
-    # ── turns ────────────────────────────────────────────────────────────────
+    # ── frames ───────────────────────────────────────────────────────────────
 
-    def turn(self, *, idle: bool) -> None:
-        """Take in what a turn has brought; ``idle``: there is time to compute."""
-        self.stage.turn()
+    def update(self, *, idle: bool) -> None:
+        """Take in what a frame has brought; ``idle``: there is time to compute."""
+        self.figure.update()
         if self.lesson is None or not self.progress.shown:
             return
-        if self.playing and self.actions.now() >= self._due and not self.stage.busy:
+        if self.playing and self.bench.notices.now() >= self._due and not self.figure.busy:
             self._play()
-        if idle and not self.playing and not self.faults.check():
+        if idle and not self.playing and not self.bugs.check():
             self.numbers.compute()
 
     def patience(self, now: float) -> float:
@@ -259,7 +267,7 @@ class Reading:
             return math.inf
         if self.playing:
             return max(self._due - now, 0.0)
-        return 0.0 if self.numbers.ready or self.faults.waits else math.inf
+        return 0.0 if self.numbers.ready or self.bugs.waits else math.inf
 
     def _play(self) -> None:
         block = self.lesson.named.get(self.playing) if self.lesson else None
@@ -267,10 +275,10 @@ class Reading:
             self.playing = ""
             return
         self.move(block, self.at.get(block.name, 0) + 1)
-        self._due = self.actions.now() + _pause(block)
+        self._due = self.bench.notices.now() + _pause(block)
         if self.at[block.name] >= len(block.scenes) - 1:
             self.playing = ""
 
 
 def _pause(block: Steps | Slider) -> float:
-    return _TURN if isinstance(block, Steps) else _VALUE
+    return _STEP if isinstance(block, Steps) else _VALUE

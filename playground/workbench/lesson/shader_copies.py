@@ -1,4 +1,4 @@
-"""Copies of shaders to break and mend: drawn in place of the files, never written over them."""
+"""Copies of shaders to break and fix: drawn in place of the files, never written over them."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.paths import shown
-from playground.workbench.actions import Actions
+from playground.workbench.open_files import OpenFiles
 from playground.workbench.text_file import Editing, OpenText, typed_in
 
 
 @dataclass
 class Copy(OpenText):
-    """A text that stands in for a file; saving it draws it."""
+    """A text that replaces a file; saving it draws it."""
 
     apply: Callable[[str], None] = field(default=lambda text: None)
-    leave: Callable[[str], None] = field(default=lambda text: None)  # told what was typed and not saved
-    note: str = ""  # said when it is applied
-    label: str = ""  # stands behind its name
+    leave: Callable[[str], None] = field(default=lambda text: None)  # gets what was typed and not saved
+    note: str = ""  # shown when it is applied
+    label: str = ""  # follows its name
 
     @property
     def title(self) -> str:
@@ -31,7 +31,7 @@ class Copy(OpenText):
         return False
 
     def saved(self) -> str:
-        """Return what is said when it was applied."""
+        """Return the notice for a copy that was applied."""
         return self.note
 
     def reload(self) -> str:
@@ -39,7 +39,7 @@ class Copy(OpenText):
         return self.base
 
     def changed_outside(self) -> bool:
-        """Say that nobody else has it."""
+        """Return False: nobody else has it."""
         return False
 
     def save(self, text: str, *, over: bool = False) -> bool:
@@ -51,37 +51,34 @@ class Copy(OpenText):
 
 @dataclass
 class Copies:
-    """The copies that are open or stand in for their files, by the file."""
+    """The copies that are open or replace their files, by the file."""
 
-    actions: Actions
+    files: OpenFiles
     open: dict[Path, Copy] = field(default_factory=dict)
     _windows: dict[Path, Editing] = field(default_factory=dict)  # also of one whose window was closed
 
     def __post_init__(self) -> None:
-        self.actions.copy_of = self._windows.get
+        self.files.copy_of = self._windows.get
 
     def edit(self, copy: Copy, line: int = 1) -> None:
         """Open a copy in the window's own editor, in place of another of the same file."""
         self.close(copy.path)
         self.open[copy.path] = copy
         editing = self._windows[copy.path] = Editing(copy)
-        editing.line = max(line, 1)
-        self.actions.editing.append(editing)
+        self.files.focus(editing, line)
 
     def focus(self, path: Path, line: int = 1) -> bool:
         """Bring the copy of a file to the front, also where its window was closed; say if there is one."""
         editing = self._windows.get(path)
         if editing is None:
             return False
-        if all(other is not editing for other in self.actions.editing):
-            self.actions.editing.append(editing)
-        editing.line, editing.column, editing.asked = max(line, 1), 1, True
+        self.files.focus(editing, line)
         return True
 
     def close(self, path: Path | None = None) -> None:
-        """Close the copy of a file, or all of them; each is told what was typed in it and not saved."""
+        """Close the copy of a file, or all of them; each receives what was typed in it and not saved."""
         gone = [copy for file, copy in self.open.items() if path is None or file == path]
-        self.actions.editing[:] = [e for e in self.actions.editing if all(e.text is not c for c in gone)]
+        self.files.editing[:] = [e for e in self.files.editing if all(e.text is not c for c in gone)]
         for copy in gone:
             typed = typed_in(self._windows.pop(copy.path))
             if typed is not None:
@@ -89,7 +86,7 @@ class Copies:
             del self.open[copy.path]
 
     def text_of(self, path: Path) -> str | None:
-        """Return the text that stands in for a file; None where the file stands for itself."""
+        """Return the text that replaces a file; None where the file itself is drawn."""
         copy = self.open.get(path)
         return copy.base if copy is not None else None
 

@@ -1,4 +1,4 @@
-"""The names that are needed before anything heavy is loaded: folders, options' defaults, what tests tell.
+"""The names that are needed before anything heavy is loaded: folders, options' defaults, what tests report.
 
 A test tells the summary of its run by user properties, which come along from workers of xdist.
 """
@@ -9,27 +9,27 @@ SCREENSHOTS = "screenshots"
 """The folder of references, beside a sketch or a test file."""
 
 REPORT = "shots-report"
-"""Where results go unless something else is asked for: in the folder the tests were started in."""
+"""Where results go unless another folder is named: in the folder the tests were started in."""
 
 REFERENCE_RENDERER = "llvmpipe"
 """Slug of the renderer that every shot has references of: it is the same on every machine."""
 
-SAID = "shots"
+SUMMARY_LINE = "shots"
 """The user property that carries a line for the summary."""
 
-LEFT = "shots-left"
+UNCHANGED = "shots-left"
 """… that says that a reference was left alone."""
 
 CHECKED = "shots-checked"
 """… with the word of a shot that was checked."""
 
-LOOSE = "shots-structure-only"
+STRUCTURE_COMPARED = "shots-structure-only"
 """… that names the renderer whose picture could only be compared by its structure."""
 
 UNCOMPARED = "shots-uncompared"
 """… that says why a shot was not compared."""
 
-UNKEPT = "shots-unkept"
+UNRECORDED = "shots-unkept"
 """… that says why a result could not be kept."""
 
 USED = "shots-used"

@@ -1,7 +1,7 @@
 """Keep what is reviewed: the results as they are now, what was accepted of them, and how to undo it.
 
 Several pages may ask at once. A result is meant by its shot and its stamp: where the tests
-have run again since, or a reference has changed, what is asked is refused in words; all
+have run again since, or a reference has changed, the request is refused with a reason; all
 changes are made one after the other. It knows no network.
 """
 
@@ -27,10 +27,10 @@ class Session:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.changes: dict[_Result, Change] = {}  # what was accepted and not undone
-        self._said: dict[_Result, str] = {}
+        self._messages: dict[_Result, str] = {}
         self._pictures: set[str] = set()  # that records name
         self._lock = threading.Lock()
-        self.records()  # a folder without any is a mistake to tell at once
+        self.records()  # a folder without any is an error at once
 
     def records(self) -> dict[str, Record]:
         """Return the records as they are now, by "sketch/shot"; raise ``DataError``."""
@@ -59,12 +59,12 @@ class Session:
             return None
 
     def state(self) -> dict[str, dict[str, str]]:
-        """Return, of each shot that failed, its stamp, whether it was accepted, and what was said last."""
+        """Return, of each shot that failed, its stamp, whether it was accepted, and the last message."""
         with self._lock:
             return {name: self._state(record) for name, record in self.records().items() if not record.ok}
 
     def act(self, action: str, shots: list[_Result]) -> list[dict[str, object]]:
-        """Accept ("accept", "also") or "undo" shots, given by name and stamp; say what came of each."""
+        """Accept ("accept", "also") or "undo" shots, given by name and stamp; return what came of each."""
         with self._lock:
             records = self.records()
             return [self._act(action, records.get(result[0]), result) for result in shots]
@@ -73,15 +73,15 @@ class Session:
         result = record.name, record.stamp
         change = self.changes.get(result)
         state = "open" if change is None else "further" if change.further else "accepted"
-        return {"stamp": record.stamp, "state": state, "said": self._said.get(result, "")}
+        return {"stamp": record.stamp, "state": state, "message": self._messages.get(result, "")}
 
     def _act(self, action: str, record: Record | None, result: _Result) -> dict[str, object]:
         name = result[0]
         try:
-            self._said[result] = self._done(action, record, result)
+            self._messages[result] = self._done(action, record, result)
         except PlaygroundError as error:
-            return {"name": name, "ok": False, "said": str(error).removeprefix(f"{name}: ")}
-        return {"name": name, "ok": True, "said": self._said[result]}
+            return {"name": name, "ok": False, "message": str(error).removeprefix(f"{name}: ")}
+        return {"name": name, "ok": True, "message": self._messages[result]}
 
     def _done(self, action: str, record: Record | None, result: _Result) -> str:
         if record is None or record.stamp != result[1]:

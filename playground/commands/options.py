@@ -1,0 +1,108 @@
+"""The options and arguments that commands share, and how an own one is declared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import typer
+
+from playground.commands.arguments import either
+from playground.errors import PlaygroundError
+from playground.sketch.model import DRIVERS
+
+
+def value(usage: str, text: str, complete: Callable[..., list[str]] | None = None) -> Any:
+    """Declare an option with a value by its usage, as ``-o --output FILE``; its default is not shown."""
+    *names, metavar = usage.split()
+    return typer.Option(*names, help=text, metavar=metavar, show_default=False, autocompletion=complete)
+
+
+def flag(name: str, text: str) -> Any:
+    """Declare an option without a value."""
+    return typer.Option(name, help=text, metavar="")
+
+
+def positional(metavar: str, text: str, complete: Callable[[str], list[str]] | None = None) -> Any:
+    """Declare a positional argument; its default is not shown."""
+    return typer.Argument(help=text, metavar=metavar, show_default=False, autocompletion=complete)
+
+
+def complete_sketch(incomplete: str) -> list[str]:
+    """Return the shipped sketches that complete a word."""
+    from playground.sketch.find import shipped_sketches
+
+    return [name for name in shipped_sketches() if name.startswith(incomplete)]
+
+
+def complete_listed(incomplete: str) -> list[str]:
+    """Return what ``list`` knows that completes a word."""
+    from playground.sketch.find import shipped_names, shipped_sketches
+
+    names = ["sketches", "techniques", *shipped_sketches(), *shipped_names()]
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def complete_driver(incomplete: str) -> list[str]:
+    """Return the drivers that complete a word."""
+    return [name for name in DRIVERS if name.startswith(incomplete)]
+
+
+def complete_lesson(incomplete: str) -> list[str]:
+    """Return the lessons that complete a word."""
+    from playground.lessons.library import lesson_files
+
+    return [name for name in lesson_files() if name.startswith(incomplete)]
+
+
+def complete_language(incomplete: str) -> list[str]:
+    """Return the codes of languages that complete a word."""
+    from playground.lessons.library import LANGUAGES
+
+    return [code for code in LANGUAGES if code.startswith(incomplete)]
+
+
+def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Return the parameters, as ``path=``, that complete a word."""
+    from playground.sketch.catalogue import settable
+    from playground.sketch.load import load
+
+    try:
+        paths = settable(load(ctx.params.get("sketch") or ""))
+    except PlaygroundError:
+        return []
+    return [f"{path}=" for path in paths if path.startswith(incomplete)]
+
+
+Sketch = Annotated[
+    str,
+    positional(
+        "SKETCH",
+        "A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
+        " a shader. Without it, the default sketch.",
+        complete_sketch,
+    ),
+]
+Size = Annotated[str | None, value("--size WxH", "Size in pixels, as 1280x720.")]
+Set = Annotated[
+    list[str] | None,
+    value(
+        "--set PATH=VALUE",
+        "Set a parameter, as light.sun=250,12, or the terrain, as size=513. May be repeated.",
+        complete_setting,
+    ),
+]
+Preset = Annotated[str, value("--preset NAME", "Begin with a preset.")]
+Time = Annotated[str, value("--time T", "Time in seconds.")]
+Steps = Annotated[
+    list[str] | None,
+    value("--steps PASS=COUNT", "Stop a repeated pass after so many iterations. May be repeated."),
+]
+Driver = Annotated[str, value("--driver NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)]
+Plain = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]
+Software = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
+Device = Annotated[str, value("--device N", "Render on this EGL device, from 0.")]
+Json = Annotated[bool, flag("--json", "Print JSON, for programs.")]
+Language = Annotated[
+    str, value("--lang CODE", "Language: en or fr; that of the system by default.", complete_language)
+]

@@ -1,0 +1,171 @@
+"""What a button or a key does to the sketch's values and files: presets, resets, saving, opening."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.errors import PlaygroundError, counted
+from playground.paths import shown
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
+from playground.sketch.model import Camera, Value
+from playground.sketch.save import save, save_copy, save_preset, saved_text
+from playground.workbench.edits import Draft
+from playground.workbench.history import History, Key
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+from playground.workbench.sketch_file import SketchFile
+from playground.workbench.undo import Undo
+
+
+@dataclass
+class Commands:
+    """Those of one session; copies go into ``folder``."""
+
+    session: Session
+    notices: Notices
+    undo: Undo
+    file: SketchFile
+    folder: Path
+
+    def open(self, path: Path) -> None:
+        """Open another sketch; nothing of this one can be undone there."""
+        try:
+            self.session.open(path)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+        else:
+            self.undo.history = History()
+
+    # ── many values at once ──────────────────────────────────────────────────
+
+    def set_all(self, name: str, values: dict[str, Value]) -> None:
+        """Set many parameters as one step, and say how many; locked ones stay."""
+        draft = self.session.shown
+        if draft is None:
+            return
+        locked = len(set(values) & set(draft.edits.locked))
+        with self.undo.step(name):
+            self.session.drafts.set_all(values)
+        left = f"; {counted(locked, 'locked parameter')} left alone" if locked else ""
+        self.notices.say(f"{name}: {counted(len(values) - locked, 'parameter')}{left}")
+
+    def apply_preset(self, name: str) -> None:
+        """Set a preset's values, as one step."""
+        sketch = self.session.sketch
+        for preset in sketch.presets if sketch else ():
+            if preset.name == name:
+                self.set_all(f"Preset {name}", dict(preset.values))
+
+    def reset_values(self) -> None:
+        """Reset all that is not locked to what the file says, as one step."""
+        with self.undo.step("Reset values"):
+            self.session.reset_values()
+
+    def reset(self, name: str, paths: list[str]) -> None:
+        """Reset some parameters to the file's values, as one step; locked ones stay."""
+        draft = self.session.shown
+        if draft is not None:
+            with self.undo.step(f"Reset {name}"):
+                self.session.drafts.unset(*(path for path in paths if path not in draft.edits.locked))
+
+    # ── saving ───────────────────────────────────────────────────────────────
+
+    def save_values(self) -> None:
+        """Save values, camera and techniques into the sketch; where it is read-only, offer a copy."""
+        draft = self._ready()
+        if draft is None:
+            return
+        if draft.sketch == draft.file:
+            self.notices.say("nothing differs from the file")
+        elif self.file.write(lambda: save(draft.file, draft.sketch)):
+            self.undo.history.saved(_values_in_file(draft))
+            self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}")
+
+    def save_a_copy(self) -> None:
+        """Save the sketch with the user's edits as a new one in the current folder, and go on with that."""
+        draft = self._ready()
+        if draft is None:
+            return
+        try:
+            path = save_copy(draft.file, draft.sketch, self.folder)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        self.undo.history.saved(_values_in_file(draft))
+        self.notices.say(f"saved a copy in {path.parent}; from here on this is the sketch")
+        self.session.drafts.open(path, keep=True)
+
+    def save_as_preset(self, name: str) -> None:
+        """Save the edited values as a preset of the sketch."""
+        draft = self._ready()
+        if draft is None or not name.strip():
+            return
+        values = {path: value for path, value in draft.applied.items() if not isinstance(value, str)}
+        if not values:
+            self.notices.say("no value is edited, so the preset would be empty")
+        elif self.file.write(lambda: save_preset(draft.file, name.strip(), values)):
+            self.notices.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
+
+    def copy_toml(self, copy: Callable[[str], None]) -> None:
+        """Copy the sketch's text as it would be saved; ``copy`` puts a text on the clipboard."""
+        draft = self._ready()
+        if draft is None:
+            return
+        file = Path(draft.file.file)
+        try:
+            text = saved_text(file.read_bytes().decode("utf-8-sig"), draft.file, draft.sketch)
+        except (OSError, UnicodeDecodeError) as error:
+            self.notices.say(f"{shown(draft.file.file)} cannot be read: {error}")
+            return
+        copy(text)
+        self.notices.say("copied the sketch as TOML")
+
+    def _ready(self) -> Draft | None:
+        """Return what is to be saved, its numbers as the file will have them; None, and a notice, if none."""
+        drafts = self.session.drafts
+        if drafts.shown is None:
+            self.notices.say("there is no sketch to save yet")
+            return None
+        drafts.shorten_values()
+        if drafts.shown.edits.camera is not None:
+            drafts.set_camera(rounded(drafts.shown.edits.camera))
+        self.undo.record(held=True)  # as part of the step that changed them
+        return drafts.shown
+
+
+def rounded(camera: Camera) -> Camera:
+    """Return a camera of as many digits as a person would write: hundredths of degrees, centimetres."""
+    return Camera(
+        round(camera.azimuth, 2),
+        round(camera.elevation, 2),
+        round(camera.distance, 2),
+        None if camera.target is None else tuple(round(n, 2) for n in camera.target),  # type: ignore[arg-type]
+        round(camera.field_of_view, 2),
+    )
+
+
+def _values_in_file(draft: Draft) -> dict[Key, object]:
+    """Return what the file said of everything that is edited."""
+    values = values_of(draft.base)
+    found: dict[Key, object] = {}
+    for path in draft.applied:
+        known = (
+            getattr(draft.base, path)
+            if path in TERRAIN_KEYS
+            else values[resolve(draft.base.graph, path)[0].path]
+        )
+        found["value", path] = known
+    for name, _ in draft.edits.techniques:
+        spec = draft.file.graph.find(name)
+        found["technique", name] = spec.use if spec else None
+    found["camera", ""] = draft.file.camera
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _summary(draft: Draft) -> str:
+    parts = [counted(len(draft.applied), "value")] if draft.applied else []
+    parts += [counted(len(draft.edits.techniques), "technique")] if draft.edits.techniques else []
+    parts += ["the camera"] if draft.edits.camera is not None else []
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)

@@ -1,0 +1,41 @@
+"""Write into the sketch's file; where it is read-only, offer a copy instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from playground.errors import PlaygroundError
+from playground.sketch.model import Keyframe
+from playground.sketch.save import ReadOnlySketch
+from playground.sketch.save_keyframes import save_keyframes
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+
+
+@dataclass
+class SketchFile:
+    """The file of one session's sketch."""
+
+    session: Session
+    notices: Notices
+    offer: str = ""  # why the sketch cannot be saved: a copy is offered
+    asks: bool = False  # the offer is still to be shown
+
+    def write(self, act: Callable[[], None]) -> bool:
+        """Write, and read the sketch again; return whether that worked. Else offer a copy or say why."""
+        try:
+            act()
+        except ReadOnlySketch as error:
+            self.offer, self.asks = f"{str(error).rpartition(': ')[2].capitalize()}.", True
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+        else:
+            self.session.drafts.reload()
+            return True
+        return False
+
+    def write_keyframes(self, keyframes: Sequence[Keyframe]) -> bool:
+        """Write keyframes into the file; return whether that worked."""
+        draft = self.session.shown
+        return draft is not None and self.write(lambda: save_keyframes(draft.file, keyframes))
