@@ -71,7 +71,7 @@ def test_twice_as_fine_a_grid_keeps_the_texels_of_the_file(engine, sketch_of, me
 def test_the_sketch_may_overrule_the_files_metres(engine, sketch_of):
     land = engine.plan_for(
         sketch_of("relief = 10.0\nextent = [5.0, 6.0]\nbase_elevation = -2.0"), (64, 64)
-    ).land
+    ).terrain
     assert (land.relief, land.extent, land.base_elevation) == (10.0, (5.0, 6.0), -2.0)
 
 
