@@ -20,7 +20,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.process.crash_report import CrashReport
 from playground.process.messages import Answer, UnexpectedError
-from playground.process.worker import Launch, Replaceable, Worker, WorkerDied
+from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.sketch.model import Sketch
 
 LIMIT_SECONDS = 10.0
@@ -77,7 +77,7 @@ class Activity:
         return f"pass '{self.path}'" if self.path else "this file"
 
 
-class Sandbox:
+class Sandbox(Closing):
     """A warm worker process that tries sketches.
 
     Use it with ``with``, or call ``close()``. ``run`` waits for an answer; ``submit`` and
@@ -104,12 +104,6 @@ class Sandbox:
         self._current: Request | None = None  # what the worker is at, while that is the newest
         self._waiting: Request | None = None  # the newest, while the worker is still at an older one
         self._repeated = False  # what it is at was submitted to one before, which died of something else
-
-    def __enter__(self) -> Sandbox:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def busy(self) -> bool:

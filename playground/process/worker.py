@@ -48,6 +48,20 @@ class Launch:
     folder: Path | None = None  # it works in; None: this process's
 
 
+class Closing:
+    """What a ``with`` block closes at its end."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> object:
+        """End the processes that it has started."""
+        raise NotImplementedError
+
+
 class WorkerDied(Exception):
     """The process ended before it answered."""
 
@@ -60,7 +74,7 @@ class WorkerTimeout(WorkerDied):
     """The process took too long, and was killed."""
 
 
-class Worker:
+class Worker(Closing):
     """One child process, and the thread that talks to it; takes one request at a time."""
 
     def __init__(self, launch: Launch) -> None:
@@ -96,12 +110,6 @@ class Worker:
         setup = Setup(launch.options, launch.memory_bytes, alarm, life)
         self._thread = threading.Thread(target=self._talk, args=[setup], daemon=True)
         self._thread.start()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.end()
 
     @property
     def pid(self) -> int:
@@ -197,6 +205,10 @@ class Worker:
     def printed(self) -> str:
         """Return what it has printed since this was last called."""
         return self._output.read()
+
+    def close(self) -> CrashReport:
+        """End the process, by itself if it has nothing to do."""
+        return self.end()
 
     def end(self, *, kill: bool = False, patience: float = 5.0) -> CrashReport:
         """End the process and report how it ended.

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Self
 
 from playground.engine.sandbox import LIMIT_BYTES
 from playground.errors import ContextError, SandboxCrash
 from playground.gpu.context import ContextInfo
-from playground.process.worker import Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
+from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
 from playground.reduce.draw_handler import DrawResult, DrawTask
 
 LIMIT = 10.0
@@ -19,7 +18,7 @@ _FIRST_EXTRA = (
 )
 
 
-class CandidateProcess:
+class CandidateProcess(Closing):
     """Draws candidates in a process of its own, with an environment of its own.
 
     Mesa's shader cache is off there: a text that crashes the compiler must meet the compiler.
@@ -47,12 +46,6 @@ class CandidateProcess:
         )
         self._dies = False  # a candidate has ended a process
         self._warm = False  # the process has answered before
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def info(self) -> ContextInfo:

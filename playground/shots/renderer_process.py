@@ -6,11 +6,17 @@ it ended, with what it printed. The next shot is rendered all the same.
 
 from __future__ import annotations
 
-from typing import Self
-
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
-from playground.process.worker import START_SECONDS, Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
+from playground.process.worker import (
+    START_SECONDS,
+    Closing,
+    Launch,
+    Replaceable,
+    Worker,
+    WorkerDied,
+    WorkerTimeout,
+)
 from playground.shots.suite import RenderedShot, ShotCase
 
 LIMIT = 120.0
@@ -21,7 +27,7 @@ HANDLER = "playground.shots.render_handler"
 _STARTS = 2  # so many in a row may fail before none is tried any more
 
 
-class RendererProcess:
+class RendererProcess(Closing):
     """Renders shots in a worker, which starts with the first and is replaced when it dies.
 
     ``limit`` is seconds a render. ``renderer`` is "software" for Mesa's software renderer,
@@ -35,12 +41,6 @@ class RendererProcess:
         self._renderer: ContextInfo | None = None
         self._refusal: PlaygroundError | None = None
         self._failed_starts = 0
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def renderer(self) -> ContextInfo:
