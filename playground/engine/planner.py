@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
 
+from playground.engine.accepted_sizes import accepted_by, sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
@@ -28,7 +29,6 @@ from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.repeats import repeated_path, repeated_paths
-from playground.sketch.variant_check import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Terrain, source_kind
@@ -168,29 +168,6 @@ def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: fl
     return found
 
 
-def smallest_land(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
-    flat = flatten(sketch)
-    return _accepted_by(flat, (least, least))
-
-
-def _accepted_by(flat: Flat, size: tuple[int, int]) -> tuple[int, int]:
-    for leaf in flat.leaves:
-        at_land_size = leaf.spec.size is None and leaf.path.partition(".")[0] != "view"
-        if at_land_size and leaf.kernel.accepts and not expressions.is_accepted(leaf.kernel.accepts, size):
-            size = expressions.nearest_accepted(leaf.kernel.accepts, size)[-1]
-    return size
-
-
-def _sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
-    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
-    if leaf.kernel.kind == "compute":
-        return leaf.path, leaf.kernel.own_accepts
-    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
-    is_variant = inside and flat.specs[path].technique.variants
-    return (path, leaf.kernel.accepts) if is_variant else (path, "")
-
-
 class _Planning:
     """One plan being made; ``known`` is the last of the same graph, made for the same request."""
 
@@ -274,7 +251,7 @@ class _Planning:
         """Return a sentence for each technique whose fast variant does not take its size, by its path."""
         found: dict[str, str] = {}
         for leaf in self.flat.leaves:
-            path, accepts = _sizes_of_variant(leaf, self.flat)
+            path, accepts = sizes_of_variant(leaf, self.flat)
             if accepts and path not in found:
                 size = self._size_of_leaf(leaf)
                 if not expressions.is_accepted(accepts, size):
@@ -373,7 +350,7 @@ class _Planning:
                     raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
                 if known != Terrain():
                     break
-        size = self.sketch.size or _accepted_by(self.flat, known.size or DEFAULT_LAND)
+        size = self.sketch.size or accepted_by(self.flat, known.size or DEFAULT_LAND)
         extent = self.sketch.extent or known.extent
         if extent is None:
             shape = known.size or size

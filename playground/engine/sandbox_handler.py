@@ -7,11 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.all_errors import all_mistakes
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
-from playground.engine.planner import smallest_land
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
 from playground.gpu.context import open_context
@@ -67,7 +67,7 @@ class _Handler:
     def _draw(self, request: TrySketch, driver: str) -> None:
         engine = self._engine(driver)
         engine.runner.tell = partial(self._before_step, driver if len(request.drivers) > 1 else "")
-        small = replace(request.sketch, size=smallest_land(request.sketch), samples=1)
+        small = replace(request.sketch, size=smallest_terrain(request.sketch), samples=1)
         drain(engine.ctx)  # what an earlier, failed request left behind
         try:
             engine.draw(small, size=request.size, time=request.time)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.planner import smallest_land
+from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
@@ -97,7 +97,7 @@ def test_it_tries_the_smallest_terrain_that_is_accepted(sandbox, folder):
     kernel = GOOD.replace('r32f"', 'rgba32f", accepts = "2**n", repeat = "log2(size.x)"')
     kernel = kernel.replace("float kernel", "vec4 kernel").replace("float(texel.x)", "vec4(1)")
     sketch = folder.one(kernel, size="size = 16384")
-    assert smallest_land(sketch) == (64, 64)
+    assert smallest_terrain(sketch) == (64, 64)
     report = sandbox.run(TrySketch(sketch))
     assert report.ok, report.error
 
