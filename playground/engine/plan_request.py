@@ -10,6 +10,10 @@ from numbers import Integral, Real
 from playground.errors import ParameterError
 from playground.terrain.sources import Terrain
 
+DEFAULT_SIZE = (513, 513)  # texels of a terrain of which nothing says more
+DEFAULT_EXTENT = 10_240.0  # [m] from west to east
+DEFAULT_RELIEF = 1_800.0  # [m]
+
 
 @dataclass(frozen=True, slots=True)
 class PlanRequest:

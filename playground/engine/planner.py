@@ -13,12 +13,20 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
 
-from playground.engine.accepted_sizes import accepted_by, sizes_of_variant
+from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
-from playground.engine.plan_request import PlanRequest, checked_pixels, checked_seconds, checked_steps
+from playground.engine.plan_request import (
+    DEFAULT_EXTENT,
+    DEFAULT_RELIEF,
+    DEFAULT_SIZE,
+    PlanRequest,
+    checked_pixels,
+    checked_seconds,
+    checked_steps,
+)
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
@@ -33,9 +41,6 @@ from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Terrain, source_kind
 
-DEFAULT_LAND = (513, 513)
-DEFAULT_EXTENT = 10_240.0
-DEFAULT_RELIEF = 1_800.0
 MAX_REPEAT = 1_000_000
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
 
@@ -269,7 +274,7 @@ class _Planning:
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
-            whole = self._count(node.repeat, node.spec.name, node.spec, self._names(prefix, node.spec))
+            whole = self._count(node.repeat, node.spec.name, node.spec, Names(self, prefix, node.spec))
             count = self._stopped(node.path, whole, node.repeat)
             body = tuple(self._node(inside) for inside in node.body)
             return LoopStep(
@@ -350,7 +355,7 @@ class _Planning:
                     raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
                 if known != Terrain():
                     break
-        size = self.sketch.size or accepted_by(self.flat, known.size or DEFAULT_LAND)
+        size = self.sketch.size or self.flat.accepted(known.size or DEFAULT_SIZE)
         extent = self.sketch.extent or known.extent
         if extent is None:
             shape = known.size or size
@@ -408,7 +413,7 @@ class _Planning:
         size = base
         if spec.size is not None:
             try:
-                names = self._names(prefix, spec)
+                names = Names(self, prefix, spec)
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
@@ -426,9 +431,6 @@ class _Planning:
             return self.size_of(prefix)
         assert self.terrain.size is not None
         return self.request.frame_size if path == "view" else self.terrain.size
-
-    def _names(self, prefix: str, spec: PassSpec) -> Names:
-        return Names(self, prefix, spec)
 
 
 class Names:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from playground.errors import SketchError, nearest
+from playground.sketch.expressions import is_accepted, nearest_accepted
 from playground.sketch.follows import Rule
 from playground.sketch.model import Graph, Kernel, PassSpec, Value
 
@@ -75,6 +76,14 @@ class Flat:
     def leaves(self) -> list[Leaf]:
         """Every leaf, those inside loops included."""
         return leaves_of(self.nodes)
+
+    def accepted(self, size: tuple[int, int]) -> tuple[int, int]:
+        """Return the size of terrain, or the next larger one, that every kernel of the terrain takes."""
+        for leaf in self.leaves:
+            accepts = leaf.kernel.accepts if leaf.spec.size is None else ""
+            if accepts and leaf.path.partition(".")[0] != "view" and not is_accepted(accepts, size):
+                size = nearest_accepted(accepts, size)[-1]
+        return size
 
     def user(self, path: str) -> PassSpec:
         """Return the sketch's own pass that a pass at any level belongs to."""
