@@ -16,7 +16,7 @@ from playground.engine.check import find_files
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.images.files import write_values
-from playground.live.drops import opened_from, take_dropped
+from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL
 from playground.sketch import unpack
 from playground.sketch.load import load
@@ -171,12 +171,13 @@ def test_a_window_opens_a_copy_beside_it_and_keeps_what_is_edited(folder: Path, 
 def test_a_zip_dropped_on_the_window_opens(folder: Path, tmp_path: Path) -> None:
     said: list[str] = []
     opened: list[Path] = []
-    actions = SimpleNamespace(say=said.append, open=opened.append)
+    commands = SimpleNamespace(notices=SimpleNamespace(say=said.append), open=opened.append)
+    drops = Drops(commands)  # type: ignore[arg-type]
     path = pack(load(folder), tmp_path / "lesson.zip")
-    take_dropped(actions, [path])  # type: ignore[arg-type]
+    drops.take([path])
     assert opened == [tmp_path / "hills-2/sketch.toml"] and "edits go there" in said[0]
     path.write_bytes(b"no zip")
-    take_dropped(actions, [path])  # type: ignore[arg-type]
+    drops.take([path])
     assert len(opened) == 1 and "is no zip that can be read" in said[1]
 
 
