@@ -192,8 +192,11 @@ class TomlPlaces:
             elif closing == "}":
                 self._pair(place, depth + 1)
             else:
+                begins = self._at
                 self.lines.setdefault((*place, index), self._now.line)
                 self._value((*place, index), depth + 1)
+                if self._at == begins:  # a bracket of the other kind, which no value begins with
+                    raise _End
         self._step()
         return self._behind()
 

@@ -97,7 +97,24 @@ def test_a_place_without_a_line_has_that_of_what_is_around_it():
 
 @pytest.mark.parametrize(
     "text",
-    ["", "\n\n", "[", "[[", "[[pass]", "a", "a =", "a = [", "a = {", "= 1", 'a = "', "[]", "a.=1", "]", "}"],
+    [
+        "",
+        "\n\n",
+        "[",
+        "[[",
+        "[[pass]",
+        "a",
+        "a =",
+        "a = [",
+        "a = {",
+        "= 1",
+        'a = "',
+        "[]",
+        "a.=1",
+        "]",
+        "}",
+        "a = [}",
+    ],
 )
 def test_what_is_not_toml_gives_what_there_is(text):
     places = TomlPlaces("first = 1\n" + text)
