@@ -137,7 +137,6 @@ class Execution:
         with self.timed(loop.path, key) if state.turn < loop.repeat else nullcontext():
             self._loop(loop, state, {}, {})
         self.cache.grew(key)
-        self.cache.grew(key)
 
     def _loop(
         self, loop: LoopStep, state: Cached, around: Mapping[Fed, Wired], owned: dict[str, Result]

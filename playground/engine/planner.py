@@ -102,16 +102,22 @@ class Planner:
         found = planning(known.refusals, known).renewed() if known else None
         if found is None:
             self.made_whole += 1
+            refused: dict[str, str] = {}
+            named: set[str] = set()  # what the sizes of refused variants name
+            by_time = False
             attempt = planning(())
-            refusals = attempt.refusals()
-            if refusals:
-                plain = planning(refusals).whole()
-                named, by_time = plain.named | attempt.named, plain.by_time or attempt.by_time
-                found = replace(plain, named=named, by_time=by_time, refusals=refusals)
-                lacking = (*found.plan.lacking, *refusals.values())
-                found = replace(found, plan=replace(found.plan, lacking=lacking))
-            else:
-                found = attempt.whole()
+            while more := {path: why for path, why in attempt.refusals().items() if path not in refused}:
+                refused |= more
+                copied = attempt.flat.shape.copied
+                named |= {copied.get(path, path) for path in attempt.named}
+                by_time |= attempt.by_time
+                attempt = planning(refused)
+            found = attempt.whole()
+            if refused:
+                known_names = found.named | (named & found.plan.flat.values.keys())
+                plan = replace(found.plan, lacking=(*found.plan.lacking, *refused.values()))
+                by_time |= found.by_time
+                found = replace(found, plan=plan, named=known_names, by_time=by_time, refusals=refused)
         self._plans[place] = found
         while len(self._plans) > _MOST_PLANS:
             self._plans.popitem(last=False)

@@ -30,7 +30,7 @@ from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
 from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
-from playground.live.keys import pressed_sign
+from playground.live.keys import ctrl_held, pressed_sign
 from playground.live.status import VARIABLE
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
@@ -263,7 +263,7 @@ class Fly:
             fresh = {n for n, b in enumerate(held) if b and not (self._buttons[n : n + 1] or (0,))[0]}
             self._buttons = held
             pressed |= {name for number, name in _PAD.items() if number in fresh}
-        ctrl = imgui.get_io().key_ctrl or imgui.get_io().key_super
+        ctrl = ctrl_held()
         if self.paused and "quit" in pressed and ctrl:
             self.window.ask_to_close()
         if ctrl:

@@ -101,14 +101,19 @@ def _step(bench: Bench) -> None:
     bench.problems.step(-1 if io.key_shift or imgui.is_key_released(imgui.Key.mod_shift) else 1)
 
 
+def ctrl_held() -> bool:
+    """Say whether Ctrl is down; in a slow frame it may be up again together with the key it was held for."""
+    io = imgui.get_io()
+    return bool(io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl))
+
+
 def act_on_keys(bench: Bench) -> None:
     """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu.
 
     Two belong to neither: Esc, unless it leaves the field itself, and what quits.
     """
     io = imgui.get_io()
-    # In a slow frame Ctrl may come up again together with the key that it was held for.
-    ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
+    ctrl = ctrl_held()
     shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
     if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
         bench.window.quit()

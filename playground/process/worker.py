@@ -238,23 +238,25 @@ class Worker(Closing):
         requests, answers = self._process.stdin, self._process.stdout
         assert requests is not None and answers is not None
         # Its pipes are closed here, where they are used: closing waits for whoever reads.
-        with contextlib.suppress(OSError), answers:
-            try:
-                frames.write(requests, pickle.dumps(setup))
-                ready = _receive(answers)
-                assert isinstance(ready, Ready)
-                self._clock.clear()
-                self._ready = ready
-                self._started.set()
-                self._serve(requests, answers)
-            except frames.NotAFrame as error:
-                self._not_a_frame = str(error)
-            except (OSError, EOFError):
-                pass
-            with contextlib.suppress(OSError):
-                requests.close()
-        self._answers.put(None)
-        self._started.set()
+        try:
+            with contextlib.suppress(OSError), answers:
+                try:
+                    frames.write(requests, pickle.dumps(setup))
+                    ready = _receive(answers)
+                    assert isinstance(ready, Ready)
+                    self._clock.clear()
+                    self._ready = ready
+                    self._started.set()
+                    self._serve(requests, answers)
+                except frames.NotAFrame as error:
+                    self._not_a_frame = str(error)
+                except (OSError, EOFError):
+                    pass
+                with contextlib.suppress(OSError):
+                    requests.close()
+        finally:  # whoever waits is told, whatever went wrong here
+            self._answers.put(None)
+            self._started.set()
 
     def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
         encoder = Encoder()

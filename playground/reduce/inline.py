@@ -138,7 +138,9 @@ def _lines(source: SourceText) -> list[str]:
             if not line.chain:
                 found.append(line.pragma)
         elif line.code.strip():
-            note = note_at(source.lines, index).text if line.code.lstrip().startswith("uniform") else ""
+            note = (
+                note_at(source.lines, index).text.strip() if line.code.lstrip().startswith("uniform") else ""
+            )
             found.append(f"{line.code}  //! {note}" if note else line.code)
     return found
 

@@ -133,9 +133,10 @@ def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(told, hill, 
     trust(hill.path)
     for sides, fast in (((17, 16), True), ((17, 17), False), ((17, 18), False), ((17, 8), True)):
         sketch = hill.sketch(BODY, size=f"size = {list(sides)}")
-        found = engine.read(sketch, "h")
-        np.testing.assert_allclose(found, np.broadcast_to(np.arange(17), sides[::-1]), atol=1e-5)
-        assert ran_fast(engine) is fast
+        for scale in (1.0, 3.0):  # the second plan is the first with another value
+            found = engine.read(sketch.with_values({"h.scale": scale}), "h")
+            np.testing.assert_allclose(found, scale * np.broadcast_to(np.arange(17), sides[::-1]), atol=3e-5)
+            assert ran_fast(engine) is fast
     file = "hill.comp" if kind == "compute" else "part.glsl"
     assert sentences == [
         f"h: {file} takes {accepts} texels a side, not 17 x {height}; the plain form runs"

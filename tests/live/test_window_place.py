@@ -20,13 +20,13 @@ RUN = """
 import sys
 from pathlib import Path
 from playground.live import app
-turn = app.Live._turn
+draw_frame = app.Live._draw_frame
 def opened(live):
-    turn(live)
+    draw_frame(live)
     other = Path(sys.argv[2])
     if other.is_file() and live.session.path != other:
         live.bench.commands.open(other)
-app.Live._turn = opened
+app.Live._draw_frame = opened
 sys.exit(app.run(sys.argv[1], time_limit=300))
 """
 SKETCH = """format = 1

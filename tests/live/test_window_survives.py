@@ -43,7 +43,7 @@ if os.environ.get("BROKEN"):
         imgui.begin_group()
         imgui.tree_node_ex("###")
         raise IndexError("no such row")
-    errors_list._headline = broken
+    errors_list.ErrorsList._headline = broken
 sys.exit(run(sys.argv[1], size=(900, 600), time_limit=300))
 """
 LAND = """// land.glsl -- hills
