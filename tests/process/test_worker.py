@@ -59,7 +59,7 @@ def test_errors_of_our_family_cross_whole_and_others_as_text(worker: Worker):
 
 
 def test_a_request_that_cannot_be_sent_is_an_error_and_the_next_is_answered(worker: Worker):
-    with pytest.raises(Exception, match="pickle"):
+    with pytest.raises(Exception, match="local object"):
         worker.ask(("echo", lambda: None), LONG)
     assert worker.ask(("echo", 5), LONG) == 5
 
