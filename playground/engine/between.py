@@ -3,7 +3,7 @@
 A kernel with a ``stride`` sets, iteration by iteration, the nodes of an ever closer lattice; all else is
 still 0, and would stand around its nodes like a plain around nails. Its header says how the
 nodes are joined (``between``). Only pictures are filled so: values that are read stay as they
-are, and a run that goes on goes on from those. ``fill`` does it.
+are, and a run that goes on goes on from those. ``fill_between`` does it.
 """
 
 from __future__ import annotations

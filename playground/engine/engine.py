@@ -1,6 +1,6 @@
 """Run a sketch on a context, and only what is stale.
 
-A pass runs again when its key changes (see ``keys``): so moving the sun lights the terrain
+A pass runs again when its key changes (see ``cache_keys``): so moving the sun lights the terrain
 anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
 them; here is what a program calls.
 """
@@ -363,7 +363,7 @@ class Engine(Recorded):
         return would_run(keys, self.cache, nodes, plan)
 
     def keys_of(self, plan: Plan) -> Keys:
-        """Return what each pass's textures depend on: see ``keys``."""
+        """Return what each pass's textures depend on: see ``cache_keys``."""
         with self._supposing(plan):
             return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key, continued(plan))
 

@@ -1,6 +1,6 @@
 """Return in one hash what a picture is drawn from, the same on every machine and in every year.
 
-It is a pass's key (see ``keys``) with two things smoothed out. A text counts by its tokens, as
+It is a pass's key (see ``cache_keys``) with two things smoothed out. A text counts by its tokens, as
 the compiler takes it, so that comments, line ends and spaces say nothing. What the engine works
 out in floating point, the camera's matrices above all, counts to nine digits, since the last
 ones differ between mathematical libraries.
