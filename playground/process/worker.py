@@ -85,7 +85,8 @@ class Worker(Closing):
         self._started = threading.Event()  # it is ready, or dead
         self._sent = self._cancelled = False
         self._cancelling = threading.Lock()
-        self._requests: queue.Queue[object | None] = queue.Queue()  # None: no more
+        self._requests: queue.Queue[bytes | None] = queue.Queue()  # None: no more
+        self._encoder = Encoder()
         self._answers: queue.Queue[Answer | None] = queue.Queue()  # None: it is dead
         self._output = _Output()
         life, self._life = os.pipe() if launch.ends_with_parent and sys.platform == "linux" else (-1, -1)
@@ -148,7 +149,11 @@ class Worker(Closing):
         """Send a request; never waits."""
         self.busy, self.progress = True, None
         self._sent = self._cancelled = False
-        self._requests.put(request)
+        try:
+            # Here, not in the thread that sends: whoever submits may change what it holds meanwhile.
+            self._requests.put(self._encoder.encode(request))
+        except Exception as error:  # it cannot be pickled
+            self._answers.put(Answer(error=error))
 
     def cancel(self) -> None:
         """Have the handler stop at its next report; never waits."""
@@ -259,15 +264,9 @@ class Worker(Closing):
             self._started.set()
 
     def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
-        encoder = Encoder()
         while (request := self._requests.get()) is not None:
-            try:
-                data = encoder.encode(request)
-            except Exception as error:  # it cannot be pickled
-                self._answers.put(Answer(error=error))
-                continue
             self._clock.begin(None)
-            frames.write(requests, data)
+            frames.write(requests, request)
             self._sent = True
             if self._cancelled:
                 self._send_cancel()

@@ -70,6 +70,7 @@ class Browser:
     def click(self, selector: str) -> None:
         """Click on an element as a hand would: it has to be there and uncovered."""
         found = self._ask("POST", "/element", {"using": "css selector", "value": selector})
+        self.run("arguments[0].scrollIntoView({ block: 'center', behavior: 'instant' })", found)
         self._ask("POST", f"/element/{found[ELEMENT]}/click", {})
 
     def press(self, *keys: str) -> None:
