@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import pickle
 import textwrap
 from pathlib import Path
@@ -158,6 +159,12 @@ def test_a_pass_that_does_not_repeat_is_refused_with_those_that_do(engine, sketc
             list(engine.steps(sketch, path))
     with pytest.raises(playground.SketchError, match=r"did you mean 'height\.raw'"):
         engine.render(sketch, steps={"height.rwa": 1})
+
+
+@pytest.mark.parametrize("function", [playground.headless, playground.render, playground.parameters])
+def test_a_docstring_names_every_parameter(function):
+    documentation = inspect.getdoc(function)
+    assert not [name for name in inspect.signature(function).parameters if f"``{name}``" not in documentation]
 
 
 def test_the_package_s_own_example_runs(tmp_path, monkeypatch):

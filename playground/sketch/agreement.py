@@ -46,7 +46,7 @@ def read_agreement(text: str) -> tuple[Bound, ...]:
             raise ValueError(f"'{part}' states no bound; expected {EXAMPLE}")
         for name in [n.strip() for n in (match["names"] or "").split(",")]:
             if name in [bound.output for bound in found]:
-                raise ValueError(f"'{part}': {name or 'all other outputs'} stands twice")
+                raise ValueError(f"'{part}': {name or 'all other outputs'} appears twice")
             most = float(match["most"] or 0.0)
             found.append(Bound(name, most, bool(match["degrees"]), bool(match["rms"])))
     return tuple(found)

@@ -90,7 +90,7 @@ def calls(note: Note, words: Collection[str], bare: Collection[str]) -> tuple[di
             position = match.end()
             continue
         if word in found:
-            raise note.error(f"'{word}' stands twice", word, start)
+            raise note.error(f"'{word}' appears twice", word, start)
         end = _closing(note.text, match.end())
         if end < 0:
             raise note.error(f"'{word}(' is not closed", word, start)

@@ -314,7 +314,7 @@ def _outputs(text: str, line: Line) -> tuple[Output, ...]:
         if form not in FORMATS:
             raise line.error(f"output '{name}' has no format '{form}'{nearest(form, FORMATS)}")
         if name in [o.name for o in found]:
-            raise line.error(f"output '{name}' stands twice")
+            raise line.error(f"output '{name}' appears twice")
         check_name(name, line, "output")
         found.append(Output(name, form))
     if len(found) > 8:

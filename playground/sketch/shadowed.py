@@ -11,7 +11,7 @@ from pathlib import Path
 from playground.errors import Diagnostic
 from playground.paths import GLSL, shown
 from playground.sketch.assign import apply, effective_values, resolve
-from playground.sketch.model import Graph, Parameter, Sketch, Value, kernels_of
+from playground.sketch.model import Graph, Parameter, Sketch, Value
 from playground.sketch.values import write
 
 PANEL = "the panel"
@@ -50,7 +50,7 @@ def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
     by, values = _setters(sketch.graph, ""), effective_values(sketch.graph)
     by_hand = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
     found = []
-    for path, parameter in _parameters(sketch).items():
+    for path, parameter in sketch.graph.leaf_parameters.items():
         own = not Path(parameter.file).is_relative_to(GLSL)
         if own and path in by and path not in by_hand and values[path] != parameter.default:
             found.append(Shadowed(path, parameter, values[path], by[path]))
@@ -62,10 +62,10 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
 
     ``now`` is the sketch after the edit, with what is set by the user in it.
     """
-    was = {path: parameter.default for path, parameter in _parameters(before).items()}
+    was = {path: parameter.default for path, parameter in before.graph.leaf_parameters.items()}
     changed = {
         path: parameter
-        for path, parameter in _parameters(now).items()
+        for path, parameter in now.graph.leaf_parameters.items()
         if path in was and was[path] != parameter.default
     }
     if not changed:
@@ -80,14 +80,6 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
         for path, parameter in changed.items()
         if path in by and values[path] != parameter.default
     ]
-
-
-def _parameters(sketch: Sketch) -> dict[str, Parameter]:
-    return {
-        f"{path}.{parameter.name}": parameter
-        for path, kernel in kernels_of(sketch.graph)
-        for parameter in kernel.parameters
-    }
 
 
 def _setters(graph: Graph, prefix: str) -> dict[str, str]:

@@ -154,24 +154,24 @@ def read_text(path: Path) -> str:
         if state.st_size > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
         data = path.read_bytes()
-        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        return normalised(data.decode())
     except FileNotFoundError:
         raise SketchError("there is no such file", file=shown(path)) from None
     except IsADirectoryError:
         raise SketchError("this is a folder; a file was expected", file=shown(path)) from None
     except UnicodeDecodeError as error:
-        line, column = _place_in(data, data.find(error.object) + error.start)
+        before = normalised(data[: error.start].decode()).split("\n")
         message = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-        raise SketchError(message, file=shown(path), line=line, column=column) from None
+        file, line, column = shown(path), len(before), len(before[-1]) + 1
+        raise SketchError(message, file=file, line=line, column=column) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SketchError(f"cannot be read: {reason}", file=shown(path)) from None
 
 
-def _place_in(data: bytes, position: int) -> tuple[int, int]:
-    """Return the line and the column, from 1, of a byte after text that is UTF-8."""
-    lines = data[:position].decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return len(lines), len(lines[-1]) + 1
+def normalised(text: str) -> str:
+    """Return a text whose lines end in LF, without a byte order mark."""
+    return text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
 
 
 class _Reader:

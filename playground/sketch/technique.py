@@ -199,6 +199,11 @@ class Graph:
         return tuple(found)
 
     @cached_property
+    def leaf_parameters(self) -> dict[str, Parameter]:
+        """Every parameter of every kernel inside, by its path."""
+        return {f"{path}.{p.name}": p for path, kernel in self.kernels for p in kernel.parameters}
+
+    @cached_property
     def _passes_by_name(self) -> dict[str, PassSpec]:
         return {spec.name: spec for spec in reversed(self.passes)}
 

@@ -156,7 +156,7 @@ class Techniques:
         self.deepest = max(self.deepest, len(self.open))
         try:
             graph = read_graph(TomlFile(path, root), name, self.read)
-            refuse_monster(graph)
+            check_kernel_count(graph)
         finally:
             self.open.pop()
         return graph
@@ -201,7 +201,7 @@ class WithLibrary(Techniques):
         return super().read(use, folder, root) if own else self._library.read(use, folder, root)
 
 
-def refuse_monster(graph: Graph) -> None:
+def check_kernel_count(graph: Graph) -> None:
     """Raise ``SketchError`` for more kernels than any terrain needs: a few lines can nest millions."""
     count = _count(graph, {})
     if count > _MAX_KERNELS:

@@ -190,13 +190,13 @@ MISTAKES = [
     (TWO + keyframe("time = 1", GAIN), 17, "time = 1: the one before is at 2 s, on line 13"),
     (keyframe("time = 1", "[keyframe.set]", "'light.gian' = 2"), 16, "did you mean 'light.gain'?"),
     (keyframe("time = 1", "[keyframe.set]", "light.gain = 900"), 16, "900 is outside its range"),
-    (keyframe("time = 1", "set = { size = 65 }"), 15, "'size' is the land's"),
+    (keyframe("time = 1", "set = { size = 65 }"), 15, "'size' is the terrain's"),
     (keyframe("time = 1", GAIN.strip(), "ease = 'soft'"), 16, "expected smooth, linear, hold"),
     (keyframe("time = 1", "camera = { elevation = 95 }"), 15, "elevation = 95: expected -89 to 89"),
     (
         keyframe("time = 1", "camera = { distance = 0 }") + keyframe("time = 2", "camera = { distance = 5 }"),
         15,
-        "distance = 0 shows the whole land",
+        "distance = 0 shows the whole terrain",
     ),
     ("[keyframe]\ntime = 1", 13, "[keyframe]: expected [[keyframe]]"),
 ]

@@ -428,6 +428,33 @@ def test_every_mistake_has_its_line(folder, parts, words, line):
     folder.refused(words, line, **parts)
 
 
+@each(
+    ("parts", "words", "line"),
+    [
+        ({"body": P + '[pass.inputs]\nx = "a"\n"b.c" = 3\n'}, "b.c = 3: expected text", 7),
+        ({"body": P + '[pass.inputs]\nx."c.d" = 3\n'}, "x.c.d = 3: expected text", 6),
+        ({"body": P + '[pass.inputs]\n\n"b.c" = "x"\n'}, "no input 'b.c'", 7),
+        ({"body": P + 'repeat = 2\n[pass.feedback]\n"b.c" = "x"\n'}, "no input 'b.c'", 7),
+        ({"body": P + '[pass.set]\n\na."b.c" = 3\n'}, "no parameter 'a.b.c'", 7),
+        ({"tail": TAIL + '[[shot]]\nname = "a"\n[shot.steps]\n\n"b.c" = 1\n'}, "no repeated pass 'b.c'", 11),
+        ({"tail": TAIL + '[[shot]]\nname = "a"\n[shot.steps]\n\n"b.c" = -1\n'}, "0 or more", 11),
+        (
+            {"tail": TAIL + '[[keyframe]]\ntime = 1\n[keyframe.set]\n\n"size" = 1\n'},
+            "'size' is the terrain's",
+            11,
+        ),
+    ],
+)
+def test_a_key_in_quotes_that_holds_a_dot_has_its_own_line(folder, parts, words, line):
+    folder.refused(words, line, **parts)
+
+
+@each(("key", "line"), [("parameters", 6), ("inputs", 6), ("outputs", 6)])
+def test_a_name_in_quotes_that_a_technique_may_not_export_has_its_own_line(folder, key, line):
+    folder.write("t.toml", f"[[pass]]\nname = 'a'\nuse = './land'\n[{key}]\n\n'x.y' = 'a.rise'\n")
+    folder.refused("expected a name of letters", line, file="t.toml", body=PASS.replace("land", "t"))
+
+
 def test_a_mistake_in_toml_itself_shows_the_line(folder):
     error = folder.refused("not TOML", 3, head="format = 1\ntitle = 'x'\nsize = 3 4\n")
     assert "size = 3 4" in str(error) and error.diagnostics[0].column == 10

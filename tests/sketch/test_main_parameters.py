@@ -28,7 +28,7 @@ def test_a_sketch_lists_its_main_parameters(folder):
     [
         ('["height.rize"]', "did you mean 'height.rise'"),
         ('["relief"]', "no parameter 'relief'"),
-        ('["height.rise", "height.rise"]', "'height.rise' stands twice"),
+        ('["height.rise", "height.rise"]', "'height.rise' appears twice"),
         ('"height.rise"', "expected a list"),
         ("[1]", "expected paths of parameters"),
     ],

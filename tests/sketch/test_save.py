@@ -244,6 +244,25 @@ def test_a_file_from_elsewhere_is_copied_beside_the_sketch(folder: Path, tmp_pat
     assert (folder / "else where.png").read_bytes() == image.read_bytes()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="files have no limit there")
+def test_a_file_from_elsewhere_that_cannot_be_copied_whole_is_not_there_at_all(
+    folder: Path, tmp_path: Path
+) -> None:
+    import resource
+
+    image = tmp_path / "large.png"
+    image.write_bytes(bytes(2**20))
+    sketch = load(folder)
+    before, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2**19, hard))  # as a disk that is full halfway
+    try:
+        with pytest.raises(DataError, match="cannot be copied beside the sketch"):
+            save(sketch, sketch.with_values({"height.image": str(image)}))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (before, hard))
+    assert sorted(path.name for path in folder.iterdir()) == ["bare.glsl", "land.glsl", "sketch.toml"]
+
+
 def test_presets_are_saved_and_saved_over(folder: Path) -> None:
     save_preset(load(folder), "by night", {"height.level": 1.0, "height.kind": 1})
     text = (folder / "sketch.toml").read_text(encoding="utf-8")

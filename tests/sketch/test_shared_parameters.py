@@ -109,7 +109,7 @@ def test_one_that_differs_stands_in_the_kernel_and_the_rest_is_included(folder: 
         ("\nuniform float a = 1.0;  //! slidr(0, 1)\n", 2, "no widget 'slidr'"),
         ("\nuniform float a = 1.0;  //! slider(1, 0)\n", 2, "slider of 'a'"),
         ('uniform float a;  //! slider(0, 1)\n  //! unit("m")\n//! grup("Sun") Words\n', 3, "'group'"),
-        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' stands twice"),
+        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' appears twice"),
         ("uniform float a;  //! step(1)\n//! slider(0,\n", 2, "'slider(' is not closed"),
     ],
 )
