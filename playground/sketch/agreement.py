@@ -6,7 +6,7 @@ by. Bounds of single outputs are parted by semicolons, and may count otherwise:
     "sky: 0.012 rms; ahead, behind: 0.9 degrees rms; exact"
 
 ``rms`` bounds the root of the mean square of the differences, ``degrees`` compares tangents as
-angles. What stands without a name is for all outputs that have no bound of their own.
+angles. A bound without a name is for all outputs that have none of their own.
 """
 
 from __future__ import annotations

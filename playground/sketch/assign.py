@@ -1,6 +1,6 @@
 """Find parameters by path and set them.
 
-A path is ``pass[.inner…].parameter``. A name that a technique exports stands for its
+A path is ``pass[.inner…].parameter``. A name that a technique exports means its
 targets inside; every inner parameter can be reached as well.
 """
 
@@ -50,7 +50,7 @@ class Settable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A leaf parameter that a path stands for."""
+    """A leaf parameter that a path resolves to."""
 
     path: str  # "height.detail.frequency"
     parameter: Parameter
@@ -66,7 +66,7 @@ class Shown:
 
 
 def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
-    """Return the leaf parameters that a path stands for, at least one.
+    """Resolve a path to leaf parameters, at least one.
 
     Raises ``ParameterError`` that names the nearest path.
     """
@@ -77,7 +77,7 @@ def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
 
 
 def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
-    """Return the leaf parameters that a path stands for; none where there is no such parameter."""
+    """Resolve a path to leaf parameters; none where there is no such parameter."""
     if isinstance(technique, Kernel):
         parameter = technique.parameter(path)
         return (Target(path, parameter),) if parameter else ()
@@ -104,7 +104,7 @@ def all_paths(technique: Technique) -> list[str]:
 def shown_parameters(sketch: Settable) -> Iterator[Shown]:
     """Yield every parameter of a sketch, pass by pass, exported ones before inner ones.
 
-    An inner parameter that an export stands for is not yielded a second time.
+    An inner parameter that is exported is not yielded a second time.
     """
     for spec in sketch.graph.passes:
         technique = spec.technique

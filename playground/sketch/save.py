@@ -290,7 +290,9 @@ def _copied_into(folder: Path, source: Path) -> str:
             partial.handle.write(data)
             partial.rename(target)
     except OSError as error:
-        raise DataError(f"cannot be copied beside the sketch: {error.strerror}", file=source) from None
+        raise DataError(
+            f"cannot be copied into the folder of the sketch: {error.strerror}", file=source
+        ) from None
     return target.name
 
 
@@ -308,7 +310,7 @@ def _new_folder(folder: Path, name: str) -> Path:
 
 
 def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
-    """Return the files in the sketch's own folder that it needs, as seen from there; its TOML apart."""
+    """Return the files that a sketch needs in its own folder, relative to it, without its TOML."""
     folder, found = Path(file.folder), dict[str, None]()
     texts = [Path(name) for name in (*file.files, *wanted.files)]
     values = [v for v in values_of(wanted).values() if isinstance(v, str) and v]

@@ -150,9 +150,9 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
     if now.ease != was.ease:
         text = put(text, place, "ease", text_of(now.ease))
     cameras, values = dict(was.camera), dict(was.values)
-    for name, seen in now.camera:
-        if name not in cameras or cameras[name] != seen:
-            text = put(text, (*place, "camera"), name, written_number(seen))
+    for name, number in now.camera:
+        if name not in cameras or cameras[name] != number:
+            text = put(text, (*place, "camera"), name, written_number(number))
     for name, value in now.values:
         if name not in values or values[name] != value:
             table = (*place, "set")

@@ -1,6 +1,6 @@
-"""Find defaults that have no effect because something sets the parameter: a sketch, a technique, a hand.
+"""Find defaults that have no effect because a sketch, a technique or the user sets the parameter.
 
-A person who edits a kernel's default looks at the picture, and sees nothing change.
+Someone who edits such a default in a kernel sees nothing change.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from playground.sketch.model import Graph, Parameter, Sketch, Value
 from playground.sketch.values import write
 
 PANEL = "the panel"
-"""What sets a value that no file does, as a person at the window meets it."""
+"""The name in messages of what sets a value that no file sets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +45,14 @@ class Shadowed:
 def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
     """Return the defaults in the sketch's own kernels that its own files set over.
 
-    Techniques that ship are there to be set, and what is set by the user is known to who set it.
+    Techniques that ship are there to be set, and users know what they set.
     """
     by, values = _setters(sketch.graph, ""), effective_values(sketch.graph)
-    by_hand = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
+    by_user = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
     found = []
     for path, parameter in sketch.graph.leaf_parameters.items():
         own = not Path(parameter.file).is_relative_to(GLSL)
-        if own and path in by and path not in by_hand and values[path] != parameter.default:
+        if own and path in by and path not in by_user and values[path] != parameter.default:
             found.append(Shadowed(path, parameter, values[path], by[path]))
     return found
 

@@ -23,7 +23,7 @@ TECHNIQUE_KEYS = ("parameters", "inputs", "outputs")
 """What a technique's TOML may hold and a sketch's may not."""
 
 Read = Callable[[str, Path, Path], Technique]
-"""Returns the technique that ``use`` names, seen from a folder inside a root."""
+"""Returns the technique that ``use`` names, from a folder inside a root."""
 
 _PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
 
@@ -194,7 +194,7 @@ def _expression(file: TomlFile, given: int | str, *place: str | int) -> str:
 
 
 def _axis(expression: str, axis: str) -> str:
-    """Let ``size = "size"`` or ``"height.size // 2"`` stand for both axes."""
+    """Return the expression of one axis: ``size``, as in ``"height.size // 2"``, is for both."""
     return re.sub(r"\bsize\b(?!\s*\.)", f"size.{axis}", expression)
 
 
