@@ -1,7 +1,7 @@
 """The command line as a user meets it: what it prints where, its exit status, its sentences.
 
-Where the process itself is what is asked about (its modules, signals, pipes and driver) one is
-started; everything else is called here, which says the same and is faster.
+Where the process itself is tested (its modules, signals, pipes and driver) one is started;
+everything else is called here, which is faster.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import tifffile
 
 import playground
 from playground import cli
-from playground.engine import sandbox as trial
+from playground.engine import sandbox
 from playground.engine.check import find_files
 from playground.errors import DataError
 from playground.gpu.doctor import where_to_show
@@ -55,7 +55,7 @@ void main() {
     imageStore(picture, texel, vec4((vec2(texel) + 0.5) / u_resolution, u_time / 4.0, 1.0));
 }
 """
-SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as it is told.
+SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as its parameter.
 #pragma kernel(output = "height:r32f")
 uniform float rise = 1.0;  //! slider(0, 4) unit("m") How high the eastern edge is
 float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
@@ -82,7 +82,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     # On a busy machine a draw that ends may take longer than a user is made to wait.
-    monkeypatch.setattr(trial, "Sandbox", partial(trial.Sandbox, limit_seconds=120.0))
+    monkeypatch.setattr(sandbox, "Sandbox", partial(sandbox.Sandbox, limit_seconds=120.0))
 
     def called(*arguments: str, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
         monkeypatch.chdir(cwd)
@@ -133,11 +133,11 @@ def test_what_only_tells_loads_no_opengl():
         "    loaded = [n for n in ('moderngl', 'glfw', 'PIL') if n in sys.modules]\n"
         "    print(words, status, loaded, file=sys.stderr)\n"
     )
-    told = ["--version", "--help", "render --help", "list --json"]
+    commands = ["--version", "--help", "render --help", "list --json"]
     done = subprocess.run(
-        [sys.executable, "-c", code, *told], cwd=ROOT, capture_output=True, text=True, timeout=180
+        [sys.executable, "-c", code, *commands], cwd=ROOT, capture_output=True, text=True, timeout=180
     )
-    assert done.stderr.splitlines() == [f"{words} 0 []" for words in told]
+    assert done.stderr.splitlines() == [f"{words} 0 []" for words in commands]
 
 
 # ── help ─────────────────────────────────────────────────────────────────────
@@ -192,7 +192,7 @@ def test_completion_offers_the_shipped_sketches(start: Run):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "sentence"),
     [
         (["render", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
         (["render", "no/such.toml"], "there is no file and no shipped sketch 'no/such.toml'"),
@@ -244,7 +244,7 @@ def test_completion_offers_the_shipped_sketches(start: Run):
 )  # fmt: skip
 def test_a_mistake_is_one_sentence_and_status_2(
     arguments: list[str],
-    said: str,
+    sentence: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -255,7 +255,7 @@ def test_a_mistake_is_one_sentence_and_status_2(
     assert cli.main(arguments) == 2
     out, error = capsys.readouterr()
     assert out == ""
-    assert error.startswith("error: ") and said in error
+    assert error.startswith("error: ") and sentence in error
     assert len(error.splitlines()) == 1
     assert sorted(p.name for p in tmp_path.iterdir()) == ["empty", "note.txt"]
 
@@ -280,8 +280,8 @@ def test_live_without_a_display_says_what_to_do(start: Run):
     assert re.fullmatch(r"error: There is no screen to open a window on\. .*\n", done.stderr)
 
 
-def _hear_control_c() -> None:
-    """A job that a shell began in the background is deaf to it, and so are its children."""
+def _receive_interrupts() -> None:
+    """Receive SIGINT, which a background job of a shell and its children ignore."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -289,7 +289,7 @@ def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "playground", "check", str(GLSL)],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_hear_control_c,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_receive_interrupts,
     )  # fmt: skip
     assert process.stdout is not None
     process.stdout.readline()  # the first file is checked: it is in the middle of its work
@@ -328,11 +328,11 @@ def test_colour_is_for_terminals_that_want_it(no_colour: bool):
         env=environ | ({"NO_COLOR": "1"} if no_colour else {}), stdout=child, stderr=child, timeout=180,
     )  # fmt: skip
     os.close(child)
-    said = os.read(parent, 4096).decode()
+    text = os.read(parent, 4096).decode()
     os.close(parent)
     assert done.returncode == 2
-    assert ("\033[" in said) is not no_colour
-    assert re.sub(r"\033\[[\d;]*m", "", said).startswith("error: no command 'rendre'")
+    assert ("\033[" in text) is not no_colour
+    assert re.sub(r"\033\[[\d;]*m", "", text).startswith("error: no command 'rendre'")
 
 
 def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[str]):
@@ -345,9 +345,7 @@ def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[
 # ── render ───────────────────────────────────────────────────────────────────
 
 
-def test_no_arguments_and_no_display_renders_the_default_sketch_beside_what_is_there(
-    start: Run, tmp_path: Path
-):
+def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_name(start: Run, tmp_path: Path):
     taken = tmp_path / f"{DEFAULT_SKETCH}.png"
     taken.write_text("mine")
     done = well(start())
@@ -499,11 +497,11 @@ def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Pa
     assert all(set(e) == {"file", "line", "column", "message"} for r in reports.values() for e in r["errors"])
     assert all(r["errors"] or r["ok"] for r in reports.values())
 
-    told = run("check", "slope/slope.glsl", "slope/broken.glsl")
-    assert told.returncode == 1
-    assert re.search(r"^ok +slope/slope\.glsl$", told.stdout, re.MULTILINE)
-    assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", told.stdout, re.MULTILINE)
-    assert told.stdout.endswith("2 files checked, 1 failed\n")
+    done = run("check", "slope/slope.glsl", "slope/broken.glsl")
+    assert done.returncode == 1
+    assert re.search(r"^ok +slope/slope\.glsl$", done.stdout, re.MULTILINE)
+    assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", done.stdout, re.MULTILINE)
+    assert done.stdout.endswith("2 files checked, 1 failed\n")
 
 
 def test_check_tries_both_drivers(run: Run, tmp_path: Path):
@@ -601,16 +599,16 @@ def test_doctor_tells_the_context_as_words_and_as_json(run: Run):
     assert health["display"] == ""
 
 
-def test_doctor_without_a_context_says_the_mend_and_leaves_with_1(run: Run):
+def test_doctor_without_a_context_says_what_to_do_and_leaves_with_1(run: Run):
     done = run("doctor", "--json", "--device", "99")
     assert done.returncode == 1
     health = json.loads(done.stdout)
     assert not health["ok"] and health["context"] is None
     if sys.platform.startswith("linux"):
         assert "--device 99: there is no such EGL device" in health["trouble"]
-    told = run("--device", "99", "doctor")
-    assert told.returncode == 1
-    assert told.stderr.startswith("error: ")
+    done = run("--device", "99", "doctor")
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
 
 
 @pytest.mark.parametrize(
@@ -643,7 +641,7 @@ def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run
     well(run("check", "my-land"))
     assert well(run("render", ".", "--size", "160x90", cwd=tmp_path / "my-land")).stdout == "my-land.png\n"
     picture, _ = read_png(tmp_path / "my-land/my-land.png")
-    assert picture[..., :3].std() > 15  # land, not one colour
+    assert picture[..., :3].std() > 15  # terrain, not one colour
     well(run("render", "my-land", "--texture", "height", "-o", "height.npy"))
     height = np.load(tmp_path / "height.npy")
     assert 0 <= height.min() < 0.3 and 0.6 < height.max() <= 1

@@ -1,4 +1,4 @@
-"""Standard streams of every kind: encodings that lack characters, closed ones, pipes that nobody reads."""
+"""Standard streams of every kind: encodings that lack characters, closed ones, pipes without a reader."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_a_picture_for_a_closed_standard_output_is_refused(start):
     assert done.stderr == b"error: -o - writes a PNG to standard output, which is closed; redirect it\n"
 
 
-# ── pipes that nobody reads ──────────────────────────────────────────────────
+# ── pipes without a reader ──────────────────────────────────────────────────
 
 
 def broken_pipe() -> int:
@@ -118,7 +118,7 @@ def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path, arguments: list[str]
         assert both or (done.stderr == b"") == (status == 141)
 
 
-def test_notes_that_nobody_reads_do_not_end_a_command(tmp_path: Path):
+def test_notes_without_a_reader_do_not_end_a_command(tmp_path: Path):
     (tmp_path / "a.glsl").write_text(f"// a.glsl -- beyond 1, which is clamped\n{KERNEL}", encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     gone = broken_pipe()

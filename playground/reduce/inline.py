@@ -15,7 +15,7 @@ from playground.sketch.flat import Ref, Source
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
-from playground.sketch.variants import standing
+from playground.sketch.variants import active_variant
 
 _IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
 _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
@@ -90,7 +90,7 @@ class _Inliner:
             feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
             initial = {name: first for name, first, _ in node.feedback}
         assert isinstance(step, Step)
-        variant = standing(step.kernel, ("compute",))
+        variant = active_variant(step.kernel, ("compute",))
         text = written(step.kernel)
         variant_text = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
         inputs = []

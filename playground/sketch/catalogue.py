@@ -1,7 +1,7 @@
-"""Report what there is to choose from: sketches, techniques, and the parameters of each.
+"""List sketches, techniques, and the parameters of each.
 
-Reads text only. A file that is wrong has its place here too, with what is wrong with it,
-so that one mistake does not hide the rest.
+Reads text only. A file that is wrong is listed too, with its error, so that one
+mistake does not hide the rest.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def sketches() -> list[Entry]:
 def techniques(within: str = "") -> list[Entry]:
     """List the techniques in ``glsl/``, or in one of its folders; library files are none.
 
-    The parts of a technique are listed only where its own folder is asked for.
+    The parts of a technique are listed only for its own folder.
     """
     found = []
     read = Techniques()
@@ -130,9 +130,9 @@ def techniques(within: str = "") -> list[Entry]:
 
 
 def one(name: str) -> list[Entry]:
-    """Return what a name stands for: a sketch, a technique, or all techniques of a folder of ``glsl/``.
+    """Return what a name means: a sketch, a technique, or all techniques of a folder of ``glsl/``.
 
-    A path stands for the sketch or the shader there. Raises ``SketchError`` with the nearest name.
+    A path means the sketch or the shader there. Raises ``SketchError`` with the nearest name.
     """
     if Path(name).is_file() or (Path(name) / "sketch.toml").is_file():
         sketch = load(name)
@@ -169,12 +169,12 @@ def _of_sketch(name: str, sketch: Sketch) -> Entry:
 
 
 def _of_technique(name: str, technique: Technique) -> Entry:
-    # A sketch of this one pass knows how its parameters are shown.
-    stage = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
-    values = values_of(stage)
+    # A sketch of this one pass lists its parameters.
+    alone = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
+    values = values_of(alone)
     choices = []
-    for shown in shown_parameters(stage):
-        choice = _choice(stage, shown, values)
+    for shown in shown_parameters(alone):
+        choice = _choice(alone, shown, values)
         choices.append(replace(choice, path=choice.path.removeprefix("it.")))
     return Entry(
         name,

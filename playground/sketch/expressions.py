@@ -1,9 +1,9 @@
 """Evaluate expressions safely: a sketch's sizes, repeats, visits, accepted sizes; numbers that are typed.
 
-An expression is read as Python's grammar and walked; nothing is ever handed to
+An expression is parsed by Python's grammar, and its tree is evaluated here, never by
 ``eval``. There are + - * / // % **, comparisons, ``a if b else c``, and the
 functions ``log2`` (exact), ``min``, ``max``, ``abs``, ``floor``, ``ceil``. Names may be
-dotted (``size.x``, ``height.size.y``); the caller says what they stand for. Whole
+dotted (``size.x``, ``height.size.y``); the caller gives their values. Whole
 numbers are divided exactly: ``3 * (n / 3)`` is n.
 """
 
@@ -27,11 +27,11 @@ _DEEPEST = 100
 
 
 class ExpressionError(ValueError):
-    """An expression is wrong; the caller adds where it stands."""
+    """An expression is wrong; the caller adds its place."""
 
 
 def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> int:
-    """Return the integer that ``text`` stands for.
+    """Evaluate an expression to an integer.
 
     ``names`` maps a dotted name to its number, or is a function that does so and
     raises ``KeyError``. Raises ``ExpressionError`` in a sentence.
@@ -41,12 +41,12 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     found = [(name, type(names[name]), names[name]) for name in _names(text) if name in names]
     if len(found) < len(_names(text)):
         return _evaluated(text, names.__getitem__, tuple(names))
-    return _remembered(text, tuple(found))
+    return _cached(text, tuple(found))
 
 
 @lru_cache(maxsize=4096)
-def _remembered(text: str, found: tuple[tuple[str, type, Number], ...]) -> int:
-    """Return what a text stands for: turns ask the same over and over. Types count: 1 is not 1.0 in 1 / 3."""
+def _cached(text: str, found: tuple[tuple[str, type, Number], ...]) -> int:
+    """Evaluate once for the same names: steps repeat them. Types count: 1 is not 1.0 in 1 / 3."""
     return _evaluated(text, {name: number for name, _, number in found}.__getitem__, ())
 
 
@@ -56,7 +56,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ...]) -> int:
-    value = _walk(_parse(text), text, look_up, known)
+    value = _value_of(_parse(text), text, look_up, known)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if not isinstance(value, int):
@@ -65,8 +65,8 @@ def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ..
 
 
 def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
-    """Return the number that ``text`` stands for, whole or not. Raises ``ExpressionError`` in a sentence."""
-    return float(_walk(_parse(text), text, names.__getitem__, tuple(names)))
+    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a sentence."""
+    return float(_value_of(_parse(text), text, names.__getitem__, tuple(names)))
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
@@ -89,7 +89,7 @@ def check(text: str, known: Collection[str], *, count: int = 1) -> None:
         what = "one expression" if count == 1 else f"{count} expressions parted by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
     for part in parts:
-        _walk(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
+        _value_of(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
 
 
 def names_in(text: str) -> frozenset[str]:
@@ -266,13 +266,13 @@ _FUNCTIONS: dict[str, Callable[..., Number]] = {
 }
 
 
-def _walk(
+def _value_of(
     node: ast.expr, text: str, look_up: Callable[[str], Number], known: tuple[str, ...], *, dry: bool = False
 ) -> Number:
     """Return the value of a node; ``dry`` looks at names and kinds only, in both branches of an ``if``."""
 
     def go(inner: ast.expr) -> Number:
-        return _walk(inner, text, look_up, known, dry=dry)
+        return _value_of(inner, text, look_up, known, dry=dry)
 
     value: Number
     if (

@@ -11,7 +11,7 @@ from playground.sketch.unpack import is_pack, unpacked
 
 
 def find(name: str | Path) -> Path:
-    """Return the file that a sketch's name or path stands for; raise ``SketchError`` if there is none.
+    """Return the file of a sketch's name or path; raise ``SketchError`` if there is none.
 
     A zip is unpacked into the cache first: ``DataError`` says why one cannot be.
     """

@@ -1,7 +1,7 @@
 """Angles that follow a direction: ``follows("sun")``, the azimuth of ``sun`` until they are set.
 
 A parameter is set when its value is not its default, so the default of one that follows should
-be a value that nobody needs, as -360 degrees. With ``follows("sun", "measured", "on its arc")``
+be a value that no sketch needs, as -360 degrees. With ``follows("sun", "measured", "on its arc")``
 it follows only while the menu ``measured`` has that choice.
 """
 
@@ -59,9 +59,9 @@ def read_follows(
 
 
 def rules_of(graphs: Mapping[str, Graph]) -> tuple[Rule, ...]:
-    """Return the rules of the techniques of several passes, by the path at which each stands.
+    """Return the rules of the techniques of several passes, by the path of each.
 
-    What a technique exports follows as a whole; a parameter that no export stands for, alone.
+    An export of a technique follows as a whole; a parameter that is not exported, alone.
     """
     found: list[Rule] = []
     for prefix, graph in graphs.items():
@@ -92,8 +92,8 @@ def follow(rules: Iterable[Rule], values: dict[str, Value]) -> None:
 
 def _rule(prefix: str, targets: Sequence[str], parameter: Parameter) -> Rule:
     paths = tuple(f"{prefix}.{path}" if prefix else path for path in targets)
-    beside = paths[0].removesuffix(parameter.name)
+    kernel = paths[0].removesuffix(parameter.name)
     follows = parameter.follows
     assert follows
-    menu = f"{beside}{follows.menu}" if follows.menu else ""
-    return Rule(paths, parameter.default, f"{beside}{follows.direction}", menu, follows.choice)
+    menu = f"{kernel}{follows.menu}" if follows.menu else ""
+    return Rule(paths, parameter.default, f"{kernel}{follows.direction}", menu, follows.choice)

@@ -56,10 +56,10 @@ __all__ = [
 ]
 
 LARGEST_PICTURE = 65_536
-"""Pixels that a side of a picture drawn in parts may have: so far, single precision tells pixels apart."""
+"""Pixels that a side of a picture drawn in parts may have: the limit of single precision."""
 
 DEFAULT_PICTURE = (1280, 720)
-"""Size in pixels of a picture for which nobody asks another."""
+"""Size in pixels of a picture unless another is given."""
 
 DRIVERS = ("auto", "fragment", "compute")
 """What may run kernels; "auto" takes for each the one that it gains by."""
@@ -69,7 +69,7 @@ DRIVERS = ("auto", "fragment", "compute")
 class Camera:
     """An eye that orbits a point of the terrain."""
 
-    azimuth: float = 200.0  # [degrees] clockwise from north: where the eye stands, seen from the target
+    azimuth: float = 200.0  # [degrees] clockwise from north: the eye, seen from the target
     elevation: float = 32.0  # [degrees] of the eye above the target's horizon, -89..89
     distance: float = 0.0  # [m] from the target; 0: as far as shows the whole terrain
     target: tuple[float, float, float] | None = None  # [m]; None: the terrain's middle, at half its relief
@@ -87,7 +87,7 @@ class Shot:
     values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
     preset: str = ""
     samples: int | None = None  # None: the view's
-    steps: tuple[tuple[str, int], ...] = ()  # pass → turn to stop at
+    steps: tuple[tuple[str, int], ...] = ()  # pass → step to stop at
     marks: tuple[str, ...] = ()  # pytest's markers of its test, as "slow"
     line: int = 0
 
@@ -102,7 +102,7 @@ class Preset:
 
 @dataclass(frozen=True)
 class Sketch:
-    """A whole sketch: what a user opens, shares and keeps under version control."""
+    """A whole sketch: what a user opens, shares and puts under version control."""
 
     name: str
     file: str  # absolute path of the TOML, or of the kernel opened alone
@@ -118,7 +118,7 @@ class Sketch:
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
-    keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by the user stands over them
+    keyframes: tuple[Keyframe, ...] = ()  # by time; user edits override them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
 
@@ -153,7 +153,7 @@ class Sketch:
         return replace(self, overrides=tuple(overrides.items()), **terrain)
 
     def with_camera(self, camera: Camera) -> Sketch:
-        """Return the sketch seen by another camera, whatever its keyframes say of theirs."""
+        """Return the sketch seen by another camera, without the camera of its keyframes."""
         keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
         return replace(self, camera=camera, keyframes=keyframes)
 

@@ -65,9 +65,9 @@ def _read(sketch: Sketch, use: str) -> Technique:
 
 
 def _own_names(sketch: Sketch) -> list[str]:
-    """Name the files beside the sketch that could be techniques; library files and other sketches as well."""
-    beside = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
-    return sorted({f"./{p.stem}" for p in beside if p.is_file()})
+    """Name the files in the sketch's folder that could be techniques; library files and sketches as well."""
+    files = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
+    return sorted({f"./{p.stem}" for p in files if p.is_file()})
 
 
 def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:
@@ -97,7 +97,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
         use=use,
         technique=technique,
         inputs=tuple((name, source) for name, source in spec.inputs if takes_input(technique, name)),
-        values=_kept(technique, spec.values),
+        values=_values_taken(technique, spec.values),
         feedback=feedback,
         repeat=spec.repeat if feedback or not spec.feedback else "",
     )
@@ -105,7 +105,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     prefix = f"{spec.name}."
     own = [(path.removeprefix(prefix), value) for path, value in sketch.overrides if path.startswith(prefix)]
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
-    overrides += [(prefix + path, value) for path, value in _kept(technique, own)]
+    overrides += [(prefix + path, value) for path, value in _values_taken(technique, own)]
     graph = replace(sketch.graph, passes=passes)
     main = tuple(path for path in sketch.main if _is_there(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
@@ -120,7 +120,7 @@ def _is_there(technique: Technique, path: str) -> bool:
         return False
 
 
-def _kept(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
+def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
     found = []
     for path, value in values:
         try:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from itertools import pairwise
+from operator import attrgetter
 from pathlib import Path
 
 from playground.errors import SketchError
@@ -17,7 +18,7 @@ from playground.paths import shown
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import says_same_as, write_over
-from playground.sketch.save_values import said_so_far, written_number, written_value
+from playground.sketch.save_values import written_number, written_so_far, written_value
 from playground.sketch.toml_edit import drop, newline_of, put, text_of
 from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import shortest
@@ -122,30 +123,19 @@ def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int 
     """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
     left = dict(enumerate(_plain(known)))
     found: list[int | None] = [None] * len(wanted)
-    for same in (_whole, _moment, _content):
+    for names in (["time", "camera", "values", "ease"], ["time"], ["camera", "values"]):
+        key = attrgetter(*names)
         for number, keyframe in enumerate(_plain(wanted)):
             if found[number] is None:
-                hit = next((i for i, other in left.items() if same(other) == same(keyframe)), None)
+                hit = next((i for i, other in left.items() if key(other) == key(keyframe)), None)
                 if hit is not None:
                     found[number] = hit
                     del left[hit]
     return found
 
 
-def _whole(keyframe: Keyframe) -> object:
-    return keyframe
-
-
-def _moment(keyframe: Keyframe) -> object:
-    return keyframe.time
-
-
-def _content(keyframe: Keyframe) -> object:
-    return keyframe.camera, keyframe.values
-
-
 def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
-    """Return keyframes by what they say, wherever and in whatever order it is written."""
+    """Return keyframes without their lines, camera fields and values in one order."""
 
     def values(keyframe: Keyframe) -> tuple[tuple[str, Value], ...]:
         return tuple(sorted(((p, shortest(v)) for p, v in keyframe.values), key=lambda v: v[0]))
@@ -160,13 +150,13 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
     if now.ease != was.ease:
         text = put(text, place, "ease", text_of(now.ease))
     cameras, values = dict(was.camera), dict(was.values)
-    for name, seen in now.camera:
-        if name not in cameras or cameras[name] != seen:
-            text = put(text, (*place, "camera"), name, _camera_value(seen))
+    for name, number in now.camera:
+        if name not in cameras or cameras[name] != number:
+            text = put(text, (*place, "camera"), name, written_number(number))
     for name, value in now.values:
         if name not in values or values[name] != value:
             table = (*place, "set")
-            text = put(text, table, name, written_value(file, name, value, said_so_far(text, table, name)))
+            text = put(text, table, name, written_value(file, name, value, written_so_far(text, table, name)))
     for name in cameras.keys() - dict(now.camera).keys():
         text = drop(text, (*place, "camera"), name)
     for name in values.keys() - dict(now.values).keys():
@@ -180,7 +170,7 @@ def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
     given = dict(keyframe.camera)
     if given:
         order = [part.name for part in fields(Camera) if part.name in given]
-        pairs = ", ".join(f"{name} = {_camera_value(given[name])}" for name in order)
+        pairs = ", ".join(f"{name} = {written_number(given[name])}" for name in order)
         lines.append(f"camera = {{ {pairs} }}")
     if keyframe.values:
         pairs = ", ".join(f"{text_of(p)} = {written_value(file, p, v, '')}" for p, v in keyframe.values)
@@ -188,9 +178,3 @@ def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
     if keyframe.ease != EASES[0]:
         lines.append(f"ease = {text_of(keyframe.ease)}")
     return lines
-
-
-def _camera_value(value: float | tuple[float, ...]) -> str:
-    numbers = value if isinstance(value, tuple) else (value,)
-    written = ", ".join(map(written_number, numbers))
-    return f"[{written}]" if isinstance(value, tuple) else written

@@ -68,7 +68,7 @@ class Kernel:
     visits: str = ""
     stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
-    at_once: str = "1"  # turns that one run may take
+    at_once: str = "1"  # steps that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
     depth: str = "less"
@@ -80,9 +80,9 @@ class Kernel:
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
     stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
-    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
+    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique that it replaces
     title: str = ""  # the sentence that the file begins with
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+    variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
 
     @property
     def path(self) -> str:
@@ -134,7 +134,7 @@ class Kernel:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """A name that a technique of several passes shows outside, and what it stands for inside."""
+    """A name that a technique of several passes exports, and its targets inside."""
 
     name: str
     targets: tuple[str, ...]  # paths inside; the first gives annotation and default
@@ -150,7 +150,7 @@ class PassSpec:
     technique: Technique
     inputs: tuple[tuple[str, str], ...] = ()  # input → "pass[.inner…][:output]"
     values: tuple[tuple[str, Value], ...] = ()  # parameter path inside the technique → value
-    size: tuple[str, str] | None = None  # expressions; None: the size of what it stands in
+    size: tuple[str, str] | None = None  # expressions; None: the size of what it is in
     repeat: str = ""
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     file: str = ""
@@ -173,8 +173,8 @@ class Graph:
     inputs: tuple[Export, ...] = ()
     outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
     title: str = ""
-    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique beside it
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique that it replaces
+    variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
 
     @property
@@ -197,6 +197,11 @@ class Graph:
             else:
                 found += [(f"{spec.name}.{path}", kernel) for path, kernel in spec.technique.kernels]
         return tuple(found)
+
+    @cached_property
+    def leaf_parameters(self) -> dict[str, Parameter]:
+        """Every parameter of every kernel inside, by its path."""
+        return {f"{path}.{p.name}": p for path, kernel in self.kernels for p in kernel.parameters}
 
     @cached_property
     def _passes_by_name(self) -> dict[str, PassSpec]:

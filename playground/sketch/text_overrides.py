@@ -37,7 +37,7 @@ class _Reread:
     def __init__(self, texts: Mapping[str, str], folder: Path) -> None:
         self.texts = texts
         self.folder = folder
-        self.known: dict[int, Any] = {}  # one technique may stand in several passes
+        self.known: dict[int, Any] = {}  # one technique may be in several passes
 
     def technique(self, technique: Any) -> Any:
         """Return the technique itself where none of the texts is in it."""

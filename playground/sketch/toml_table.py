@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.source import read_text
-from playground.sketch.toml_places import TomlPlaces
+from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import spell
 
 FORMAT = 1
@@ -34,7 +34,7 @@ class TomlFile:
         """Read ``path``; ``root`` is the folder that what it names must stay in.
 
         ``text`` is the part of the file that is TOML, where not all of it is, and ``before`` how
-        many lines stand before that part. Raises ``SketchError`` if it cannot be read or is not TOML.
+        many lines come before that part. Raises ``SketchError`` if it cannot be read or is not TOML.
         """
         self.path = path.resolve()
         self.root = root
@@ -58,19 +58,20 @@ class TomlFile:
             last = text.count("\n") + 1
             message = f"not TOML: {message.split(' (at')[0]}"
             return SketchError(message, file=shown(self.path), line=self._before + last)
-        line, column = int(place.group(1)), int(place.group(2))
-        excerpt = text.split("\n")[line - 1]
-        cause = message[: place.start()]
+        line, column = map(int, place.groups())
         return SketchError(
-            f"not TOML: {cause}",
+            f"not TOML: {message[: place.start()]}",
             file=shown(self.path),
             line=self._before + line,
             column=column,
-            excerpt=excerpt,
+            excerpt=text.split("\n")[line - 1],
         )
 
     def line(self, *place: str | int) -> int:
-        """Return the line of a place, or of the nearest table around it; 0 if none is known."""
+        """Return the line of a place, or of the nearest table around it; 0 if none is known.
+
+        A key may be a dotted path, however the text writes its dots.
+        """
         found = self._places.line(place)
         return self._before + found if found or self._before else 0
 
@@ -114,25 +115,25 @@ class TomlFile:
         return value
 
     def texts(self, table: Mapping[str, Any], key: str, *place: str | int) -> tuple[tuple[str, str], ...]:
-        """Return the pairs of a table whose values are texts; dotted keys may stand without quotes."""
-        pairs = _joined(self.take(table, key, dict, {}, *place))
-        for name, value in pairs:
-            if not isinstance(value, str):
-                raise self.error(
-                    f"{name} = {spell(value)}: expected text in quotes", *place, key, *name.split(".")
-                )
-        return tuple(pairs)
+        """Return the pairs of a table whose values are texts; dotted keys need no quotes."""
+        return self._pairs(table, key, place, _NOUNS[str], lambda value: isinstance(value, str))
 
     def whole_numbers(
         self, table: Mapping[str, Any], key: str, *place: str | int
     ) -> tuple[tuple[str, int], ...]:
-        """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys may stand without quotes."""
-        pairs = _joined(self.take(table, key, dict, {}, *place))
+        """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys need no quotes."""
+        return self._pairs(
+            table, key, place, f"{_NOUNS[int]}, 0 or more", lambda v: type(v) is int and 0 <= v < 2**31
+        )
+
+    def _pairs(
+        self, table: Mapping[str, Any], key: str, place: Place, wanted: str, fits: Callable[[Any], bool]
+    ) -> tuple[tuple[str, Any], ...]:
+        pairs = tuple(_joined(self.take(table, key, dict, {}, *place)))
         for name, value in pairs:
-            if type(value) is not int or not 0 <= value < 2**31:
-                message = f"{name} = {spell(value)}: expected a whole number, 0 or more"
-                raise self.error(message, *place, key, *name.split("."))
-        return tuple(pairs)
+            if not fits(value):
+                raise self.error(f"{name} = {spell(value)}: expected {wanted}", *place, key, name)
+        return pairs
 
 
 def _joined(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:

@@ -81,7 +81,7 @@ def read_uniforms(
             check_name(name, line, "parameter")
             _refuse_given_elsewhere(name, initial, line)
         if name in seen:
-            # A file that is included twice stands here twice; its guard leaves one to the driver.
+            # A file that is included twice is here twice; its guard leaves one to the driver.
             if (seen[name].file, seen[name].number) == (line.file, line.number):
                 continue
             first = f"{shown(seen[name].file)}:{seen[name].number}"
@@ -129,7 +129,7 @@ def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
 
 
 def is_given(name: str) -> bool:
-    """Say whether a name is one that the engine gives, or calls."""
+    """Return whether a name is one that the engine gives, or calls."""
     return name in GIVEN or name in RESERVED or name.startswith(("previous_", WIRED, MATCHES, TOWARDS))
 
 
@@ -146,7 +146,7 @@ def check_name(name: str, line: Line, what: str) -> None:
 
 
 def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
-    """Refuse a uniform that only plain shaders are given: here it would keep its default for ever.
+    """Refuse a uniform that only plain shaders are given: here it would always have its default.
 
     One with an annotation is meant as a parameter, and so is a plain word with a default.
     """
@@ -154,11 +154,11 @@ def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
     if not meaning or line.comment.startswith("!") or (name == meaning and initial is not None):
         return
     column = line.code.index(name) + 1
-    said = f"'{name}' is given to plain shaders only, and here nothing would set it"
+    wrong = f"'{name}' is given to plain shaders only, and here nothing would set it"
     if name in GIVEN_INSTEAD:
         given = GIVEN_INSTEAD[name]
-        raise line.error(f"{said}; did you mean '{given}'? It is given: take this line out", column)
-    raise line.error(f"{said}; an annotation makes it a parameter, as //! point for a vec2", column)
+        raise line.error(f"{wrong}; did you mean '{given}'? It is given: take this line out", column)
+    raise line.error(f"{wrong}; an annotation makes it a parameter, as //! point for a vec2", column)
 
 
 def _check_declaration(line: Line, match: re.Match[str] | None) -> None:

@@ -1,9 +1,9 @@
 """Open a packed sketch: a zip with a sketch and all that it needs but what ships with the playground.
 
-A zip is a stranger's: nothing of it lands outside its folder, no link is made, and how many
+A zip is not trusted: nothing of it is written outside its folder, no link is made, and how many
 files and bytes it may become is known before the first is written. Commands read it from
 the cache, in a folder named after its bytes, which is made anew where a file of it was
-changed; a window opens a copy beside it, whose files may be edited.
+changed; a window opens a copy in the same folder, whose files may be edited.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ FORMAT = 1
 MOST_FILES = 2000
 MOST_BYTES = 2**30
 _MOST_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
-_ALWAYS_FINE = 2**26  # [bytes] unpacked, whatever the ratio
-_MOST_KEPT = 16  # packs in the cache
+_ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
+_MOST_PACKS = 16  # packs in the cache
 _STAMP = ".unpacked-from"
 _MOST_MANIFEST = 2**20
 
-# Windows takes these for devices, whatever follows the first point.
+# Windows takes these for devices, with any ending.
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{name}{n}" for name in ("com", "lpt") for n in range(1, 10))}
 _FORBIDDEN = re.compile(r'[\x00-\x1f<>:"|?*\\]')
 _LEFT_OUT = ("__MACOSX/", "/.DS_Store", "/Thumbs.db", "/desktop.ini")  # what systems put into zips
@@ -78,7 +78,7 @@ def unpacked(path: Path, cache: Path | None = None) -> Path:
 
 
 def unpacked_beside(path: Path, cache: Path | None = None) -> tuple[Path, str]:
-    """Return the sketch's file of a zip in a folder beside it, to be edited, and a sentence that says so.
+    """Return the sketch's file of a zip in a new folder next to it, to be edited, and a message.
 
     A folder that came of the same zip before is opened again, with what was edited there.
     Where the zip's own folder cannot be written to, it is one in the cache, and stays there.
@@ -194,12 +194,14 @@ def _manifest(path: Path, archive: zipfile.ZipFile, files: dict[str, zipfile.Zip
     if files[MANIFEST].file_size > _MOST_MANIFEST:
         raise DataError(f"its {MANIFEST} is too large", file=path)
     try:
-        said = read_json(archive.read(MANIFEST))
-        if said["format"] != FORMAT:
+        table = read_json(archive.read(MANIFEST))
+        if table["format"] != FORMAT:
             raise DataError(
-                f"is of format {said['format']}; this playground ({__version__}) reads {FORMAT}", file=path
+                f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}", file=path
             )
-        found_manifest = Manifest(str(said["sketch"]), str(said["version"]), tuple(map(str, said["shipped"])))
+        found_manifest = Manifest(
+            str(table["sketch"]), str(table["version"]), tuple(map(str, table["shipped"]))
+        )
     except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}", file=path) from None
     if found_manifest.sketch not in files or found_manifest.sketch == MANIFEST:
@@ -275,8 +277,8 @@ def _can_make(target: Path) -> bool:
 
 
 def _drop_oldest(home: Path, but: Path) -> None:
-    kept = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
-    for old in kept[: max(len(kept) + 1 - _MOST_KEPT, 0)]:
+    packs = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
+    for old in packs[: max(len(packs) + 1 - _MOST_PACKS, 0)]:
         shutil.rmtree(old, ignore_errors=True)
 
 
@@ -285,6 +287,6 @@ def _reason(error: BaseException) -> str:
     return " ".join(text.split()).rstrip(".") or type(error).__name__
 
 
-def said_of(pack: Pack) -> str:
-    """Return in a few words what a pack holds."""
+def summary(pack: Pack) -> str:
+    """Return how many files and bytes a pack holds."""
     return f"{counted(len(pack.files), 'file')}, {sum(e.file_size for e in pack.files.values())} bytes"

@@ -139,7 +139,7 @@ def shortest(value: Value) -> Value:
 
 
 def spell(value: object) -> str:
-    """Return a value as a message shows it: short, whatever it is."""
+    """Return any value as a message shows it, short."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

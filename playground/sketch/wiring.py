@@ -1,4 +1,4 @@
-"""Know a technique's inputs and outputs, and whether what its TOML says of them stands for something."""
+"""List a technique's inputs and outputs, and check what its TOML says of them."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def is_optional(technique: Technique, name: str) -> bool:
 
 
 def target_of(technique: Graph, name: str) -> str:
-    """Return what a technique's output stands for, as ``inner:output``; by default the last pass has it."""
+    """Return the target of a technique's output, as ``inner:output``; by default the last pass has it."""
     return dict(technique.outputs).get(name, f"{technique.passes[-1].name}:{name}")
 
 
@@ -86,7 +86,7 @@ def outputs_with_formats(graph: Graph) -> tuple[Output, ...]:
 
 
 def check_graph(graph: Graph) -> None:
-    """Raise ``SketchError`` for an export, an output or an expression that stands for nothing."""
+    """Raise ``SketchError`` for an export, an output or an expression without a target."""
     for export in graph.parameters:
         _check_parameter(graph, export)
     for export in graph.inputs:

@@ -23,7 +23,7 @@ from playground.sketch.find import find
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.shadowed import newly_shadowed
-from playground.sketch.technique_cache import KeptTechniques
+from playground.sketch.technique_cache import TechniqueCache
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
@@ -87,7 +87,7 @@ class Drafts:
         self._checks = checks
         self._drawn = drawn
         self._start = start or StoredEdits()
-        self._techniques = KeptTechniques()
+        self._techniques = TechniqueCache()
         self._subject = self.path.name  # what is read, or checked
         self._new_file = False  # what is coming names a data file that the user chose
         self._aside: Sketch | None = None  # what the sandbox got last, where that is not what is coming

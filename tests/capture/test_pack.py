@@ -23,7 +23,7 @@ from playground.sketch.load import load
 from playground.sketch.model import VARIANTS
 from playground.sketch.unpack import unpacked, unpacked_beside
 from playground.sketch.variant_record import NAME
-from playground.sketch.variants import left_out, standing
+from playground.sketch.variants import active_variant, left_out
 
 from ..sketch_texts import passes
 from ..variants import trust
@@ -317,4 +317,4 @@ def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_
         assert {"hills/parts/land.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
     found = load(unpacked(packed))
     assert left_out(found) == ()
-    assert standing(found.graph.passes[0].technique, VARIANTS) is not None
+    assert active_variant(found.graph.passes[0].technique, VARIANTS) is not None

@@ -361,7 +361,7 @@ def test_one_without_a_bound_is_refused_in_a_sentence(ctx, folder, tmp_path):
         ("nearly", "'nearly' states no bound"),
         ("0", "'0' states no bound"),
         ("hight: exact", "no output 'hight'; did you mean 'height'"),
-        ("exact; 1e-5", "all other outputs stands twice"),
+        ("exact; 1e-5", "all other outputs appears twice"),
     ],
 )
 def test_a_bound_that_is_none_is_a_sentence(folder, agrees, words):
