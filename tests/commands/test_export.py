@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +13,6 @@ from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
 
 from ..sketch_texts import map_of, passes
-
-ROOT = Path(__file__).resolve().parents[2]
 
 HEIGHT = """// rise.glsl -- a slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -71,14 +66,14 @@ def said(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
     return out, error
 
 
-def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(folder: Path):
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "export", "rise", "--to", "a.r16", "--to", "a.glb"],
-        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert done.stdout == "a.r16\na.r16.json\na.glb\n"
-    assert done.stderr.splitlines() == [
+def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+):
+    status = cli.main(["export", "rise", "--to", "a.r16", "--to", "a.glb"])
+    out, error = capfd.readouterr()
+    assert status == 0, error
+    assert out == "a.r16\na.r16.json\na.glb\n"
+    assert error.splitlines() == [
         "a.r16: 17 x 17; 16 bits; 0 is 0 m and 65535 is 100 m; 20 x 20 m a texel",
         "a.glb: 17 x 17 vertices, 512 triangles; 320 x 320 m, 0 to 100 m high; texture 17 x 17",
     ]

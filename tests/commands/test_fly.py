@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -49,14 +47,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_record_becomes_pictures_whose_paths_are_printed(folder: Path) -> None:
-    command = [sys.executable, "-m", "playground", "fly", "--replay", "a.jsonl", "--frames", "new/pictures"]
-    done = subprocess.run(
-        [*command, "--every", "10"], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+def test_a_record_becomes_pictures_whose_paths_are_printed(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    status = cli.main(["fly", "--replay", "a.jsonl", "--frames", "new/pictures", "--every", "10"])
+    out, err = capfd.readouterr()
+    assert status == 0, err
     names = [f"frame-{n:06d}.png" for n in (0, 10, 20)]
-    assert [Path(line).name for line in done.stdout.splitlines()] == names
+    assert [Path(line).name for line in out.splitlines()] == names
     there = sorted(path.name for path in (folder / "new" / "pictures").iterdir())
     assert there == names, "nothing half written is left"
     pictures = [read_png(folder / "new" / "pictures" / name)[0] for name in names]

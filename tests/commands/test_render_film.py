@@ -169,7 +169,7 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
         if any(part.stat().st_size > 0 for part in folder.glob(".long.mp4.*")):
             break
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.1)
     film.send_signal(signal.SIGINT)
     out, err = film.communicate(timeout=120)
     assert (film.returncode, out) == (130, "") and "Traceback" not in err, err

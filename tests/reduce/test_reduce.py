@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ import pytest
 from playground.cli import main
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
+from playground.reduce import initial_case
 from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.draw_handler import DrawResult, DrawTask
 from playground.reduce.failures import Differs, FailureKind, NotFinite, OffReference, Refused, Side
@@ -37,6 +39,12 @@ PASS = '[[pass]]\nname = "height"\nuse = "./one"\n'
 def worker():
     with CandidateProcess(software=True, limit=60.0) as made:
         yield made
+
+
+@pytest.fixture
+def warm(worker, monkeypatch):
+    """Let the command draw in the process that is there, which it does not close."""
+    monkeypatch.setattr(initial_case, "CandidateProcess", lambda **_: nullcontext(worker))
 
 
 @pytest.fixture
@@ -293,7 +301,7 @@ MAP = f'{PASS}[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\n{SHOT}'
 
 
 @pytest.mark.slow
-def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, tmp_path, capsys):
+def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, warm, tmp_path, capsys):
     path = sketch(BANDS, MAP)
     shot = load(path).shots[0]
     good = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
@@ -324,7 +332,7 @@ def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, wor
 MAGIC = (
     f"{HEIGHT}float magic(float x) {{ return x; }}\nfloat kernel(ivec2 t) {{ return magic(0.5) + 1.0; }}\n"
 )
-GREP = "python3 -c \"import sys; sys.exit('magic(0.5)' in open('height.glsl').read())\""
+GREP = f"{sys.executable} -ISc \"import sys; sys.exit('magic(0.5)' in open('height.glsl').read())\""
 
 
 def run(*arguments: str) -> int:
@@ -333,7 +341,7 @@ def run(*arguments: str) -> int:
 
 def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     path = sketch(MAGIC)
-    assert run(str(path), "--pass", "height", "--command", GREP.replace("python3", sys.executable)) == 0
+    assert run(str(path), "--pass", "height", "--command", GREP) == 0
     folder = tmp_path / "land-reduced"
     assert sorted(capsys.readouterr().out.split()) == sorted(
         f"land-reduced/{name}" for name in ("README.txt", "height.glsl", "reduced.json", "sketch.toml")
@@ -344,7 +352,7 @@ def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     assert json.loads((folder / "reduced.json").read_text())["sketch"] == "land"
     # Once more, over what is our own; a note beside it stays.
     (folder / "note.txt").write_text("mine")
-    assert run(str(path), "--pass", "height", "--command", GREP.replace("python3", sys.executable)) == 0
+    assert run(str(path), "--pass", "height", "--command", GREP) == 0
     assert (folder / "note.txt").read_text() == "mine"
 
 
@@ -380,7 +388,7 @@ def test_a_mistake_is_one_sentence(sketch, capsys, options, said):
     assert "Traceback" not in err
 
 
-def test_what_does_not_fail_is_refused(sketch, capsys):
+def test_what_does_not_fail_is_refused(sketch, warm, capsys):
     assert main(["--software", "reduce", str(sketch(MAGIC)), "--pass", "height", "--timeout", "60"]) == 2
     assert "land does not fail: it compiles and draws" in capsys.readouterr().err
 
@@ -396,7 +404,7 @@ def test_ctrl_c_keeps_the_smallest_so_far(sketch, tmp_path, monkeypatch, capsys)
 
     path = sketch(MAGIC)
     monkeypatch.setattr(Probe, "find", interrupted)
-    assert run(str(path), "--pass", "height", "--command", GREP.replace("python3", sys.executable)) == 130
+    assert run(str(path), "--pass", "height", "--command", GREP) == 130
     text = (tmp_path / "land-reduced" / "height.glsl").read_text()
     assert "magic(0.5)" in text
     assert text.count("\n") < inline_sketch(load(path), frame=(8, 8)).looking_at("height").lines
@@ -404,8 +412,7 @@ def test_ctrl_c_keeps_the_smallest_so_far(sketch, tmp_path, monkeypatch, capsys)
 
 
 def test_a_limit_of_tries_is_kept(sketch, tmp_path, capsys):
-    command = GREP.replace("python3", sys.executable)
-    assert run(str(sketch(MAGIC)), "--pass", "height", "--command", command, "--tries", "3") == 0
+    assert run(str(sketch(MAGIC)), "--pass", "height", "--command", GREP, "--tries", "3") == 0
     assert "in 3 tries" in capsys.readouterr().err
 
 
@@ -508,7 +515,7 @@ def test_a_shipped_sketch_inlined_draws_the_same_picture(name, worker, tmp_path)
     np.testing.assert_array_equal(flat.values, whole.values)
 
 
-def test_a_loop_of_several_passes_is_refused(sketch, worker, tmp_path):
+def test_a_loop_of_several_passes_is_refused(sketch):
     path = sketch(
         f"{HEIGHT}uniform sampler2D before;  //! input\n"
         "float kernel(ivec2 t) { return texelFetch(before, t, 0).r + 1.0; }\n",

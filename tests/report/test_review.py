@@ -7,8 +7,6 @@ import json
 import re
 import socket
 import struct
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -438,12 +436,13 @@ def test_a_folder_without_results_is_told_before_anything_listens(leave, capsys)
     assert "nowhere: there is no such folder" in capsys.readouterr().err
 
 
-def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(leave) -> None:
+def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(
+    leave, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     record = leave(actual=picture(1), expected=picture(2))
-    command = [sys.executable, "-m", "playground", "shots", "review", "results", "--no-open"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout and process.stderr
-        url = process.stdout.readline().strip()
+    opened: list[str] = []
+
+    def accept_and_end(url: str) -> None:
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/", url)
         assert found, url
         connection = http.client.HTTPConnection("127.0.0.1", int(found[1]), timeout=GENEROUS)
@@ -454,6 +453,15 @@ def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(le
             connection.request("POST", f"/{found[2]}/{path}", json.dumps(body), {"X-Shots-Token": found[2]})
             assert connection.getresponse().read()
         connection.close()
-        said = process.stderr.read()
-        assert process.wait(GENEROUS) == 0
-    assert f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)" in said and found[2] not in said
+
+    def browse(url: str) -> bool:
+        opened.append(url)
+        threading.Thread(target=accept_and_end, args=[url]).start()
+        return True
+
+    monkeypatch.setattr("webbrowser.open", browse)
+    assert main(["shots", "review", "results"]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == opened
+    assert f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)" in err
+    assert opened[0].split("/")[3] not in err, "the token is a secret"

@@ -31,11 +31,10 @@ FOLDER = Path("screenshots/test_slope.py")
 
 
 @pytest.fixture
-def tests(run: Run, pytester: pytest.Pytester) -> Run:
+def tests(write_references: Callable[[str, int], Run], pytester: pytest.Pytester) -> Run:
     """Give what runs pytest where a test file has its references."""
     pytester.makepyfile(test_slope=TESTS)
-    run("--shots-update").assert_outcomes(passed=2)
-    return run
+    return write_references("test_slope.py", 2)
 
 
 def test_references_lie_beside_the_test_file_by_renderer(tests: Run) -> None:

@@ -27,8 +27,10 @@ def plain(*colour: int, size: tuple[int, int] = (40, 40)) -> np.ndarray:
 
 
 def shot(name: str) -> np.ndarray:
+    """Return the middle of a reference: sky, ridges and slopes."""
     sketch, picture = name.split("/")
-    return read_png(SCREENSHOTS / sketch / "llvmpipe" / f"{picture}.png")[0]
+    pixels, _ = read_png(SCREENSHOTS / sketch / "llvmpipe" / f"{picture}.png")
+    return np.ascontiguousarray(pixels[80:280, 160:480])
 
 
 def edge(at: int, low: int = 60, high: int = 190) -> np.ndarray:

@@ -77,28 +77,24 @@ def cases(tmp_path: Path) -> dict[str, ShotCase]:
     return {case.shot.name: case for case in shots_of([tmp_path / "bands.toml"])}
 
 
-@pytest.fixture(scope="module")
-def renderer() -> Iterator[RendererProcess]:
-    with RendererProcess() as made:
-        yield made
-
-
 def test_a_case_is_named_by_sketch_and_shot(cases: dict[str, ShotCase]) -> None:
     assert [str(case) for case in cases.values()] == [f"bands/{name}" for name in cases]
     assert [name for name in cases] == ["plain", "later", "dim", "short", "first"]
 
 
 def test_the_worker_draws_what_an_engine_here_draws(
-    cases: dict[str, ShotCase], renderer: RendererProcess, any_engine: Engine
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess, any_engine: Engine
 ) -> None:
-    if any_engine.info.slug != renderer.renderer.slug:
+    if any_engine.info.slug != warm_renderer.renderer.slug:
         pytest.skip(f"OpenGL here is {any_engine.info.renderer}")
     for case in cases.values():
-        np.testing.assert_array_equal(renderer.render(case).array, render_shot(any_engine, case).array)
+        np.testing.assert_array_equal(warm_renderer.render(case).array, render_shot(any_engine, case).array)
 
 
-def test_a_shot_obeys_each_of_its_settings(cases: dict[str, ShotCase], renderer: RendererProcess) -> None:
-    frames = {name: renderer.render(case) for name, case in cases.items()}
+def test_a_shot_obeys_each_of_its_settings(
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess
+) -> None:
+    frames = {name: warm_renderer.render(case) for name, case in cases.items()}
     assert frames["plain"].size == (48, 32)
     assert (frames["later"].size, frames["later"].time) == ((40, 32), 2.5)
     # The land is 32 texels wide; at x = 31 its value is turns * gain * 31/32 (* fract(31/32 + 0.25)).
@@ -132,16 +128,16 @@ def test_cases_and_frames_cross_over_whole(cases: dict[str, ShotCase]) -> None:
 
 
 def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
-    cases: dict[str, ShotCase], renderer: RendererProcess, tmp_path: Path
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess, tmp_path: Path
 ) -> None:
     (tmp_path / "land.glsl").write_text(KERNEL.replace("gain *", "gian *"))
     broken = shots_of([tmp_path / "bands.toml"])[0]
     with pytest.raises(ShaderError, match=r"land\.glsl:8.*gian"):
-        renderer.render(broken)
+        warm_renderer.render(broken)
     wrong = ShotCase(cases["plain"].sketch, Shot("wrong", values=(("height.gian", 1.0),)))
     with pytest.raises(ParameterError, match="gian"):
-        renderer.render(wrong)
-    assert renderer.render(cases["plain"]).size == (48, 32)
+        warm_renderer.render(wrong)
+    assert warm_renderer.render(cases["plain"]).size == (48, 32)
 
 
 def test_a_missing_software_renderer_is_reported_each_time(
