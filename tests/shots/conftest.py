@@ -32,7 +32,7 @@ OURS = Fingerprint(
     tool="tool 1",
 )
 
-KERNEL = """// land.glsl -- a slope.
+KERNEL = """// terrain.glsl -- a slope.
 #pragma kernel(output = "height:r32f")
 
 uniform float gain = 0.5;  //! slider(0, 1) How bright it is in the east
@@ -47,7 +47,7 @@ size = 32
 
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 
 [view]
 use = "view/map"
@@ -114,7 +114,7 @@ def run(
     for variable in ("CI", "GALLIUM_DRIVER", "PYTEST_ADDOPTS", "PYTEST_XDIST_TESTRUNUID"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setattr(checking, "RendererProcess", lambda *_: Lent(warm_renderer, ends))
-    Path("land.glsl").write_text(KERNEL)
+    Path("terrain.glsl").write_text(KERNEL)
     Path("slope.toml").write_text(SKETCH)
     fixed = ("-p", "playground.shots.plugin", "-p", "no:cacheprovider", "-W", "error", "-ra")
     return lambda *arguments: pytester.runpytest_inprocess(*fixed, *arguments)
