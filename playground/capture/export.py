@@ -1,9 +1,9 @@
-"""Export heights, textures and the land as a mesh: choose what is written, and in what form.
+"""Export heights, textures and the terrain as a mesh: choose what is written, and in what form.
 
-An ending and a texture tell what a file holds: heights become metres above sea level,
+The ending and the texture determine what a file holds: heights become metres above sea level,
 colours and light are encoded as sRGB where a format expects it, other numbers stay as they
-are; the land itself becomes a mesh with its texture. Everything is refused that can be
-before a texel is made.
+are; the terrain itself becomes a mesh with its texture. Whatever can be refused is refused
+before a texel is computed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from playground.capture.export_textures import height_of, kind_of
 from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
 from playground.capture.gltf import encode_glb
 from playground.capture.lossy_images import encode_picture
-from playground.capture.mesh import grid_of, land_mesh, sampled
+from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
 from playground.engine.engine import Engine, opened
@@ -78,15 +78,15 @@ def export(
     steps: Mapping[str, int] | None = None,
     engine: Engine | None = None,
 ) -> Exported:
-    """Write a sketch's heights, one of its textures, or its land as a mesh, by the path's ending.
+    """Write a sketch's heights, one of its textures, or its terrain as a mesh, by the path's ending.
 
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
-    the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the land with its
+    the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
     texture. Rows come from the north. The other arguments are those of ``Form``; ``time``, in
     seconds, and ``steps`` are as in ``Engine.render``. A file of that name is replaced, whole
     or not at all. Without an ``engine`` one is opened.
 
-    Raises ``PlaygroundError`` for any mistake in what is asked, or a file that cannot be written.
+    Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
     form, found = (
         Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light),
@@ -158,7 +158,7 @@ def _read(engine: Engine, job: ExportJob, texture: str, kind: str) -> NDArray[np
         if channels != 1:
             raise SketchError(f"texture '{texture}' has {channels} channels; heights have one")
         relief, base = job.plan.terrain.relief, job.plan.terrain.base_elevation
-        assert relief is not None and base is not None  # a plan's land is known
+        assert relief is not None and base is not None  # a plan's terrain is known
         metres: NDArray[np.float32] = (values.astype(np.float64) * relief + base).astype(np.float32)
         return metres
     if kind == COLOUR:
@@ -197,7 +197,7 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
 
 def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
     extent = job.plan.terrain.extent
-    assert extent is not None  # a plan's land is known
+    assert extent is not None  # a plan's terrain is known
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
 
@@ -207,9 +207,9 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     size = grid_of((heights.shape[1], heights.shape[0]), wanted)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
-    assert extent is not None  # a plan's land is known
+    assert extent is not None  # a plan's terrain is known
     try:
-        mesh = land_mesh(sampled(heights, size), extent, texels or (2, 2))
+        mesh = terrain_mesh(sampled(heights, size), extent, texels or (2, 2))
     except DataError as error:
         raise DataError(error.diagnostics[0].message, file=job.path) from error
     name = job.sketch.name
@@ -233,7 +233,9 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     ]
     notes = [warning]
     if job.form.grid > max(size):
-        notes.append(f"the land has {max(size)} texels on its longer side, so the mesh has no more vertices")
+        notes.append(
+            f"the terrain has {max(size)} texels on its longer side, so the mesh has no more vertices"
+        )
     return Exported(job.path, "; ".join(parts), tuple(sidecars), tuple(filter(None, notes)))
 
 

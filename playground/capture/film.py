@@ -1,9 +1,9 @@
 """Films: pictures at one time after another, as a video or as numbered PNG files.
 
-Picture n of a film is that of the time ``n / fps``, whatever the machine's speed; what a
-sketch's keyframes, its text or its repeats make of the time is theirs. The land and its
-light are made anew only where they change with it, and nothing that a later picture does
-not use is kept.
+Picture n of a film is that of the time ``n / fps``, independent of the machine's speed; what a
+sketch's keyframes, its text or its repeats make of the time is theirs. The terrain and its
+light are computed again only where they change with it, and nothing that later pictures do
+not use stays in the cache.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def film_of(
 
 @contextmanager
 def frame_uniforms(engine: Engine, film: Film, number: int) -> Iterator[None]:
-    """Progress plain shaders the number of a picture and the time between two, in the block."""
+    """Set the picture's number and the time between two pictures for plain shaders, in the block."""
     before = engine.runner.frame, engine.runner.delta
     engine.runner.frame, engine.runner.delta = number, float(1 / film.fps)
     try:

@@ -1,6 +1,6 @@
 """A capture as one thing that can be sent to another process: a picture, pictures, a film or a sheet.
 
-What is captured is the sketch as it stands in the job, with all that was set by hand. A job
+What is captured is the sketch of the job, with all user edits. A job
 takes the first name that no file has, and leaves nothing behind when it is stopped or fails,
 but for numbered pictures: those that are whole stay.
 """

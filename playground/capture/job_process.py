@@ -1,4 +1,4 @@
-"""Run a capture in a worker process, and tell whoever started it how far it is and what came of it."""
+"""Run a capture in a worker process, and report its progress and result to its parent."""
 
 from __future__ import annotations
 

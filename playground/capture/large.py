@@ -134,7 +134,7 @@ def write_large(
 
     Arguments as for ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
     one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
-    whatever the height.
+    independent of the height.
     """
     if Path(path).suffix.lower() != ".png":
         raise DataError(

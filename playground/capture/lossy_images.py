@@ -1,4 +1,4 @@
-"""Turn linear colours into the bytes of a WebP or a JPEG: sRGB in 8 bits.
+"""Encode linear colours as the bytes of a WebP or a JPEG: sRGB in 8 bits.
 
 PNG is `playground.capture.values`, since its numbers may be anything.
 """

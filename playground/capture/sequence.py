@@ -22,7 +22,7 @@ from playground.images.files import read_png, reason
 from playground.sketch.model import Sketch
 
 MADE_OF = "Made of"
-"""The text of a PNG that stands for all that its picture depends on."""
+"""The text of a PNG that identifies all that its picture depends on."""
 
 _NUMBER = re.compile(r"%(0\d+)?d")
 
@@ -61,7 +61,7 @@ def write_sequence(
 
     ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
     files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
-    and good is kept. ``done`` is called after each. Raises ``DataError`` in a sentence.
+    and good stays. ``done`` is called after each. Raises ``DataError`` in a sentence.
     """
     check_pattern(pattern)
     wanted = range(film.count) if numbers is None else list(numbers)
@@ -75,7 +75,7 @@ def write_sequence(
         path = numbered(pattern, number)
         made_of = engine.fingerprint(
             film.sketch, size=film.size, time=film.time(number), steps=film.steps
-        )  # before it is drawn, so that a mistake in the sketch is told first
+        )  # before it is drawn, so that a mistake in the sketch is reported first
         if resume and _is_good(path, film.size, made_of):
             kept.append(path)
         else:
@@ -120,7 +120,7 @@ def render_sequence(
     """Render pictures ``numbers`` of a sketch as PNG files named by ``pattern``, as ``frames/%05d.png``.
 
     Picture n is that of the time n / ``fps`` seconds; ``size`` in pixels. With ``resume``
-    good files are kept, whose sketch, size and time are the same. Without an ``engine`` one is
+    good files stay, whose sketch, size and time are the same. Without an ``engine`` one is
     opened. Raises ``PlaygroundError`` in a sentence.
     """
     wanted = list(numbers)

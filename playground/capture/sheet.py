@@ -150,7 +150,7 @@ def write_sweep_film(
 
 def _counted(found: Iterator[NDArray[np.uint8]], done: Callable[[], None]) -> Iterator[NDArray[np.uint8]]:
     for picture in found:
-        done()  # before it is handed on: nobody asks again after the last one
+        done()  # before it is handed on: the generator is not resumed after the last one
         yield picture
 
 

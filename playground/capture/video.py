@@ -53,11 +53,11 @@ class Video:
     """A video being written: use it with ``with``, and ``add()`` every picture.
 
     ``size`` in pixels; ``count`` pictures are expected. At the end the file is read back,
-    and takes its name if all are in it at the rate asked for. Where it cannot be read back it
+    and takes its name if all are in it at the given rate. Where it cannot be read back it
     takes its name all the same, and ``warning`` says so; where another number of pictures is
-    in it, it is kept as ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
+    in it, it is named ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
     before that, nothing is left; when it is interrupted, what is there becomes a shorter
-    video, as ``film-first-120.mp4``, and ``Stopped`` tells its name.
+    video, as ``film-first-120.mp4``, and ``Stopped`` has its name.
 
     Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
     ending, odd sides, a rate that a GIF has not, a missing folder, and where PyAV is missing.
@@ -158,7 +158,7 @@ class Video:
             raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _finish(self) -> None:
-        """Give the video its name; one that holds other pictures than were asked for gets another."""
+        """Give the video its name; one that holds another number of pictures gets another."""
         if not self.added:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._close()
@@ -167,7 +167,7 @@ class Video:
         except KeyboardInterrupt:
             self._name(self._first(self.added))
             raise Stopped(self._first(self.added), self.added) from None
-        except Exception as error:  # whatever a version of PyAV raises: the film is encoded, and is kept
+        except Exception as error:  # any error of any version of PyAV: the film is encoded, and stays
             self._name(self.path)
             why = error.diagnostics[0].message if isinstance(error, PlaygroundError) else reason(error)
             self.warning = f"{shown(self.path)} was written, but could not be checked: {why}"
@@ -175,11 +175,11 @@ class Video:
         if found == self.count and rate == self.fps:
             self._name(self.path)
             return
-        kept = self._first(found)
-        self._name(kept)
+        renamed = self._first(found)
+        self._name(renamed)
         raise DataError(
             f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
-            f"{float(self.fps):g}; they are kept in {kept.name}",
+            f"{float(self.fps):g}; they are kept in {renamed.name}",
             file=self.path,
         )
 

@@ -44,7 +44,7 @@ HELP = help_text(
     " failing means is chosen by an option; without one, what the compiler refuses, a crash, NaN and"
     " a difference between the two drivers are looked for, in that order. What is left goes into a folder,"
     " with a text for a report to the driver's makers. Ctrl-C keeps the smallest so far.",
-    "playground reduce my-land                         # whatever fails",
+    "playground reduce my-land                         # any failure",
     "playground reduce my-land --nan --pass height     # NaN or infinity in one pass",
     "playground reduce my-land --shot morning          # off its reference",
     "playground reduce my-land --drivers               # fragment and compute differ",
@@ -77,7 +77,7 @@ def reduce(
     nan: Annotated[bool, flag("--nan", "A value is NaN or infinite.")] = False,
     anywhere: Annotated[
         bool,
-        flag("--anywhere", "With --nan: let it turn up at other texels. Smaller, but maybe another NaN."),
+        flag("--anywhere", "With --nan: let it appear at other texels. Smaller, but maybe another NaN."),
     ] = False,
     error: Annotated[
         str,
@@ -216,12 +216,12 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
     from playground.reduce.search import Search
 
     claim(folder)
-    with CandidateBench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as show:
         beginning = bench.begin()
         probe, found = beginning.probe, beginning.finding
         # The message of a refusal is its kind; of the rest, the details say where and how much.
         note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=tell)
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=show)
         stopped = False
         try:
             search.run()
@@ -290,10 +290,10 @@ def _shown() -> Iterator[Callable[[State], None]]:
             yield lambda state: status.update(line(state))
         return
 
-    def tell(state: State) -> None:
+    def show(state: State) -> None:
         nonlocal last
         if clock.monotonic() - last > _EVERY:
             last = clock.monotonic()
             note(line(state))
 
-    yield tell
+    yield show

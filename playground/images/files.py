@@ -1,7 +1,7 @@
 """Move pictures and grids of values between files and NumPy arrays.
 
 Pictures have their top (north) row first, in the file and in the array; grids
-of values have row 0 in the south, as in the engine, and are turned over where
+of values have row 0 in the south, as in the engine, and are flipped where
 a format is an image. A file is written whole or not at all: a temporary file
 in the same folder takes the name only when it is complete.
 
@@ -9,8 +9,8 @@ It does not decode sRGB (`playground.sketch.colour` does), does not apply ICC
 profiles, and knows nothing of metres (`playground.terrain.elevation` does).
 
 16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour
-therefore asks Pillow's decoder for the high bytes and for the low bytes in
-turn; writing is done here, since a PNG without adaptive filters is four chunks
+therefore asks Pillow's decoder for the high bytes, then for the low
+bytes; writing is done here, since a PNG without adaptive filters is four chunks
 (W3C PNG specification, third edition, 2025, clauses 5, 9 and 11).
 """
 
@@ -71,7 +71,7 @@ class Image:
 
 
 def read_image(path: str | Path) -> Image:
-    """Read a PNG, JPEG or WebP picture (told by content, not by the file's name).
+    """Read a PNG, JPEG or WebP picture (recognised by content, not by the file's name).
 
     Palettes, grey and CMYK become RGBA; a camera's orientation mark is obeyed;
     of an animation, the first picture counts. Alpha is straight, not premultiplied.
@@ -98,7 +98,7 @@ def read_image(path: str | Path) -> Image:
 def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
     """Read a PNG as uint8 (rows, cols, 4), top row first, and the texts it carries.
 
-    Of 16-bit files only the high bytes are kept; `read_image` keeps all.
+    Of 16-bit files only the high bytes are read; `read_image` reads all.
 
     Raises:
         DataError: missing, not a PNG, damaged or too large.
@@ -128,7 +128,7 @@ def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     path = checked_file(path)
     with _reading(path) as handle:
         if not _png_header(handle)[0]:
-            raise DataError("not a PNG file, whatever its name says; expected one", file=path)
+            raise DataError("not a PNG file, despite its name; expected one", file=path)
         return _png_samples(handle, path)
 
 
@@ -144,7 +144,7 @@ def read_texts(path: str | Path) -> dict[str, str]:
 
 
 def checked_file(path: str | Path) -> Path:
-    """Return the path if a file that is not empty lies there.
+    """Return the path of a file that exists and is not empty.
 
     Raises:
         DataError: nothing there (with the nearest name in that folder), a folder,
@@ -411,12 +411,12 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
         )
     low, high = float(image.min()), float(image.max())
     outside = int(np.count_nonzero((image < 0.0) | (image > 1.0)))
-    said = ""
+    note = ""
     if outside:
-        said = f"{outside} of {image.size} values lay outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
+        note = f"{outside} of {image.size} values are outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
     with np.errstate(all="ignore"):
         scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
-    return encode_samples(scaled.astype(np.uint16)), said
+    return encode_samples(scaled.astype(np.uint16)), note
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
@@ -426,7 +426,7 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 @contextmanager
 def new_name(path: str | Path) -> Iterator[Path]:
-    """Take the first of `land.png`, `land-2.png` and so on that no file has, to write to in the block.
+    """Take the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
 
     An empty file holds the name from here on, so that no other program takes it; it is
     removed when the block fails.
@@ -460,7 +460,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
     """Open a new file that takes the name `path` when the block ends well.
 
     It is written in the same folder. When the block fails, the temporary file is
-    removed and whatever had the name stays as it was.
+    removed and a file that had the name stays as it was.
 
     Raises:
         DataError: a missing folder, a folder of that name, no permission, a full disk.

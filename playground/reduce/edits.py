@@ -53,7 +53,7 @@ def expressions(text: str, literals: Sequence[str] = LITERALS) -> Iterator[str]:
 def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterator[tuple[str, str]]:
     """Yield two texts with the same expression made simpler in each, where both have it once.
 
-    A kernel and the compute shader that stands for it agree only as long as both change.
+    A kernel and the compute shader that replaces it agree only as long as both change.
     """
     tokens, others = tokens_of(text), tokens_of(other)
     for low, high, instead in _in_order(tokens, literals):
@@ -64,7 +64,7 @@ def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterat
 
 
 def _only_place(tokens: list[str], part: list[str]) -> int | None:
-    """Return where some tokens stand in others, if they do so once."""
+    """Return where some tokens occur in others, if they do so once."""
     found = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
     return found[0] if len(found) == 1 else None
 
@@ -362,7 +362,7 @@ def undefined(text: str) -> frozenset[str]:
 
 
 def _is_outermost(tokens: list[str], index: int) -> bool:
-    """Say whether a closing brace ends what stands at the text's own level."""
+    """Say whether a closing brace ends what is at the text's outermost level."""
     return tokens[: index + 1].count("{") == tokens[: index + 1].count("}")
 
 

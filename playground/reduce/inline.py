@@ -36,15 +36,15 @@ def inline_sketch(
         return _plain(leaves[0], plan)
     inliner = _Inliner(plan, leaves[-1].path)
     passes = tuple(inliner.one(node) for node in plan.nodes)
-    land = plan.terrain
-    assert land.size is not None and land.extent is not None
+    terrain = plan.terrain
+    assert terrain.size is not None and terrain.extent is not None
     return Case(
         passes=passes,
         target=passes[-1].name,
-        size=land.size,
-        extent=land.extent,
-        relief=land.relief,
-        base_elevation=land.base_elevation or None,
+        size=terrain.size,
+        extent=terrain.extent,
+        relief=terrain.relief,
+        base_elevation=terrain.base_elevation or None,
         camera=sketch.camera,
         samples=sketch.samples,
         frame=frame,
@@ -146,7 +146,7 @@ def _lines(source: SourceText) -> list[str]:
 
 
 def _without_guards(lines: list[str]) -> list[str]:
-    """Leave out include guards, and what they keep from standing twice."""
+    """Leave out include guards, and what they keep from being there twice."""
     found: list[str] = []
     guards: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"

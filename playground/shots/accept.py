@@ -40,7 +40,7 @@ class Change:
 
     @property
     def further(self) -> bool:
-        """Whether it stands beside the references that were there."""
+        """Whether it was added to the references that were there."""
         return self.written is not None and bool(self.before) and self.written not in self.before
 
     @property
@@ -69,7 +69,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     if record.word in NEVER_ACCEPTED:
         raise DataError(f"{record.name}: no reference can be made of it ({record.sentence})")
     if also and record.word == "unreadable":
-        raise DataError(f"{record.name}: its reference is damaged, so that cannot stay beside this one")
+        raise DataError(f"{record.name}: its reference is damaged, so it cannot stay next to this one")
     place = _place(record)
     pixels = _picture(folder, record)
     there = accepted_in(place, record.shot)

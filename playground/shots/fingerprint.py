@@ -6,7 +6,7 @@ means for that:
 
     renderer, version     the build: driver, its version, and for Mesa its LLVM and the width of
                           the vectors it compiles for. Another build may round the other way.
-    vendor                GL's word for who wrote the driver. Told, but not a build: between two
+    vendor                GL's word for who wrote the driver. Shown, but no part of a build: between two
                           versions Mesa changed it from "Mesa/X.org" to "Mesa".
     mesa, llvm            read out of the two strings, for people; they decide nothing twice.
     cpu, simd             of a renderer that draws on the processor, part of the build: `gpu.build` says
@@ -14,7 +14,7 @@ means for that:
                           comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
                           files (see ``engine.picture_hash``). It never makes a comparison less strict:
-                          that an edit changed the picture is what the test is there to tell.
+                          that an edit changed the picture is what the test has to report.
     size                  the picture's. Pictures of two sizes are never compared.
     tool                  the playground's version. It never makes a comparison less strict either:
                           a bug of the playground must not excuse itself.

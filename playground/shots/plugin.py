@@ -9,7 +9,7 @@
         shot.check(shot.render("hills.toml", time=20.0), "evening")
 
 The package's entry point has this module's name, so that `pytest_plugins` and ``-p`` may name
-it too. It is loaded with every pytest that the package is installed beside, so it imports
+it too. It is loaded with every pytest of an environment that has the package, so it imports
 next to nothing, and does nothing until there is a shot: `collect`, `checking` and `fixture`
 come in then.
 """
@@ -184,7 +184,7 @@ def shot(request: pytest.FixtureRequest) -> ShotFixture:
     """Draw sketches in a process of their own, and compare pictures with their references.
 
     ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails unless it is
-    the reference in ``screenshots/<test file>/<renderer>/evening.png`` beside the test file.
+    the reference in ``screenshots/<test file>/<renderer>/evening.png`` in the test file's folder.
     """
     from playground.shots.fixture import ShotFixture
 
@@ -200,7 +200,7 @@ class Results:
         self.left = 0  # references that --shots-update left alone
         self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
         self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
-        self.unrecorded: dict[str, None] = {}  # why results could not be kept
+        self.unrecorded: dict[str, None] = {}  # why results could not be recorded
         self.checked = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 

@@ -266,7 +266,7 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
 
 
 def _unrecorded(error: Exception) -> str:
-    return f"no results are kept: {error}; --shots-output names another folder"
+    return f"no results are recorded: {error}; --shots-output names another folder"
 
 
 def report(folder: Path) -> list[str]:

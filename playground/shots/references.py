@@ -1,7 +1,7 @@
 """Keep reference pictures: where they live, what they say of themselves, which of them nothing uses.
 
 ``screenshots/<sketch>/<renderer>/<shot>.png``, in the checkout for the sketches that ship,
-beside the sketch for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures
+in the sketch's folder for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures
 that may match (another build of the same renderer, say).
 
 A reference carries texts: its fingerprint, and which shot of which sketch it shows. There is no
@@ -133,7 +133,7 @@ def reference_texts(fingerprint: Fingerprint, sketch: str, shot: str) -> dict[st
 
 
 def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
-    """List the reference files, of whatever renderer, that no shot uses.
+    """List the reference files, of all renderers, that no shot uses.
 
     Give every sketch whose references are to be judged, with shots or without. Pictures of
     a sketch that is not given count only if there is no such sketch any more.
@@ -144,7 +144,7 @@ def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
         of_home.setdefault(sketch.name, set()).update(shot.name for shot in sketch.shots)
     stale: list[Path] = []
     for home, known in shots.items():
-        others = _sketches_beside(home) - known.keys()
+        others = _sketches_of(home) - known.keys()
         for path in home.rglob("*.png"):
             folders = path.relative_to(home).parts[:-1]  # sketch and renderer, if it is where it should be
             if folders and folders[0] in others:
@@ -155,7 +155,7 @@ def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
     return sorted(stale)
 
 
-def _sketches_beside(home: Path) -> set[str]:
+def _sketches_of(home: Path) -> set[str]:
     """Return the names of the sketches whose references are in ``home``."""
     folder = paths.SKETCHES if paths.CHECKOUT and home == paths.CHECKOUT / FOLDER else home.parent
     names = {path.stem for path in folder.glob("*.toml")}

@@ -65,7 +65,7 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
 
     ``root`` is the folder that the tests were started in: records of others stay. ``complete``
     has, for test files of which every test ran and passed, what pictures those have checked.
-    To be called when no test runs any more: a folder that is empty then is nobody's.
+    Call it when no test runs any more: a folder that is empty then is not in use.
     """
     for record in list(records_in(folder)):
         file = file_of(record, root)

@@ -6,9 +6,9 @@
     <folder>/<sketch>/<shot>.difference.png   16 times as strong
     <folder>/<sketch>/<shot>.flip.png         where an eye would see it
 
-A second sketch of that name has a folder of its own beside the first's: see `places`.
+A second sketch of that name has a folder of its own next to the first's: see `result_paths`.
 
-A record stands alone: the report, ``review`` and ``accept`` need neither the sketch nor a
+A record is complete: the report, ``review`` and ``accept`` need neither the sketch nor a
 graphics card, so a folder that was made elsewhere (by a continuous integration, say) can be
 looked at and accepted here. Each file is written whole or not at all, so that several
 processes may fill one folder, a shot each.

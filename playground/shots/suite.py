@@ -1,6 +1,6 @@
 """From sketches to the pictures they promise, and from pictures to what came of them.
 
-``shots_of`` lists the cases, ``take`` draws one, ``check`` compares it with its reference,
+``shots_of`` lists the cases, ``render_shot`` draws one, ``check`` compares it with its reference,
 ``images_of`` gives what there is to look at. No pytest, no options: a command or a report
 calls the same four.
 """
@@ -125,9 +125,9 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
 def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
-    An OpenGL error left behind is recorded in the frame: whatever that looks like, it is not to be
-    trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass
-    fails and there is no frame.
+    An OpenGL error left behind is recorded in the frame, which is not to be trusted then.
+    Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass fails and
+    there is no frame.
     """
     shot = case.shot
     with told_at(case.sketch, shot):
@@ -151,8 +151,8 @@ def check(
     """Judge a frame by the references of its renderer; any may match, else the nearest decides.
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
-    a reference that is not there is missing, whatever others have drawn. A frame that `take`
-    made says as well what was drawn, and what was wrong with it.
+    a reference that is not there is missing, even where other renderers have one. A frame of `render_shot`
+    also says what was drawn, and what was wrong with it.
     """
     name = case.shot.name
     drawn, not_finite, gl_error = "", "", ""

@@ -38,13 +38,13 @@ size = [48, 28]
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (tmp_path / "land.toml").write_text(SKETCH, encoding="utf-8")
+    (tmp_path / "terrain.toml").write_text(SKETCH, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 def run(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
-    status = cli.main(["render", "land.toml", *words])
+    status = cli.main(["render", "terrain.toml", *words])
     out, err = capsys.readouterr()
     assert status == 0, err
     return out.splitlines()
@@ -68,7 +68,7 @@ def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixtur
     assert [path.as_posix() for path in paths] == ["new/f003.png", "new/f004.png", "new/f005.png"]
     (folder / "new" / "f004.png").unlink()
     before = paths[0].stat().st_mtime_ns
-    assert cli.main(["render", "land.toml", *words, "--resume"]) == 0
+    assert cli.main(["render", "terrain.toml", *words, "--resume"]) == 0
     out, err = capsys.readouterr()
     assert out.count("\n") == 3 and "2 pictures kept, 1 drawn" in err
     assert paths[0].stat().st_mtime_ns == before and paths[1].is_file()
@@ -77,9 +77,9 @@ def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixtur
 
 def test_a_sheet(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "--sweep", "light.sun.elevation=5..60", "-n", "4", "--size", "64x36") == [
-        "land-sweep.png"
+        "terrain-sweep.png"
     ]
-    assert read_png(folder / "land-sweep.png")[0].shape[1] == 2 * 72 + 8
+    assert read_png(folder / "terrain-sweep.png")[0].shape[1] == 2 * 72 + 8
     run(capsys, "--sweep", "light.gain=1,2", "--sweep", "view.haze=0,1,2", "--size", "64x36", "-o", "b.png")
     assert read_png(folder / "b.png")[0].shape[0] > 3 * 36
 
@@ -91,7 +91,7 @@ def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureF
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--seconds", "3"], "--seconds needs --video FILE"),
         (["--quality", "low"], "--quality needs --video FILE"),
@@ -120,13 +120,13 @@ def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureF
     ],
 )
 def test_a_mistake_is_one_sentence(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
 ) -> None:
-    status = cli.main(["render", "land.toml", *words])
+    status = cli.main(["render", "terrain.toml", *words])
     out, err = capsys.readouterr()
-    assert status == 2 and out == "" and said in err
+    assert status == 2 and out == "" and message in err
     assert err.startswith("error: ") and "Traceback" not in err
-    assert [path.name for path in folder.iterdir()] == ["land.toml"]
+    assert [path.name for path in folder.iterdir()] == ["terrain.toml"]
 
 
 def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
@@ -137,7 +137,7 @@ def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.fixture
 def film(folder: Path) -> Iterator[subprocess.Popen[str]]:
-    command = [sys.executable, "-m", "playground", "render", "land.toml", "--video", "long.mp4"]
+    command = [sys.executable, "-m", "playground", "render", "terrain.toml", "--video", "long.mp4"]
     process = subprocess.Popen(
         [*command, "--seconds", "9000", "--size", "64x36"],
         cwd=folder,
@@ -169,13 +169,13 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
         if any(part.stat().st_size > 0 for part in folder.glob(".long.mp4.*")):
             break
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.1)
     film.send_signal(signal.SIGINT)
     out, err = film.communicate(timeout=120)
     assert (film.returncode, out) == (130, "") and "Traceback" not in err, err
     left = sorted(path.name for path in folder.iterdir())
     if "before the first" in err:  # on a machine so slow that no picture was drawn in time
-        assert left == ["land.toml"]
+        assert left == ["terrain.toml"]
         return
     assert err.startswith("stopped; the first ")
     (path,) = folder.glob("long-first-*.mp4")

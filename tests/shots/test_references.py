@@ -43,7 +43,7 @@ def put(home: Path, *names: str) -> list[Path]:
     return [home / name for name in names]
 
 
-def test_a_user_keeps_them_beside_the_sketch(tmp_path: Path) -> None:
+def test_a_user_has_them_next_to_the_sketch(tmp_path: Path) -> None:
     sketch = sketch_in(tmp_path)
     assert home_of(sketch) == tmp_path / "screenshots"
     assert reference_path(sketch, "dawn", "llvmpipe") == tmp_path / "screenshots/hills/llvmpipe/dawn.png"
@@ -110,11 +110,11 @@ def test_a_new_reference_removes_the_further_ones_of_its_shot_alone(tmp_path: Pa
     sketch = sketch_in(tmp_path)
     home = home_of(sketch) / "hills"
     second, third = put(home / "llvmpipe", "dawn.2.png", "dawn.3.png")
-    kept = [*put(home / "llvmpipe", "dusk.png", "dusk.2.png"), *put(home / "softpipe", "dawn.2.png")]
+    others = [*put(home / "llvmpipe", "dusk.png", "dusk.2.png"), *put(home / "softpipe", "dawn.2.png")]
     path, removed = write_reference(sketch, "dawn", LLVMPIPE, PICTURE)
     assert removed == [second, third]
     assert accepted(sketch, "dawn", "llvmpipe") == [path]
-    assert all(file.exists() for file in kept)
+    assert all(file.exists() for file in others)
 
 
 def test_a_write_that_fails_leaves_the_old_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,7 +149,7 @@ def test_a_reference_that_is_no_picture_is_a_sentence(tmp_path: Path, content: b
         read_reference(path)
 
 
-def test_used_references_are_not_stale_whatever_the_renderer(tmp_path: Path) -> None:
+def test_used_references_are_not_stale_for_any_renderer(tmp_path: Path) -> None:
     sketch = sketch_in(tmp_path)
     put(home_of(sketch) / "hills", "llvmpipe/dawn.png", "llvmpipe/dawn.2.png", "nvidia-h200/dusk.png")
     assert stale_references([sketch]) == []

@@ -75,27 +75,27 @@ class Process:
 
 def processes(count: int, drivers: tuple[str, ...]) -> list[Process]:
     """Choose so many drawings, by these drivers, and share them out among processes."""
-    chance = random.Random(_SEED)
+    randomness = random.Random(_SEED)
     found: list[Process] = []
     left = count
     while left > 0:
-        number = len(found)  # environments come in turn, so that a few processes have most of them
+        number = len(found)  # environments alternate, so that a few processes have most of them
         threads = _THREADS[number % len(_THREADS)]
         environment = _ENVIRONMENTS[number % len(_ENVIRONMENTS)]
         if threads:
             environment = (*environment, ("LP_NUM_THREADS", threads))
-        drawings = [_drawing(chance, drivers) for _ in range(min(left, _A_PROCESS))]
-        moved, elsewhere, cold = (chance.random() < part for part in (0.3, 0.5, 0.2))
+        drawings = [_drawing(randomness, drivers) for _ in range(min(left, _A_PROCESS))]
+        moved, elsewhere, cold = (randomness.random() < part for part in (0.3, 0.5, 0.2))
         found.append(Process(tuple(drawings), environment, elsewhere, moved, cold))
         left -= len(drawings)
     return found
 
 
-def _drawing(chance: random.Random, drivers: tuple[str, ...]) -> Drawing:
+def _drawing(randomness: random.Random, drivers: tuple[str, ...]) -> Drawing:
     return Drawing(
-        chance.choice(drivers),
-        chance.random() < 0.4,
-        chance.choice((0, 0, 1, 16)) * 2**20,
-        chance.choice(_BEFORE),
-        chance.random() < 0.25,
+        randomness.choice(drivers),
+        randomness.random() < 0.4,
+        randomness.choice((0, 0, 1, 16)) * 2**20,
+        randomness.choice(_BEFORE),
+        randomness.random() < 0.25,
     )

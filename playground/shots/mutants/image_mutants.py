@@ -1,6 +1,6 @@
 """Mutants of the finished picture: what can go wrong after the last draw.
 
-Each is one function from a picture to a broken copy. Chance is seeded, so that a mutant is
+Each is one function from a picture to a broken copy. Random numbers are seeded, so that a mutant is
 the same at every run.
 """
 
@@ -83,10 +83,10 @@ def _five_bits(picture: Picture) -> Picture:
 def _blocks(picture: Picture) -> Picture:
     from PIL import Image
 
-    kept = io.BytesIO()
-    Image.fromarray(picture[..., :3]).save(kept, "JPEG", quality=75)
+    stream = io.BytesIO()
+    Image.fromarray(picture[..., :3]).save(stream, "JPEG", quality=75)
     broken = picture.copy()
-    broken[..., :3] = np.asarray(Image.open(kept))
+    broken[..., :3] = np.asarray(Image.open(stream))
     return broken
 
 

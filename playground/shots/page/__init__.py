@@ -1,7 +1,6 @@
 """The page that shows results: the same for the report, which is a file, and for ``review``.
 
-markup.py     HTML in which text is always text
-words.py      what each word of a result means
+labels.py     what each word of a result means
 shot.py       what the page says of one failed shot
 document.py   the whole page
 report.html   its frame; report.css, its looks

@@ -54,7 +54,7 @@ MEANINGS = {
     ),
     "nan": Meaning(
         "not a number",
-        "Values that are no numbers, or infinite, were drawn. What a screen shows for them is chance,"
+        "Values that are no numbers, or infinite, were drawn. What a screen shows for them is undefined,"
         " so the picture cannot be accepted, however it looks.",
         broken=True,
     ),
