@@ -75,7 +75,16 @@ class Planner:
         interpolated: bool | None = None,
         largest: int = LARGEST_SIDE,
     ) -> Plan:
-        """Make a plan as ``make_plan`` does."""
+        """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
+
+        ``variants`` are the kinds of fast variants that may replace techniques, but not
+        those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+        path (that of a technique will do where one pass inside it repeats), and no later than they
+        end unless their number changes with time or keyframes. What a stopped pass has not computed is
+        ``interpolated`` in pictures and not in what is ``wanted``, unless given (see ``between``).
+        Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
+        kernel's header.
+        """
         size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
         varies = any(keyframe.values for keyframe in sketch.keyframes)
         sketch = sketch.at(seconds)
@@ -86,75 +95,32 @@ class Planner:
         terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
         request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
         place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
-        known = self._plans.pop(place, None)
 
-        def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
-            flat = flatten(
+        def flat(refused: Iterable[str], before: Flat | None = None) -> Flat:
+            return flatten(
                 sketch,
                 variants=variants,
                 opened=(wanted,) if wanted else (),
                 stopped=tuple(stopped),
                 refused=tuple(refused),
-                before=known.plan.flat if known else None,
+                before=before,
             )
-            return _Planning(sketch, flat, request, seconds, known)
 
-        found = planning(known.refusals, known).renewed() if known else None
+        found = None
+        if known := self._plans.pop(place, None):
+            now = flat(known.refusals, known.plan.flat)
+            found = _Planning(sketch, now, request, seconds, known=known).renewed()
         if found is None:
             self.made_whole += 1
-            refused: dict[str, str] = {}
-            named: set[str] = set()  # what the sizes of refused variants name
-            by_time = False
-            attempt = planning(())
-            while more := {path: why for path, why in attempt.refusals().items() if path not in refused}:
+            making, refused = _Planning(sketch, flat(()), request, seconds), dict[str, str]()
+            while more := making.refusals(refused):
                 refused |= more
-                copied = attempt.flat.shape.copied
-                named |= {copied.get(path, path) for path in attempt.named}
-                by_time |= attempt.by_time
-                attempt = planning(refused)
-            found = attempt.whole()
-            if refused:
-                known_names = found.named | (named & found.plan.flat.values.keys())
-                plan = replace(found.plan, lacking=(*found.plan.lacking, *refused.values()))
-                by_time |= found.by_time
-                found = replace(found, plan=plan, named=known_names, by_time=by_time, refusals=refused)
+                making = _Planning(sketch, flat(refused), request, seconds, after=making)
+            found = making.whole(refused)
         self._plans[place] = found
         while len(self._plans) > _MOST_PLANS:
             self._plans.popitem(last=False)
         return found.plan
-
-
-def make_plan(
-    sketch: Sketch,
-    *,
-    frame_size: tuple[int, int],
-    time: float = 0.0,
-    variants: Collection[str] = (),
-    steps: Mapping[str, int] | None = None,
-    wanted: str = "",
-    interpolated: bool | None = None,
-    largest: int = LARGEST_SIDE,
-) -> Plan:
-    """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
-
-    ``variants`` are the kinds of fast variants that may replace techniques, but not
-    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-    path (that of a technique will do where one pass inside it repeats), and no later than they
-    end unless their number changes with time or keyframes. What a stopped pass has not reached is
-    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
-    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
-    kernel's header.
-    """
-    return Planner().plan(
-        sketch,
-        frame_size=frame_size,
-        time=time,
-        variants=variants,
-        steps=steps,
-        wanted=wanted,
-        interpolated=interpolated,
-        largest=largest,
-    )
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -173,17 +139,27 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
     """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
     found: dict[str, int] = {}
-    for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
+    for node in every_node(Planner().plan(sketch, frame_size=frame_size, time=time).nodes):
         if isinstance(node, LoopStep) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
 
 
 class _Planning:
-    """One plan being made; ``known`` is the last of the same graph, made for the same request."""
+    """One plan being made.
+
+    ``known`` is the last of the same graph, made for the same request; ``after``: an attempt in which
+    fast variants refused their sizes, which depends on what those sizes name.
+    """
 
     def __init__(
-        self, sketch: Sketch, flat: Flat, request: PlanRequest, time: float, known: _Known | None
+        self,
+        sketch: Sketch,
+        flat: Flat,
+        request: PlanRequest,
+        time: float,
+        known: _Known | None = None,
+        after: _Planning | None = None,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -192,8 +168,9 @@ class _Planning:
         self.stopped = dict(request.stopped)
         self.known = known if known and known.plan.flat.shape is flat.shape else None
         self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
-        self.named: set[str] = set()
-        self.by_time = False
+        copied = after.flat.shape.copied if after else {}
+        self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
+        self.by_time: bool = after is not None and after.by_time
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values: dict[str, Mapping[str, Value]] = {}
@@ -232,8 +209,8 @@ class _Planning:
         values = self._values[node.path]
         return node if node.values is values else replace(node, values=values)
 
-    def whole(self) -> _Known:
-        """Make the plan from nothing."""
+    def whole(self, refused: Mapping[str, str]) -> _Known:
+        """Make the plan from nothing; ``refused``: the sentences that ``refusals`` gave, by technique."""
         # What has the terrain's own size first: the others' sizes follow from it.
         for leaf in self.flat.leaves:
             if leaf.spec.size is None:
@@ -254,16 +231,20 @@ class _Planning:
             time=self.time,
             steps=self.stopped,
             interpolated=self.request.fills,
-            lacking=lacking,
+            lacking=(*lacking, *refused.values()),
         )
-        return _Known(plan, self._values, frozenset(self.named), self.by_time, {})
+        named = frozenset(self.named & self.flat.values.keys())
+        return _Known(plan, self._values, named, self.by_time, refused)
 
-    def refusals(self) -> dict[str, str]:
-        """Return a sentence for each technique whose fast variant does not take its size, by its path."""
+    def refusals(self, before: Collection[str]) -> dict[str, str]:
+        """Return a sentence for each technique whose fast variant does not take its size, by its path.
+
+        Those of ``before`` are left out.
+        """
         found: dict[str, str] = {}
         for leaf in self.flat.leaves:
             path, accepts = sizes_of_variant(leaf, self.flat)
-            if accepts and path not in found:
+            if accepts and path not in found and path not in before:
                 size = self._size_of_leaf(leaf)
                 if not expressions.is_accepted(accepts, size):
                     found[path] = (
