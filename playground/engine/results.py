@@ -1,4 +1,4 @@
-"""Hold the textures that one pass made, and give those that nobody needs to the next pass.
+"""Hold the textures that one pass computed, and give those that are no longer used to the next pass.
 
 A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
 """
@@ -42,12 +42,12 @@ class Surface:
 
 @dataclass(eq=False)
 class Result:
-    """The textures that one pass made."""
+    """The textures that one pass computed."""
 
     size: tuple[int, int]
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
-    turn: int = 0  # iterations done, of a pass that repeats
+    iterations: int = 0  # done, of a pass that repeats
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
@@ -92,7 +92,7 @@ UNWIRED = Wired()
 
 
 class Pool:
-    """Results that nobody needs, to be used again: making a texture costs more than filling it."""
+    """Spare results, to be used again: making a texture costs more than filling it."""
 
     def __init__(self, ctx: moderngl.Context, limit: int) -> None:
         self.ctx = ctx

@@ -36,7 +36,7 @@ def kernel(tmp_path):
 @pytest.fixture
 def programs(ctx):
     made = Programs(ctx)
-    made.begin()
+    made.frame += 1
     yield made
     made.release()
 
@@ -79,7 +79,7 @@ def test_programs_of_this_frame_stay_however_many(programs, kernel):
     kept = [programs.get(kernel(KERNEL.replace("0.0", f"{i}.0")), FRAGMENT) for i in range(80)]
     assert len(programs) == 80
     assert len({id(p) for p in kept}) == 80
-    programs.begin()
+    programs.frame += 1
     programs.get(kernel(KERNEL.replace("0.0", "1000.0")), FRAGMENT)
     assert len(programs) == 64
 
