@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from playground.engine.error_place import told_at
+from playground.engine.error_place import located_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import Planner
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
@@ -215,7 +215,7 @@ class _Check:
         for preset in sketch.presets:
             Planner().plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            with told_at(sketch, shot):
+            with located_at(sketch, shot):
                 Planner().plan(
                     sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps)
                 )

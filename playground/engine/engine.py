@@ -74,7 +74,8 @@ class Engine(Recorded):
             raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
         self.ctx = ctx
         self.info: ContextInfo = context_info(ctx)
-        if driver == COMPUTE and not self.info.compute:
+        self._computes = self.info.compute  # whether there are compute shaders
+        if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
         self.driver = driver
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
@@ -88,7 +89,7 @@ class Engine(Recorded):
         self.warnings = PlanWarnings()
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
-        self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
+        self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
@@ -372,18 +373,18 @@ class Engine(Recorded):
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
-        self._make_current()
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan)
         self.cache.begin()
-        self.runner.begin(plan)
+        self.runner.look_at(plan)
+        self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute, plan.steps)
-        nodes = needed(plan.nodes, ref)
-        if self.disk_caching is not None:
-            nodes = self.disk_caching.begin(execution, plan, ref)
         with self.borrowed():
-            execution.run(nodes)
+            if self.disk_caching is not None:
+                execution.run(self.disk_caching.begin(execution, plan, ref))
+            else:
+                execution.run(needed(plan.nodes, ref))
         self.cache.end()
         record.results = execution.results
         self.warnings.look(plan)
@@ -437,11 +438,11 @@ class Engine(Recorded):
         """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
         if kernel.kind in ("compute", "plain_compute"):
-            if not self.info.compute:
+            if not self._computes:
                 message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if kernel.kind != "kernel" or not self.info.compute or self.driver == FRAGMENT:
+        if kernel.kind != "kernel" or not self._computes or self.driver == FRAGMENT:
             return FRAGMENT
         return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 

@@ -49,10 +49,10 @@ class EyeHeight:
 
         ``keys_of`` gives the keys of a plan. None: the terrain must be drawn and read first.
         """
-        source = _terrain_of(plan)
-        if source is None or not self.raised_by or self._read is None:
+        if not self.raised_by or self._read is None:
             return None
-        if self._terrain_key != keys_of(plan).steps[source.path]:
+        source = _terrain_of(plan)
+        if source is None or self._terrain_key != keys_of(plan).steps[source.path]:
             return None
         return self._over(plan, self._read[0][1:], self._read[1])
 
@@ -91,7 +91,8 @@ def _place_of(plan: Plan) -> tuple[float, float] | None:
     """Return where the eye is above the terrain, in shares of its sides; None outside it."""
     if plan.terrain.extent is None or plan.terrain.relief is None:
         return None
-    x, y = (at / side for at, side in zip(plan.eye.position, plan.terrain.extent, strict=False))
+    (east, north, _), (width, height) = plan.eye.position, plan.terrain.extent
+    x, y = east / width, north / height
     return (x, y) if 0 <= x <= 1 and 0 <= y <= 1 else None
 
 

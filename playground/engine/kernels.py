@@ -51,9 +51,7 @@ class Job:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
         own, around = (iteration, whole), self.loop_iteration
         now, total = own if repeat != "1" or around is None else around
-        program.set("iteration", now)
-        program.set("iterations", total)
-        program.set("until", now + at_once)
+        program.set_all({"iteration": now, "iterations": total, "until": now + at_once})
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
@@ -100,14 +98,13 @@ class Kernels:
             for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         ]
-        for name in (i.name for i in kernel.inputs):
+        for name in [i.name for i in kernel.inputs]:
             texture = job.inputs.get(name, NOT_WIRED).texture
             if kernel.reads(f"{WIRED}{name}"):
                 choices.append((f"{WIRED}{name}", int(texture is not None)))
             if kernel.reads(f"{MATCHES}{name}"):
-                choices.append(
-                    (f"{MATCHES}{name}", int(texture is not None and texture.size == job.step.size))
-                )
+                matches = texture is not None and texture.size == job.step.size
+                choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         return self.programs.get(kernel, driver, (*choices, *more))
@@ -138,13 +135,13 @@ class Kernels:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
                 program.set(parameter.name, value)
-            elif parameter.name in program:
+            elif parameter.name in program.uniforms:
                 unit = self.binder.file(program, parameter, value, unit, encoded=True)
         if step.window is not None:
             program.set(WINDOW, step.window.origin)
         for meaning, values in usual.items():
             for name in PLAIN_UNIFORMS[meaning]:
-                if name in program:
+                if name in program.uniforms:
                     _set_fitting(program, name, values)
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         for name, uniform in program.uniforms.items():
@@ -191,7 +188,7 @@ class Kernels:
                 program.set("k_shift", shift)
                 framebuffer = result.framebuffer(self.ctx)
                 framebuffer.use()
-                width, height = (((side - 1) >> shift) + 1 for side in step.size)
+                width, height = [((side - 1) >> shift) + 1 for side in step.size]
                 self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
                 self.ctx.viewport = (0, 0, *step.size)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 import time
 from collections import OrderedDict
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from playground.gpu.program import compile_wrapped
@@ -37,14 +38,18 @@ class Program:
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None
 
-    def __contains__(self, name: str) -> bool:
-        return name in self.uniforms
-
     def set(self, name: str, value: Any) -> None:
-        """Set a uniform if the driver kept it."""
+        """Set a uniform, unless the driver dropped it."""
         uniform = self.uniforms.get(name)
         if uniform is not None:
             uniform.value = value
+
+    def set_all(self, values: Mapping[str, Any]) -> None:
+        """Set uniforms by name; those that the driver dropped are left out."""
+        for name, value in values.items():
+            uniform = self.uniforms.get(name)
+            if uniform is not None:
+                uniform.value = value
 
     def fill(self) -> None:
         """Draw one triangle over the whole of the bound framebuffer."""
@@ -63,7 +68,7 @@ class Program:
         self.ctx.memory_barrier()
 
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release it and its vertex arrays."""
         for array in self.arrays.values():
             array.release()
         self.arrays.clear()
@@ -125,7 +130,7 @@ class Programs:
                 array.release()
 
     def release(self) -> None:
-        """Give every program back to the driver."""
+        """Release every program."""
         for program in self._by_text.values():
             program.release()
         self._by_text.clear()

@@ -34,7 +34,7 @@ class Surface:
         return (bytes_of(self.size, self.format) + 4 * self.size[0] * self.size[1]) * self.samples
 
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release its framebuffer and renderbuffers."""
         self.framebuffer.release()
         self.colour.release()
         self.depth.release()
@@ -69,7 +69,7 @@ class Result:
         return self._framebuffer
 
     def release(self) -> None:
-        """Give the textures back to the driver."""
+        """Release its textures and what draws to them."""
         if self._framebuffer is not None:
             self._framebuffer.release()
             self._framebuffer = None

@@ -57,11 +57,6 @@ class Runner:
         """Milliseconds of each program compiled, by file."""
         return self.programs.compile_times
 
-    def begin(self, plan: Plan) -> None:
-        """Begin a frame."""
-        self.look_at(plan)
-        self.programs.frame += 1
-
     def look_at(self, plan: Plan) -> None:
         """Take terrain, time and camera from a plan."""
         self._plan = plan
@@ -92,8 +87,8 @@ class Runner:
         found: dict[str, Any] = {}
         for name in kernel.given:
             if name == "spacing":
-                extent = self._given["extent"]
-                found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.whole_size, strict=True))
+                (width, height), (wide, tall) = self._given["extent"], step.whole_size
+                found[name] = width / max(wide - 1, 1), height / max(tall - 1, 1)
             elif name in self._given:
                 found[name] = self._given[name]
         return found
@@ -123,7 +118,7 @@ class Runner:
         ``iteration`` is that of the loop around it; ``start`` the same step after fewer iterations, which
         is used up; ``keeps_surface`` says that a later draw goes on from this one.
         """
-        assert self._plan is not None, "begin() comes first"
+        assert self._plan is not None, "look_at() comes first"
         if self.before_step is not None:
             self.before_step(step)
         given, samples = self.given_for(step), self._samples_for(step.kernel)

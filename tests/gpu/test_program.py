@@ -63,8 +63,8 @@ def test_a_kernel_is_wrapped_once(programs, kernel, monkeypatch):
 
 def test_what_the_driver_dropped_is_not_set(programs, kernel):
     program = programs.get(kernel(), FRAGMENT)
-    assert "amount" in program
-    assert "idle" not in program
+    assert "amount" in program.uniforms
+    assert "idle" not in program.uniforms
     program.set("idle", 3.0)
     program.set("never_was", 3.0)
     program.set("amount", 0.25)
