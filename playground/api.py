@@ -35,7 +35,7 @@ def headless(
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
-        engine.warnings.tell = _warn
+        engine.warnings.report = _warn
     return engine
 
 

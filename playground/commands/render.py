@@ -190,10 +190,10 @@ def make_picture(request: Request, renderer: Renderer) -> None:
     if request.series.many:
         make_series(SeriesJob(request.series, moment, request.output, request.size, renderer, request.driver))
         return
-    from playground.engine.error_place import told_at
+    from playground.engine.error_place import located_at
 
     with (
-        told_at(moment.sketch, moment.shot) if moment.shot and not request.steps else nullcontext(),
+        located_at(moment.sketch, moment.shot) if moment.shot and not request.steps else nullcontext(),
         _target(request, moment.sketch) as target,
         renderer.open_engine(driver=request.driver) as engine,
     ):

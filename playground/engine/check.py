@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from playground.engine.error_place import told_at
+from playground.engine.error_place import located_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
@@ -209,14 +209,16 @@ class _Check:
             if self.errors:
                 return
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        plan = make_plan(sketch, frame_size=_FRAME)
+        plan = Planner().plan(sketch, frame_size=_FRAME)
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
         self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
-            make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
+            Planner().plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            with told_at(sketch, shot):
-                make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+            with located_at(sketch, shot):
+                Planner().plan(
+                    sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps)
+                )
         if not reads:
             self.attempt(request)
 

@@ -22,7 +22,6 @@ from playground.engine.plan import (
     Plan,
     PlanNode,
     Step,
-    continued,
     every_node,
     needed,
     sources_of,
@@ -44,12 +43,11 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
     """
     found: set[str] = set()
-    goes_on = continued(plan)
     for node in plan.nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
-        own = any(_passes(step, plan, goes_on) or _reads_one(step, painted) for step in steps)
+        own = any(_passes(step, plan) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
     return frozenset(found)
@@ -65,9 +63,9 @@ def _stops(loop: LoopStep) -> bool:
     return by_time or loop.repeat != loop.whole
 
 
-def _passes(step: Step, plan: Plan, goes_on: frozenset[str]) -> bool:
+def _passes(step: Step, plan: Plan) -> bool:
     kernel = step.kernel
-    if kernel.kind.startswith("plain") or step.path in goes_on or step.window is not None:
+    if kernel.kind.startswith("plain") or step.path in plan.continued or step.window is not None:
         return True
     if step.size == plan.frame_size or step.repeat != step.whole:
         return True
@@ -127,11 +125,11 @@ def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None])
         found = _alone(held(keys.steps[node.path]))
         return None if found is None else {node.path: found}
     kept = held(keys.loops[node.path])
-    if kept is None or kept.turn != node.repeat or not kept.results:
+    if kept is None or kept.iterations != node.repeat or not kept.results:
         return None
     together = dict(kept.results)
     for inside in every_node(node.body):
-        if not keys.changes(inside):
+        if not keys.changes[id(inside)]:
             together |= _in_memory(inside, keys, held) or {}
     return together
 

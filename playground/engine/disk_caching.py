@@ -167,9 +167,8 @@ class DiskCaching:
     def _keep_all(self, source: FrameSource, plan: Plan) -> Iterator[None]:
         """Keep what is worth it, a piece at a time; ends early where a texture is gone."""
         keys, results = source.record.keys, source.record.results
-        ref = next(iter(plan.flat.outputs["view"].values()))
         passes = passing(plan, source.runner.painted)
-        for worth in worth_keeping(plan, keys, ref, passes, self._costs, reading, self.floor):
+        for worth in worth_keeping(plan, keys, plan.picture, passes, self._costs, reading, self.floor):
             result = results.get(worth.path)
             if result is None or worth.key in self.store:
                 continue

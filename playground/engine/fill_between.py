@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from playground.engine.between import Between
-from playground.engine.results import Pool, Result
+from playground.engine.results import Result
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.sketch.model import Sampling
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from playground.engine.kernels import Kernels
 
 
-def filled(kernels: Kernels, pool: Pool, result: Result, between: Between) -> Result:
+def filled(kernels: Kernels, result: Result, between: Between) -> Result:
     """Return new textures, the caller's, with what lies between the nodes of a result filled."""
-    made = pool.take(result.size, result.outputs)
+    made = kernels.pool.take(result.size, result.outputs)
     for output in result.outputs:
         single = make_framebuffer(kernels.ctx, [made.textures[output.name]])
         single.use()

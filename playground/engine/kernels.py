@@ -1,7 +1,7 @@
 """Run what computes texels: a kernel by either driver, or a plain shader.
 
-A kernel that repeats writes two sets of textures in turn, reading one and writing the
-other; one with visits, in compute, changes its only set in place. One whose turns fill a
+A kernel that repeats writes two sets of textures alternately, reading one and writing the
+other; one with visits, in compute, changes its only set in place. One whose iterations fill a
 lattice ever more closely fills, in fragment, as small a part of its textures as that takes.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder, has_unwired
-from playground.engine.plan import Step
+from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
@@ -42,17 +42,16 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    turn: tuple[int, int] | None = None  # of the loop around it, and its iterations in all
+    loop_iteration: LoopIteration | None = None  # of the loop around it
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
-    def count(self, program: Program, iteration: int, repeat: str, whole: int, turns: int = 1) -> None:
+    def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
-        now, total = (iteration, whole) if repeat != "1" or self.turn is None else self.turn
-        program.set("iteration", now)
-        program.set("iterations", total)
-        program.set("until", now + turns)
+        own, around = (iteration, whole), self.loop_iteration
+        now, total = own if repeat != "1" or around is None else around
+        program.set_all({"iteration": now, "iterations": total, "until": now + at_once})
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
@@ -83,7 +82,7 @@ class Kernels:
         unit = self.binder.bind(program, step, job.given, job.inputs)
         if driver == COMPUTE and step.kernel.visits:
             return self._in_place(job, program, state)
-        return self._by_turns(job, program, driver, state, unit)
+        return self._alternately(job, program, driver, state, unit)
 
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
@@ -99,14 +98,13 @@ class Kernels:
             for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         ]
-        for name in (i.name for i in kernel.inputs):
+        for name in [i.name for i in kernel.inputs]:
             texture = job.inputs.get(name, NOT_WIRED).texture
             if kernel.reads(f"{WIRED}{name}"):
                 choices.append((f"{WIRED}{name}", int(texture is not None)))
             if kernel.reads(f"{MATCHES}{name}"):
-                choices.append(
-                    (f"{MATCHES}{name}", int(texture is not None and texture.size == job.step.size))
-                )
+                matches = texture is not None and texture.size == job.step.size
+                choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         return self.programs.get(kernel, driver, (*choices, *more))
@@ -137,13 +135,13 @@ class Kernels:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
                 program.set(parameter.name, value)
-            elif parameter.name in program:
+            elif parameter.name in program.uniforms:
                 unit = self.binder.file(program, parameter, value, unit, encoded=True)
         if step.window is not None:
             program.set(WINDOW, step.window.origin)
         for meaning, values in usual.items():
             for name in PLAIN_UNIFORMS[meaning]:
-                if name in program:
+                if name in program.uniforms:
                     _set_fitting(program, name, values)
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         for name, uniform in program.uniforms.items():
@@ -163,24 +161,24 @@ class Kernels:
         program.fill()
         return result
 
-    # ── turns ────────────────────────────────────────────────────────────────
+    # ── iterations ───────────────────────────────────────────────────────────
 
-    def _by_turns(
+    def _alternately(
         self, job: Job, program: Program, driver: str, state: Mapping[str, moderngl.Texture], unit: int
     ) -> Result:
         step, kernel = job.step, job.step.kernel
         groups = (-(-step.size[0] // LOCAL), -(-step.size[1] // LOCAL))
         before, result = job.start, None  # two sets of textures that change places
-        iteration = before.turn if before else 0
-        at_once = max(self._evaluated("at_once", kernel.at_once, job), 1)
+        iteration = before.iterations if before else 0
+        at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = bool(kernel.stride) and driver == FRAGMENT and not state
         shift = 0
         while iteration < step.repeat:
-            turns = min(at_once, step.repeat - iteration)
+            count = min(at_once, step.repeat - iteration)
             result = self.pool.take(step.size, kernel.outputs)
             self.binder.previous(program, kernel, state, unit)
-            job.count(program, iteration, kernel.repeat, step.whole, turns)
+            job.count(program, iteration, kernel.repeat, step.whole, count)
             if driver == COMPUTE:
                 self.images(result, read=False)
                 program.run(*groups)
@@ -190,18 +188,18 @@ class Kernels:
                 program.set("k_shift", shift)
                 framebuffer = result.framebuffer(self.ctx)
                 framebuffer.use()
-                width, height = (((side - 1) >> shift) + 1 for side in step.size)
+                width, height = [((side - 1) >> shift) + 1 for side in step.size]
                 self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
                 self.ctx.viewport = (0, 0, *step.size)
             if before is not None:
                 self.pool.give(before)
             before, state = result, result.textures
-            iteration += turns
+            iteration += count
         assert before is not None
         if shift:
             before = self._spread(before, shift)
-        before.turn = step.repeat
+        before.iterations = step.repeat
         return before
 
     def _shift(self, job: Job, iteration: int) -> int:
@@ -209,13 +207,11 @@ class Kernels:
         kernel = job.step.kernel
         stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
         if stride < 1 or stride & (stride - 1):
-            message = f"stride '{kernel.stride}' gives {stride} for turn {iteration}"
+            message = f"stride '{kernel.stride}' gives {stride} for iteration {iteration}"
             raise kernel.error(f"pass '{job.step.path}': {message}; a power of two was expected")
         return stride.bit_length() - 1
 
     def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
-        if text == "1":
-            return 1
         try:
             return expressions.evaluate(text, job.numbers(**more))
         except ExpressionError as error:
@@ -256,7 +252,7 @@ class Kernels:
         step, kernel = job.step, job.step.kernel
         result = job.start or self._untouched(step, state)
         self.images(result, read=True)
-        for iteration in range(result.turn, step.repeat):
+        for iteration in range(result.iterations, step.repeat):
             job.count(program, iteration, kernel.repeat, step.whole)
             names = job.numbers(iteration=iteration, iterations=step.whole)
             try:
@@ -267,7 +263,7 @@ class Kernels:
             if min(cells) >= 1:
                 program.set("k_cells", cells)
                 program.run(-(-cells[0] // LOCAL), -(-cells[1] // LOCAL))
-        result.turn = step.repeat
+        result.iterations = step.repeat
         return result
 
     def _initial(self, job: Job) -> dict[str, moderngl.Texture]:

@@ -1,4 +1,4 @@
-"""Hold the textures that one pass made, and give those that nobody needs to the next pass.
+"""Hold the textures that one pass computed, and give those that are no longer used to the next pass.
 
 A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
 """
@@ -34,7 +34,7 @@ class Surface:
         return (bytes_of(self.size, self.format) + 4 * self.size[0] * self.size[1]) * self.samples
 
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release its framebuffer and renderbuffers."""
         self.framebuffer.release()
         self.colour.release()
         self.depth.release()
@@ -42,12 +42,12 @@ class Surface:
 
 @dataclass(eq=False)
 class Result:
-    """The textures that one pass made."""
+    """The textures that one pass computed."""
 
     size: tuple[int, int]
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
-    turn: int = 0  # iterations done, of a pass that repeats
+    iterations: int = 0  # done, of a pass that repeats
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
@@ -69,7 +69,7 @@ class Result:
         return self._framebuffer
 
     def release(self) -> None:
-        """Give the textures back to the driver."""
+        """Release its textures and what draws to them."""
         if self._framebuffer is not None:
             self._framebuffer.release()
             self._framebuffer = None
@@ -92,7 +92,7 @@ UNWIRED = Wired()
 
 
 class Pool:
-    """Results that nobody needs, to be used again: making a texture costs more than filling it."""
+    """Spare results, to be used again: making a texture costs more than filling it."""
 
     def __init__(self, ctx: moderngl.Context, limit: int) -> None:
         self.ctx = ctx

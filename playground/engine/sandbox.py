@@ -19,7 +19,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.process.crash_report import CrashReport
-from playground.process.messages import Answer, UnexpectedError
+from playground.process.messages import Answer, summary_of
 from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.sketch.model import Sketch
 
@@ -222,7 +222,6 @@ def _report_of(answer: Answer) -> SandboxReport:
     error = answer.error
     if isinstance(error, MemoryError):
         error = PlaygroundError("the sandbox ran out of memory")
-    elif isinstance(error, UnexpectedError):
-        error = PlaygroundError(error.summary)
-    assert isinstance(error, PlaygroundError)
+    elif not isinstance(error, PlaygroundError):
+        error = PlaygroundError(f"the sandbox failed: {summary_of(error)}")
     return SandboxReport(False, error, seconds=answer.seconds)

@@ -69,10 +69,10 @@ class UnexpectedError(RuntimeError):
     ``args`` are "Type: message", and the traceback.
     """
 
-    @property
-    def summary(self) -> str:
-        """Its type and message."""
-        return str(self.args[0])
-
     def __str__(self) -> str:
         return f"in the child process:\n{self.args[1]}"
+
+
+def summary_of(error: Exception | None) -> str:
+    """Return an error's type and message, of an ``UnexpectedError`` those that the child met."""
+    return str(error.args[0]) if isinstance(error, UnexpectedError) else f"{type(error).__name__}: {error}"

@@ -102,6 +102,9 @@ class Worker(Closing):
                 pass_fds=() if life < 0 else (life,),
                 start_new_session=True,
             )
+        except BaseException:
+            self._release()
+            raise
         finally:
             if life >= 0:
                 os.close(life)
@@ -171,7 +174,7 @@ class Worker(Closing):
         except queue.Empty:
             return None
         if answer is None:
-            raise WorkerDied(self._buried())
+            raise WorkerDied(self._report_death())
         self.busy = False
         return answer
 
@@ -184,7 +187,7 @@ class Worker(Closing):
             if self.starting_seconds > limit:
                 raise WorkerTimeout(self.end(kill=True))
         if self._ready is None:
-            raise WorkerDied(self._buried())
+            raise WorkerDied(self._report_death())
         if self._ready.error is not None:
             raise self._ready.error
         return self._ready.info
@@ -228,13 +231,17 @@ class Worker(Closing):
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         self._thread.join(5.0)
+        status, output = self._process.returncode, self._release()
+        return CrashReport(status, output, self.progress, self._not_a_frame, was_ready=self.is_ready)
+
+    def _release(self) -> str:
+        """Close this end of the life pipe and the file of what was printed; return its rest."""
         if self._life >= 0:
             os.close(self._life)
             self._life = -1
-        status, output = self._process.returncode, self._output.close()
-        return CrashReport(status, output, self.progress, self._not_a_frame, was_ready=self.is_ready)
+        return self._output.close()
 
-    def _buried(self) -> CrashReport:
+    def _report_death(self) -> CrashReport:
         """Report how the process ended, whose pipe is closed."""
         self._thread.join(5.0)
         return self.end(kill=bool(self._not_a_frame), patience=2.0)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
@@ -30,7 +30,7 @@ def inline_sketch(
     Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and
     ``SketchError`` for a loop of several passes, which has no place in an inlined sketch.
     """
-    plan = make_plan(sketch, frame_size=frame, time=time, steps=steps)
+    plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     if len(leaves) == 1 and leaves[0].kernel.kind.startswith("plain"):
         return _plain(leaves[0], plan)

@@ -140,7 +140,7 @@ class Checker:
         if self._plain_forms is None:
             self._plain_forms = PlainForms(silent, renderer.compute)
         self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
-        self._plain_forms.tell(case.sketch)
+        self._plain_forms.report(case.sketch)
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
         """Add what the child printed to the test's report, where pytest shows it if the test fails."""

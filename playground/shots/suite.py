@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.error_place import told_at
+from playground.engine.error_place import located_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
@@ -130,7 +130,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     there is no frame.
     """
     shot = case.shot
-    with told_at(case.sketch, shot):
+    with located_at(case.sketch, shot):
         sketch = case.sketch.for_shot(shot)
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error

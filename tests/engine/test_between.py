@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
@@ -117,7 +117,7 @@ def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
 def test_all_turns_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
     sketch = sketch_of(tmp_path, "diamond_square")
     for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
-        step = make_plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
+        step = Planner().plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
         assert step is not None and step.between is None
 
 

@@ -8,7 +8,7 @@ from playground.sketch.load import load
 
 
 def held(engine: Engine) -> int:
-    return sum(kept.bytes for kept in engine.cache._kept.values())
+    return sum(kept.bytes for kept in engine.cache._cached.values())
 
 
 def test_bytes_are_those_of_what_is_kept(ctx):

@@ -49,7 +49,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
     told: list[tuple[str, str]] = []
-    any_engine.warnings.tell = lambda found: told.append((found.place, found.message))
+    any_engine.warnings.report = lambda found: told.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
     place = next(place for place, message in told if message == TURNED)

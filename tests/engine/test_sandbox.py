@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -100,6 +102,13 @@ def test_it_tries_the_smallest_terrain_that_is_accepted(sandbox, folder):
     assert smallest_terrain(sketch) == (64, 64)
     report = sandbox.run(TrySketch(sketch))
     assert report.ok, report.error
+
+
+def test_what_cannot_be_sent_is_a_sentence_and_the_next_request_works(sandbox, folder):
+    report = sandbox.run(replace(TrySketch(folder.one(GOOD)), drivers=lambda: None))
+    assert not report.ok
+    assert re.fullmatch(r"the sandbox failed: \w+: .*(pickle|local object).*", str(report.error))
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
 def test_a_library_file_is_compiled_alone(sandbox, folder):

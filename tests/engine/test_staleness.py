@@ -175,11 +175,11 @@ def test_the_driver_and_the_form_enter_the_key(ctx, four):
     with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="auto") as two:
         one.texture(four, "height")
         two.texture(four, "height")
-        assert set(one.cache._kept) == set(two.cache._kept), "auto draws a plain kernel by fragment"
+        assert set(one.cache._cached) == set(two.cache._cached), "auto draws a plain kernel by fragment"
     if ctx.version_code >= 430:
         with Engine(ctx, driver="compute") as three:
             three.texture(four, "height")
-            assert set(three.cache._kept) != set(one.cache._kept)
+            assert set(three.cache._cached) != set(one.cache._cached)
 
 
 # ── the bound ────────────────────────────────────────────────────────────────

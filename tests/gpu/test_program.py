@@ -36,7 +36,7 @@ def kernel(tmp_path):
 @pytest.fixture
 def programs(ctx):
     made = Programs(ctx)
-    made.begin()
+    made.frame += 1
     yield made
     made.release()
 
@@ -63,8 +63,8 @@ def test_a_kernel_is_wrapped_once(programs, kernel, monkeypatch):
 
 def test_what_the_driver_dropped_is_not_set(programs, kernel):
     program = programs.get(kernel(), FRAGMENT)
-    assert "amount" in program
-    assert "idle" not in program
+    assert "amount" in program.uniforms
+    assert "idle" not in program.uniforms
     program.set("idle", 3.0)
     program.set("never_was", 3.0)
     program.set("amount", 0.25)
@@ -79,7 +79,7 @@ def test_programs_of_this_frame_stay_however_many(programs, kernel):
     kept = [programs.get(kernel(KERNEL.replace("0.0", f"{i}.0")), FRAGMENT) for i in range(80)]
     assert len(programs) == 80
     assert len({id(p) for p in kept}) == 80
-    programs.begin()
+    programs.frame += 1
     programs.get(kernel(KERNEL.replace("0.0", "1000.0")), FRAGMENT)
     assert len(programs) == 64
 
