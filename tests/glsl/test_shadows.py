@@ -382,7 +382,7 @@ def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
 
 
 def test_both_drivers_sweep_alike(ctx, lit):
-    """The fragment driver sweeps each texel's band anew, the compute variant each band once."""
+    """The plain form follows a texel's lines anew for each texel, the compute variant each line once."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
@@ -396,7 +396,7 @@ def test_both_drivers_sweep_alike(ctx, lit):
 
 @pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
 def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(ctx, lit, method):
-    """A fragment has to sweep its texel's whole band: 36 s on 1537 texels a side, the march 2 s."""
+    """The plain form looks along a texel's whole line: half a minute on 1537 texels a side, the march 2 s."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     said = []
