@@ -13,6 +13,7 @@ import pytest
 from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 
 from playground.engine.engine import Engine
+from playground.sketch.parameter import LARGEST_SIDE
 
 from .lands import HILLS
 
@@ -183,6 +184,21 @@ def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
         found.append(any_engine.read(sketch, "seen"))
     assert 0.05 < (found[0] < 1).mean() and (found[0] > 0).mean() > 0.05
     np.testing.assert_array_equal(found[0], found[1])
+
+
+FAR_WALL = """
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return texel.x == size.x - 1 ? 1.0 : 0.0; }
+"""
+
+
+@pytest.mark.parametrize("method", ["ray_cast", "sun_disc"])
+def test_a_shadow_crosses_the_widest_terrain_in_the_shortest_steps(any_engine, lit, method):
+    """A wall of 300 m hides all of a disc at 0.7 degrees as far as 17.8 km away: on 16384 texels of 1 m."""
+    values = {"size": [LARGEST_SIDE, 2], "extent": [LARGEST_SIDE - 1.0, 1.0], "relief": 300.0, "stride": 0.25}
+    found = visible(any_engine, lit(FAR_WALL, method, (90, 0.7), **values))
+    assert found[:, :-1].max() < 1e-6
+    assert found[:, -1].min() == 1
 
 
 # Against the slow marches
@@ -382,7 +398,7 @@ def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
 
 
 def test_both_drivers_sweep_alike(ctx, lit):
-    """The fragment driver sweeps each texel's band anew, the compute variant each band once."""
+    """The plain form follows a texel's lines anew for each texel, the compute variant each line once."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
@@ -396,7 +412,7 @@ def test_both_drivers_sweep_alike(ctx, lit):
 
 @pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
 def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(ctx, lit, method):
-    """A fragment has to sweep its texel's whole band: 36 s on 1537 texels a side, the march 2 s."""
+    """The plain form looks along a texel's whole line: half a minute on 1537 texels a side, the march 2 s."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     said = []
