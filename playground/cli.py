@@ -159,7 +159,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.paths import DEFAULT_SKETCH
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, beside=True)
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, show_lessons=True)
         return
     note("no display here, so a picture is rendered instead; playground --help lists the commands")
     render.make_picture(render.Request(), renderer)

@@ -3,7 +3,6 @@
     theme.py          fonts, colours, margins
     window.py         GLFW, an OpenGL context, Dear ImGui: the one place that knows of screens
     dividers.py       the lines that part a picture, moved by the mouse
-    gesture.py        a drag over the picture → a camera
     keys.py           the table of keys, which the key map shows as well
     dome.py           the sky as a disc, for a direction
     widgets.py        one control for each row of ``sketch/widgets.py``
@@ -12,7 +11,7 @@
     brush_panel.py    the brush's controls
     panel.py          all of that, made from the sketch's annotations
     overlay.py        errors and notices over the picture
-    mouse.py          the mouse over the picture: what it turns, moves or paints
+    mouse.py          the mouse over the picture: orbit, pan, sun, dividers, brush
     inspect/          plots, graph, comparison and time on the screen
     lesson/           lessons: a panel of text, and the picture as their figure
     status.py         what the window shows, as JSON lines for another program

@@ -69,7 +69,7 @@ FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
 _SANDBOX = 0.004  # [s] between questions to the sandbox
 _SETTLES = 3  # frames that the panel takes to settle after something happened
-_LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
+_LONGEST_STEP = 0.25  # [s] time never jumps by more, however long a frame took
 
 
 def run(
@@ -83,19 +83,19 @@ def run(
     fresh: bool = False,
     lesson: str = "",
     language: str = "",
-    beside: bool = False,
-    keeps: int = 0,
+    show_lessons: bool = False,
+    cache_limit: int = 0,
     time_limit: float | None = None,
-    tell: Callable[[str], None] = to_log,
+    report: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. The user's edits
     of the last time are restored, unless ``fresh``. ``lesson`` opens one by name, in a
-    ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
+    ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
-    ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``tell`` receives each error, for the terminal.
+    ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``report`` receives each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -126,10 +126,10 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         rememberer = Rememberer(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, SessionCaching(session, keeps), tell)
+        live = Live(window, session, watcher, rememberer, SessionCaching(session, cache_limit), report)
         if found.at is not None:
-            live.place.stand_at(found.at)
-        live.lessons.begin(lesson, language, beside=beside)
+            live.place.move_to(found.at)
+        live.lessons.begin(lesson, language, show_lessons=show_lessons)
         stack.callback(live.release)
         stack.callback(live.bench.captures.close)
         stack.callback(rememberer.close)
@@ -177,7 +177,7 @@ class Live:
         watcher: Watcher,
         rememberer: Rememberer,
         caching: SessionCaching,
-        tell: Callable[[str], None],
+        report: Callable[[str], None],
     ) -> None:
         self.window = window
         self.rememberer = rememberer
@@ -195,7 +195,7 @@ class Live:
         self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size())
         self.drops = Drops(self.bench.commands)
         self.guard = Guard(self.bench.notices.say)
-        self.terminal = TerminalErrors(tell)
+        self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
@@ -211,9 +211,9 @@ class Live:
         """Go on until the window is closed, or so many seconds have passed."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.guard.run("watching the files", self.follower.follow, None)
-        while self._stays():
+        while self._stays_open():
             now = self.bench.notices.now()
-            others = self.bench.inspection.patience(now), self.lessons.reading.patience(now)
+            others = self.bench.inspection.patience(now), self.lessons.reader.patience(now)
             patience = min(self._patience(), *others)
             if end is not None:
                 left = end - time.perf_counter()
@@ -232,13 +232,13 @@ class Live:
         if self.follower.take(self.bench.painting.files):
             self._settling = _SETTLES  # an error grows to its size
 
-    def _stays(self) -> bool:
+    def _stays_open(self) -> bool:
         """Return whether the window stays; the user decides where it is to close over unsaved texts."""
         if self.window.open:
             return True
         if not unsaved(self.bench.files.editing):
             return False
-        self.window.stay()
+        self.window.cancel_close()
         self.bench.files.leaving, self._settling = True, _SETTLES
         return True
 
@@ -262,7 +262,7 @@ class Live:
         self._settling = _SETTLES
 
     def _patience(self) -> float:
-        """Say how long nothing needs to be done [s]."""
+        """Return how long nothing needs to be done [s]."""
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0:
@@ -299,7 +299,7 @@ class Live:
         """Draw the window once; a part of it that fails is left out, and a notice says so."""
         window, bench, guard = self.window, self.bench, self.guard
         look = window.theme
-        window.call(title_of(self.session.path))
+        window.set_title(title_of(self.session.path))
         guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
         window.zoom = bench.interface.size.size
         window.begin()
@@ -335,7 +335,7 @@ class Live:
         draws, error = session.draws, session.error
         picture = session.frame(size)
         if session.draws != draws or session.error is not error:
-            self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
+            self._settling = _SETTLES  # the panel shows what the frame took; an error grows to its size
         return picture
 
     def _take_in(self) -> None:
@@ -366,7 +366,7 @@ class Live:
             parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = bench, picture, look, area, self.window.density
-        draw("what is shown besides the picture", lambda: draw_inspection(*view), None)
+        draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: self.drops.draw(look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)
@@ -407,6 +407,6 @@ class Live:
         """Say so when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None and self.lessons.reading.figure.own is None:
+            if self._reloads is not None and self.lessons.reader.figure.before_lesson is None:
                 self.bench.notices.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

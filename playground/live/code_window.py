@@ -108,7 +108,7 @@ def _view_of(editing: Editing) -> _View:
         editor.set_tab_size(4)
         editor.set_insert_spaces_on_tabs(True)
         editor.set_show_whitespaces_enabled(False)
-        editor.set_complete_paired_glyphs(False)  # it would put a second one beside each that is typed
+        editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
         editor.set_text(editing.text.base)
         editing.view = _View(editor, editor.get_undo_index())
     return editing.view

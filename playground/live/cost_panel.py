@@ -73,7 +73,7 @@ def _plots(record: Record, look: Theme) -> None:
     axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
     held = len(record.whole.values)
     across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
-    dear = record.dearest(_MOST)
+    dear = record.most_expensive(_MOST)
     with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
         if drawn:
             implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
@@ -111,8 +111,7 @@ def _compiling(times: Mapping[str, float]) -> None:
         imgui.text_unformatted(Path(path).name)
         imgui.set_item_tooltip(path)
 
-    dearest = sorted(times.items(), key=lambda item: -item[1])
-    table(
-        "compiled", 2, [(partial(name, p), partial(imgui.text, f"{ms:.1f} ms")) for p, ms in dearest], _TABLE
-    )
+    ranked = sorted(times.items(), key=lambda item: -item[1])
+    rows = [(partial(name, path), partial(imgui.text, f"{ms:.1f} ms")) for path, ms in ranked]
+    table("compiled", 2, rows, _TABLE)
     imgui.tree_pop()

@@ -1,4 +1,4 @@
-"""Turn what the user does on keys, a mouse or a gamepad into the controls of a craft."""
+"""Convert input from keys, a mouse or a gamepad to the controls of a craft."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def by_mouse(across: float, down: float, height: float) -> Controls:
     """Return what a mouse asks for that went so far [pixels] since its button went down; down is nose up."""
     if height <= 0:
         return Controls()
-    reach = FULL * height
-    return Controls(0, round(100 * down / reach), round(100 * across / reach), 0).within()
+    full = FULL * height
+    return Controls(0, round(100 * down / full), round(100 * across / full), 0).within()
 
 
 class Wheel:
@@ -58,7 +58,7 @@ class Wheel:
     def __init__(self) -> None:
         self._owed = 0.0  # steps, with the sign of their way
 
-    def turn(self, notches: float) -> None:
+    def scroll(self, notches: float) -> None:
         """Take in so many notches; one the other way ends what is left."""
         if notches * self._owed < 0:
             self._owed = 0.0
@@ -83,10 +83,10 @@ def by_gamepad(axes: Sequence[float]) -> Controls:
     """
     if len(axes) < 6:
         return Controls()
-    across, down, turn = (_away(axes[n]) for n in (0, 1, 2))
+    across, down, yaw = (_away(axes[n]) for n in (0, 1, 2))
     faster, slower = ((1 + axes[n]) / 2 for n in (5, 4))
     throttle = _away(faster - slower)
-    return Controls(*(round(100 * n) for n in (throttle, down, across, turn))).within()
+    return Controls(*(round(100 * n) for n in (throttle, down, across, yaw))).within()
 
 
 def together(*controls: Controls) -> Controls:

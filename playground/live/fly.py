@@ -1,4 +1,4 @@
-"""A window to fly in: hands in, steps of a sixtieth of a second, parts for some milliseconds, a picture.
+"""A window to fly in: input, steps of a sixtieth of a second, parts for some milliseconds, a picture.
 
 All parts visible are made before the first step. From then on each picture leaves a little
 time to make parts; what is not there yet is far away, in the haze.
@@ -41,7 +41,7 @@ from playground.workbench.last_frame import Painter
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step
 DRAWN = 640 * 360  # [pixels] that a processor draws in time; a larger window shows them larger
-MOST_STEPS = 6  # of one picture: on a slower machine time goes slower, and the hands keep up
+MOST_STEPS = 6  # of one picture: on a slower machine time goes slower
 HOURS = 0.5  # that a key moves the time of day
 _IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
@@ -183,7 +183,7 @@ class Fly:
         self._write_status()
 
     def _take_saves(self) -> None:
-        """Go on over what was saved, once its parts are made; until then time stands still."""
+        """Go on over what was saved, once its parts are made; until then time is paused."""
         saves, flight = self.saves, self.flight
         if saves is None:
             return
@@ -209,10 +209,10 @@ class Fly:
     def _fly(self, passed: float) -> None:
         """Fly as many steps as time has passed, or as many as a slow machine may."""
         self._owed = min(self._owed + passed, MOST_STEPS * STEP)
-        hands = self._hands() if self.replay is None else Controls()
+        controls = self._controls() if self.replay is None else Controls()
         while self._owed >= STEP:
             self._owed -= STEP
-            moment = Moment(together(hands, self._wheel.next()), self._hour, self._reset)
+            moment = Moment(together(controls, self._wheel.next()), self._hour, self._reset)
             if self.replay is not None:
                 found = next(self.replay, None)
                 if found is None:
@@ -233,10 +233,10 @@ class Fly:
             self.recorder, self.instruments.recording = None, False
             self.instruments.trouble = f"no longer recorded: {error.diagnostics[0].message}"
 
-    # ── hands ────────────────────────────────────────────────────────────────
+    # ── input ────────────────────────────────────────────────────────────────
 
-    def _hands(self) -> Controls:
-        self._wheel.turn(imgui.get_io().mouse_wheel)
+    def _controls(self) -> Controls:
+        self._wheel.scroll(imgui.get_io().mouse_wheel)
         down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
         found = [by_keys(Keys(**down))]
         if imgui.is_mouse_down(0):
@@ -280,8 +280,8 @@ class Fly:
             self._reset, self.paused = True, False
         for name, hours in (("earlier", -HOURS), ("later", HOURS)):
             if name in pressed and self.flight.plot.hour:
-                asked = self.flight.hour if self._hour is None else self._hour
-                self._hour = (asked + hours) % 24.0
+                hour = self.flight.hour if self._hour is None else self._hour
+                self._hour = (hour + hours) % 24.0
                 self.paused = False
 
     def _sign(self) -> str:
@@ -296,7 +296,7 @@ class Fly:
         self.window.zoom = self.size.size
 
     def _leave(self) -> None:
-        """Close the help; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
+        """Close the help; else pause. Nothing quits by a slip: in flight Ctrl and Q are controls."""
         if self.instruments.help:
             self.instruments.help = False
         else:
@@ -355,5 +355,5 @@ def _pressed() -> set[str]:
 
 
 def _typed() -> list[int]:
-    """Return the characters typed since the last frame: where ? stands depends on the keyboard."""
+    """Return the characters typed since the last frame: the key of ? depends on the keyboard."""
     return [int(c) for c in imgui.get_io().input_queue_characters]

@@ -1,6 +1,6 @@
 """Keep the window alive: a part of a frame that fails becomes a notice, and the rest goes on.
 
-imgui's own checks raise an exception as well, in the middle of whatever was drawn. What was begun
+imgui's own checks raise an exception as well, in the middle of drawing. What was begun
 and not ended by then (windows, ids, colours, fonts) is ended here, so that the next part finds imgui
 as the one before had left it.
 """

@@ -102,7 +102,7 @@ def _step(bench: Bench) -> None:
 
 
 def ctrl_held() -> bool:
-    """Say whether Ctrl is down; in a slow frame it may be up again together with the key it was held for."""
+    """Return whether Ctrl is down, or went up in this frame, as in a slow one together with its key."""
     io = imgui.get_io()
     return bool(io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl))
 

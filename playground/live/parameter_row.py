@@ -22,7 +22,7 @@ from playground.workbench.session import Session
 from playground.workbench.typed_values import read_typed
 
 TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
-"""Widgets that turn into a field at a double click, or a click with Ctrl."""
+"""Widgets that become a field at a double click, or a click with Ctrl."""
 
 _MENU = "parameter"
 _PRESSED = imgui.HoveredFlags_.allow_when_blocked_by_active_item.value  # as while the lock is pressed

@@ -122,7 +122,7 @@ class _Drawing:
     def header(self, spec: PassSpec, section: Section | None, *, opened: bool) -> bool:
         """Draw a pass's bar: its name, how often it ran, and a reset where something is changed.
 
-        ``opened``: whether it is open as long as nobody has clicked on it.
+        ``opened``: whether it is open until it is clicked on.
         """
         session, look = self.rows.session, self.look
         engine = session.engine

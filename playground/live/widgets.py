@@ -110,7 +110,7 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     wide = imgui.calc_item_width()
     origin = imgui.get_cursor_screen_pos()
     side = min(_PAD * place.scale, wide)
-    radius, beside = side / 2, wide - side - imgui.get_style().item_spacing.x
+    radius, field = side / 2, wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
@@ -132,11 +132,11 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     imgui.same_line()
     imgui.begin_group()
     _name("azimuth")
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
     _name("elevation")
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     raised, elevation = imgui.drag_float(
         f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP
     )
@@ -159,7 +159,7 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     origin = imgui.get_cursor_screen_pos()
     wide = imgui.calc_item_width()
     side = min(_PAD * place.scale, wide)
-    beside = wide - side - imgui.get_style().item_spacing.x
+    field = wide - side - imgui.get_style().item_spacing.x
     dragged = _pad(place, side)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
@@ -173,9 +173,9 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
         result = (round(dragged[0], 4), round(1 - dragged[1], 4))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f E", _CLAMP)
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f N", _CLAMP)
     imgui.end_group()
     return (tidied(x), tidied(y)) if east or north else result

@@ -49,7 +49,7 @@ class Place:
         (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
         return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
 
-    def stand_at(self, at: tuple[int, int]) -> None:
+    def move_to(self, at: tuple[int, int]) -> None:
         """Put its upper left corner somewhere, or as near as all of it is on a screen."""
         handle = self._handle()
         width, height = glfw.get_window_size(handle)

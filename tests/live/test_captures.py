@@ -26,7 +26,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import map_of_height
 from .desk import Bare
 
-LAND = """// land.glsl -- a slope that goes up
+TERRAIN = """// terrain.glsl -- a slope that goes up
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
 uniform int kind = 0; //! menu("one", "two")
@@ -35,7 +35,7 @@ float kernel(ivec2 texel) { return level * float(texel.x + kind) / float(size.x)
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height(channel="red")
+    + map_of_height("./terrain", channel="red")
     + """[[keyframe]]
 time = 0.0
 set = { "height.tint" = "#000000" }
@@ -50,7 +50,9 @@ SIZE = (40, 30)
 
 @pytest.fixture
 def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Bench]:
-    (tmp_path / "land.glsl").write_text(LAND.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(
+        TERRAIN.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8"
+    )
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     (tmp_path / "out").mkdir()
     session = Session(any_engine, tmp_path)
@@ -83,7 +85,7 @@ def wait(bench: Bench) -> None:
         time.sleep(0.01)
 
 
-def said(bench: Bench) -> str:
+def notices_of(bench: Bench) -> str:
     return "\n".join(notice.text for notice in bench.notices.items)
 
 
@@ -95,10 +97,10 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
     assert frame is not None
     done(bench)
     made = bench.captures.made
-    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, said(bench)
+    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, notices_of(bench)
     pixels, _ = read_png(made)
     assert np.array_equal(pixels, frame.array)
-    assert f"saved {made}, 40 x 30 pixels" in said(bench)
+    assert f"saved {made}, 40 x 30 pixels" in notices_of(bench)
     bench.captures.wish.multiple = 4
     done(bench)
     assert bench.captures.made is not None and bench.captures.made != made
@@ -111,13 +113,13 @@ def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Ben
     assert bench.captures.working is not None
     bench.captures.working.stop()
     wait(bench)
-    assert "the capture was stopped" in said(bench) and list(bench.captures.folder.iterdir()) == []
+    assert "the capture was stopped" in notices_of(bench) and list(bench.captures.folder.iterdir()) == []
     bench.captures.start()
     bench.captures.close()
     assert bench.captures.working is None and list(bench.captures.folder.iterdir()) == []
 
 
-def test_a_process_that_dies_is_told(bench: Bench) -> None:
+def test_a_process_that_dies_is_reported(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
@@ -153,7 +155,7 @@ def test_numbered_pictures_a_film_and_a_sheet(bench: Bench) -> None:
     assert not list(bench.captures.folder.rglob("*.part"))
 
 
-def test_what_cannot_be_made_is_said_before_anything_begins(
+def test_an_invalid_capture_is_reported_before_anything_begins(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for wish, sentence in (
@@ -167,7 +169,7 @@ def test_what_cannot_be_made_is_said_before_anything_begins(
         bench.captures.wish = wish
         bench.captures.start()
         assert bench.captures.working is None and bench.captures.failed
-        assert bench.captures.failed in said(bench)
+        assert bench.captures.failed in notices_of(bench)
 
 
 def test_without_pyav_one_sentence_with_the_command(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -252,7 +254,7 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
 
     from playground.live.capture_window import draw_capture
 
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, tmp_path / "sketch.toml")
     started: list[Wish] = []
@@ -266,7 +268,7 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
     monkeypatch.setattr(bare, "draw", both)
     try:
         bare.key(imgui.Key.c)
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.bench.captures.shown
         wish = bare.bench.captures.wish
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):

@@ -35,11 +35,11 @@ def test_the_mouse_is_a_stick_around_where_its_button_went_down():
 
 def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_it():
     wheel = Wheel()
-    wheel.turn(1.0)
+    wheel.scroll(1.0)
     found = [wheel.next().throttle for _ in range(NOTCH + 2)]
     assert found == [100] * NOTCH + [0, 0]
-    wheel.turn(3.0)
-    wheel.turn(-1.0)
+    wheel.scroll(3.0)
+    wheel.scroll(-1.0)
     assert [wheel.next().throttle for _ in range(NOTCH + 1)] == [-100] * NOTCH + [0]
 
 

@@ -1,4 +1,4 @@
-"""Every character that the window may be asked to show is in the fonts that it loads."""
+"""Every character that the window may show is in the fonts that it loads."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def theme() -> Iterator[Theme]:
 def constants(path: Path) -> Iterator[str]:
     """Yield the texts in a module that are not documentation."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    said = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in said:
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
             yield node.value
 
 

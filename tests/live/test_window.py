@@ -27,7 +27,7 @@ from playground.live.app import run
 sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #include "inc/wave.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
@@ -41,7 +41,7 @@ extent = 1000.0
 relief = 200.0
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 samples = 1
@@ -60,7 +60,7 @@ class App(Program):
         self.pictures = folder / "pictures"
         (self.sketch / "inc").mkdir(parents=True, exist_ok=True)
         self.pictures.mkdir(exist_ok=True)
-        for name, text in {"land.glsl": LAND, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
+        for name, text in {"terrain.glsl": TERRAIN, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
             (self.sketch / name).write_text(text, encoding="utf-8")
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.sketch)], self.pictures)
         self.wait(lambda now: now["draws"] > 0)
@@ -85,9 +85,9 @@ def save_in_place(path: Path, text: str) -> None:
 
 
 def save_by_rename(path: Path, text: str) -> None:
-    beside = path.with_name(f".{path.name}.swp")
-    beside.write_text(text, encoding="utf-8")
-    beside.replace(path)
+    neighbour = path.with_name(f".{path.name}.swp")
+    neighbour.write_text(text, encoding="utf-8")
+    neighbour.replace(path)
 
 
 def is_red(pixel: NDArray[np.uint8]) -> bool:
@@ -95,7 +95,7 @@ def is_red(pixel: NDArray[np.uint8]) -> bool:
 
 
 def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
-    """Say whether something comes true: what the status tells, the screen may show a moment later."""
+    """Return whether something comes true: what the status tells, the screen may show a moment later."""
     end = time.monotonic() + seconds
     while not (found := is_so()) and time.monotonic() < end:
         time.sleep(0.05)
@@ -103,12 +103,12 @@ def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
 
 
 def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None:
-    land, wave = app.sketch / "land.glsl", app.sketch / "inc" / "wave.glsl"
+    land, wave = app.sketch / "terrain.glsl", app.sketch / "inc" / "wave.glsl"
     for save in (save_in_place, save_by_rename):
         first, first_hash = app.picture(), app.now()["picture"]
-        assert first.std() > 1.0, "there is land on the screen"
+        assert first.std() > 1.0, "there is terrain on the screen"
 
-        save(land, LAND.replace("level * wave", "0.3 * level * wave"))
+        save(land, TERRAIN.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now, old=first_hash: now["picture"] != old and not now["error"])
         lower = app.picture()
         assert not np.array_equal(lower, first)
@@ -120,7 +120,7 @@ def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None
         assert soon(lambda: is_red(app.screen.pixels()[HEIGHT - 40, PANEL + 30])), "a red box says so"
 
         save(wave, WAVE)
-        save(land, LAND)
+        save(land, TERRAIN)
         app.wait(lambda now, old=first_hash: now["picture"] == old and not now["error"])
         assert soon(lambda old=first: np.array_equal(app.picture(), old))
     assert app.process.poll() is None
@@ -155,7 +155,7 @@ def test_the_mouse_and_the_keys(app: App) -> None:
     screen.do("key", "r")
     app.wait(lambda now: now["picture"] == first)
     runs = app.now()["runs"]
-    assert runs["height"] == 1, "the camera moved; the land was not made again"
+    assert runs["height"] == 1, "the camera moved; the terrain was not made again"
 
     screen.do("mousemove", 100, 300, "mousedown", 1, "mousemove", 160, 300, "mouseup", 1)
     time.sleep(0.5)
@@ -181,7 +181,7 @@ def test_the_mouse_and_the_keys(app: App) -> None:
 
 PARTED = """// parted.glsl -- black on the left of a line, white on its right
 #pragma kernel(output = "frame:rgba8")
-uniform float line = 0.5;  //! divider Where it stands
+uniform float line = 0.5;  //! divider Where it is
 vec4 kernel(ivec2 texel) { return vec4(vec3(float(texel.x) + 0.5 < line * float(size.x) ? 0.0 : 1.0), 1.0); }
 """
 
@@ -203,7 +203,7 @@ def test_a_line_in_the_picture_is_dragged_and_nothing_else_is(app: App) -> None:
     middle = PANEL + wide // 2
     screen.do("mousemove", middle + 60, 150, "mousedown", 1, "mousemove", middle + 90, 150, "mouseup", 1)
     time.sleep(0.3)
-    assert app.now()["picture"] == shown, "taken hold of beside the line"
+    assert app.now()["picture"] == shown, "grabbed next to the line"
     for words in (("mousemove", middle + 2, 150), ("mousedown", 1), ("mousemove", middle + 50, 160)):
         screen.do(*words)
         time.sleep(0.15)
@@ -244,7 +244,7 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         app.wait(lambda now: now["picture"] == nearer and not now["error"])
         assert soon(lambda: np.array_equal(app.picture(), picture))
         assert soon(lambda: np.array_equal(screen.pixels()[:50, :PANEL], panel[:50])), "and its texts"
-        save_in_place(app.sketch / "land.glsl", LAND.replace("level * wave", "0.3 * level * wave"))
+        save_in_place(app.sketch / "terrain.glsl", TERRAIN.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now: now["picture"] not in ("", nearer) and not now["error"])
         screen.do("mousemove", PANEL + 200, 200, "key", "ctrl+q")
         assert app.ended() == 0, app.complaint()
@@ -259,8 +259,8 @@ def test_after_a_crash_it_opens_as_it_was(screen: Screen, tmp_path: Path) -> Non
         first = app.now()["picture"]
         screen.do("mousemove", PANEL + 200, 200, "click", 4)
         nearer = app.wait(lambda now: now["picture"] != first)["picture"]
-        kept = tmp_path / "state" / "terrain-shader-playground" / "sessions"
-        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in kept.glob("*.json")))
+        memories = tmp_path / "state" / "terrain-shader-playground" / "sessions"
+        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in memories.glob("*.json")))
         app.process.kill()
         app.process.wait(60)
     finally:
@@ -294,7 +294,7 @@ def test_without_a_display_it_says_so_in_one_sentence(tmp_path: Path) -> None:
     gone = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR")
     environment = {k: v for k, v in os.environ.items() if k not in gone}
     environment["PYTHONPATH"] = str(ROOT)
-    (tmp_path / "land.frag").write_text(
+    (tmp_path / "terrain.frag").write_text(
         "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8"
     )
     code = (
@@ -303,7 +303,7 @@ def test_without_a_display_it_says_so_in_one_sentence(tmp_path: Path) -> None:
         "except PlaygroundError as error: print(type(error).__name__, error); sys.exit(error.exit_status)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "land.frag")],
+        [sys.executable, "-c", code, str(tmp_path / "terrain.frag")],
         env=environment,
         capture_output=True,
         text=True,

@@ -1,4 +1,4 @@
-"""The box beside the mouse that shows what is under it."""
+"""The box at the mouse that shows what is under it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from playground.live import theme
 from playground.live.draw import OVERLAY, Area, table, window
 from playground.live.panel_head import ref_name
 from playground.live.theme import Theme
-from playground.workbench.inspect.inspector import Found, Reading, Spot
+from playground.workbench.inspect.inspector import Found, Sample, Spot
 
 _AWAY = 18.0  # of the box from the mouse
 _POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
@@ -51,7 +51,7 @@ def lines_of(found: Found) -> list[tuple[str, str, theme.Rgb]]:
     elif found.spot is None:
         lines.append(("terrain", "none here", theme.DIM))
     shown = found.shown.name if found.shown else ""
-    lines += [_line(reading, theme.INK) for reading in found.readings if reading.name != shown]
+    lines += [_line(sample, theme.INK) for sample in found.samples if sample.name != shown]
     if found.missing:
         listed = ", ".join(ref_name(name) for name in found.missing)
         lines.append(("not in this picture", listed, theme.DIM))
@@ -67,15 +67,15 @@ def _place(spot: Spot) -> list[tuple[str, str]]:
     ]
     faces = ""
     if math.hypot(east, north) > 1e-6:
-        turn = math.degrees(math.atan2(east, north)) % 360
-        faces = f", faces {_POINTS[round(turn / 45) % 8]}"
+        azimuth = math.degrees(math.atan2(east, north)) % 360
+        faces = f", faces {_POINTS[round(azimuth / 45) % 8]}"
     return [*found, ("slope", f"{spot.slope:.1f}°{faces}")]
 
 
-def _line(reading: Reading, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
-    text = "  ".join(f"{value:.6g}" for value in reading.values)
-    if reading.metres is not None and math.isfinite(reading.metres):
-        text += f" = {reading.metres:.2f} m"
-    text += f"   at {reading.texel[0]}, {reading.texel[1]}"
-    colour = ink if all(map(math.isfinite, reading.values)) else theme.ALARM
-    return ref_name(reading.name), text, colour
+def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
+    text = "  ".join(f"{value:.6g}" for value in sample.values)
+    if sample.metres is not None and math.isfinite(sample.metres):
+        text += f" = {sample.metres:.2f} m"
+    text += f"   at {sample.texel[0]}, {sample.texel[1]}"
+    colour = ink if all(map(math.isfinite, sample.values)) else theme.ALARM
+    return ref_name(sample.name), text, colour

@@ -86,7 +86,7 @@ def set_formula(latex: str, size: int, colour: int, *, display: bool) -> Setting
     style = microtex.TexStyle.display if display else microtex.TexStyle.text
     try:
         made = microtex.render(latex, float(size), colour, style)
-    except Exception:  # nanobind's RuntimeError, of whatever MicroTeX threw
+    except Exception:  # nanobind's RuntimeError, for any exception of MicroTeX
         return None
     return _cut(Setting(made.pixels_as_array().copy(), made.baseline_y))
 
@@ -103,7 +103,7 @@ def _cut(setting: Setting) -> Setting:
 
 @cache
 def can_set() -> bool:
-    """Say whether formulas can be set here; begins to, on the first call."""
+    """Return whether formulas can be set here; begins to, on the first call."""
     folder = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "latex"
     try:
         microtex.init(str(folder / "latinmodern-math.clm1"), str(folder / "latinmodern-math.otf"))

@@ -1,6 +1,6 @@
-"""Markdown in the window: laid out once for each width, then drawn line by line.
+"""Markdown in the window: its layout is computed once for each width, then it is drawn line by line.
 
-Formulas stand on the baseline of their line, or in the middle of one of their own.
+Formulas are on the baseline of their line, or in the middle of one of their own.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _INDENT = 20.0
 _CELL = 12.0
 _PAD = 3.0  # around code in a line
 _HEADINGS = {1: 6.0, 2: 4.0, 3: 2.0}  # how much larger
-_KEPT = 400
+_CACHED = 400
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class _Style:
 
 
 @dataclass(frozen=True)
-class _Set:
+class _Piece:
     """A line in its place, or a rectangle."""
 
     x: float
@@ -45,8 +45,8 @@ class _Set:
 
 
 @dataclass(frozen=True)
-class _Laid:
-    pieces: tuple[tuple[_Set, _Style], ...]
+class _Layout:
+    pieces: tuple[tuple[_Piece, _Style], ...]
     height: float
     width: float
 
@@ -57,7 +57,7 @@ class Prose:
 
     formulas: Callable[[], Formulas]
     follow: Callable[[str], None]
-    _laid: dict[object, _Laid] = field(default_factory=dict)
+    _layouts: dict[object, _Layout] = field(default_factory=dict)
 
     def draw(
         self,
@@ -70,13 +70,13 @@ class Prose:
     ) -> None:
         """Draw a text where the cursor is, over the width that is left or one of its own."""
         wide = width or imgui.get_content_region_avail().x
-        laid = self._lay(words, look, size, theme.packed(theme.INK) if ink is None else ink, wide)
+        layout = self._layout_of(words, look, size, theme.packed(theme.INK) if ink is None else ink, wide)
         corner = imgui.get_cursor_screen_pos()
-        imgui.dummy(ImVec2(min(laid.width, wide), max(laid.height, 1.0)))
+        imgui.dummy(ImVec2(min(layout.width, wide), max(layout.height, 1.0)))
         if not imgui.is_item_visible():
             return
         draw = imgui.get_window_draw_list()
-        for piece, style in laid.pieces:
+        for piece, style in layout.pieces:
             x, y = corner.x + piece.x, corner.y + piece.y
             if piece.line is None:
                 wide_box, high_box, colour = piece.box
@@ -87,33 +87,33 @@ class Prose:
 
     def height(self, words: str, look: Theme, width: float, size: float = theme.TEXT_SIZE) -> float:
         """Return how high a text is at a width, in the window's units."""
-        return self._lay(words, look, size, theme.packed(theme.INK), width).height
+        return self._layout_of(words, look, size, theme.packed(theme.INK), width).height
 
     # ── layout ───────────────────────────────────────────────────────────────
 
-    def _lay(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Laid:
+    def _layout_of(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Layout:
         key = words, size, ink, round(width), look.scale
-        if key not in self._laid:
-            if len(self._laid) >= _KEPT:
-                self._laid.clear()
-            self._laid[key] = self._layout(words, look, size, ink, width)
-        return self._laid[key]
+        if key not in self._layouts:
+            if len(self._layouts) >= _CACHED:
+                self._layouts.clear()
+            self._layouts[key] = self._layout(words, look, size, ink, width)
+        return self._layouts[key]
 
-    def _layout(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Laid:
-        pieces: list[tuple[_Set, _Style]] = []
+    def _layout(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Layout:
+        pieces: list[tuple[_Piece, _Style]] = []
         y = 0.0
         for number, part in enumerate(parts_of(words)):
             if number:
                 y += (_CLOSE if part.close else _GAP) * look.scale
             y = self._part(part, y, pieces, _Style(size, ink, look.scale), look, width)
         reach = max((p.x + (p.line.width if p.line else p.box[0]) for p, _ in pieces), default=0.0)
-        return _Laid(tuple(pieces), y, reach)
+        return _Layout(tuple(pieces), y, reach)
 
     def _part(
         self,
         part: Part,
         y: float,
-        pieces: list[tuple[_Set, _Style]],
+        pieces: list[tuple[_Piece, _Style]],
         style: _Style,
         look: Theme,
         width: float,
@@ -122,7 +122,7 @@ class Prose:
         left = part.indent * _INDENT * look.scale
         room = max(width - left, 40.0 * look.scale)
         if part.kind == "rule":
-            pieces.append((_Set(0, y, box=(width, look.scale, theme.packed(theme.LINE))), style))
+            pieces.append((_Piece(0, y, box=(width, look.scale, theme.packed(theme.LINE))), style))
             return y + look.scale
         if part.kind == "table":
             return self._table(part, left, y, pieces, style, look, room)
@@ -136,10 +136,10 @@ class Prose:
         if part.mark and lines:
             mark = broken((Run(part.mark),), room, lambda run: self._extent(run, style, look))[0]
             place = left - mark.width - 6 * look.scale
-            pieces.append((_Set(place, y + lines[0].ascent - mark.ascent, mark), style))
+            pieces.append((_Piece(place, y + lines[0].ascent - mark.ascent, mark), style))
         for line in lines:
             x = left + max(room - line.width, 0.0) / 2 if part.kind == "formula" else left
-            pieces.append((_Set(x, y, line), style))
+            pieces.append((_Piece(x, y, line), style))
             y += line.ascent + line.descent + _LEADING * look.scale
         return y - (_LEADING * look.scale if lines else 0.0)
 
@@ -148,7 +148,7 @@ class Prose:
         part: Part,
         left: float,
         y: float,
-        pieces: list[tuple[_Set, _Style]],
+        pieces: list[tuple[_Piece, _Style]],
         style: _Style,
         look: Theme,
         room: float,
@@ -161,12 +161,12 @@ class Prose:
             run = Run(text.replace(" ", "\u00a0"), code=True, alone=True)
             lines = broken((run,), room - 2 * pad, lambda r: self._extent(r, style, look))
             for line in lines:
-                pieces.append((_Set(left + pad, y, line), style))
+                pieces.append((_Piece(left + pad, y, line), style))
                 y += line.ascent + line.descent
             if not lines:
                 y += self._extent(Run("", code=True), style, look).ascent
         y += pad
-        pieces.insert(at, (_Set(left, top, box=(room, y - top, theme.packed(theme.FIELD))), style))
+        pieces.insert(at, (_Piece(left, top, box=(room, y - top, theme.packed(theme.FIELD))), style))
         return y
 
     def _table(
@@ -174,7 +174,7 @@ class Prose:
         part: Part,
         left: float,
         y: float,
-        pieces: list[tuple[_Set, _Style]],
+        pieces: list[tuple[_Piece, _Style]],
         style: _Style,
         look: Theme,
         room: float,
@@ -198,14 +198,14 @@ class Prose:
                 down = y
                 for line in lines:
                     shift = widths[column] - line.width if part.numbers[column] else 0.0
-                    pieces.append((_Set(x + shift, down, line), style))
+                    pieces.append((_Piece(x + shift, down, line), style))
                     down += line.ascent + line.descent
                 bottom = max(bottom, down)
                 x += widths[column] + gap
             y = bottom + 3 * look.scale
             strong = theme.LINE if number == 0 else theme.FIELD
             rule = sum(widths) + gap * max(count - 1, 0), look.scale, theme.packed(strong)
-            pieces.append((_Set(left, y, box=rule), style))
+            pieces.append((_Piece(left, y, box=rule), style))
             y += 4 * look.scale
         return y
 

@@ -3,7 +3,7 @@
     surface_point.py  the point of the terrain under a pixel, found on the GPU
     inspector.py      what every pass has under the mouse
     blend.py          two pictures painted over one another
-    compare.py        a state that is stored as A beside what is worked on
+    compare.py        a stored state A against the current one, B
     histogram.py      how a texture's numbers are spread, counted a piece a frame
     legend.py         the colours of a map's ramp
     frame_costs.py    what the last pictures cost

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Blend:
-    """Paints into whatever framebuffer it is given."""
+    """Paints two pictures into a framebuffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx

@@ -57,7 +57,7 @@ class Stored:
 
 
 class Compare:
-    """A, and how it is shown beside what one session shows."""
+    """A, and how it is shown with what one session shows."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -90,7 +90,7 @@ class Compare:
         """A's picture; None where there is no A."""
         return self._picture.texture if self.on and self._picture is not None else None
 
-    # ── keeping, swapping ────────────────────────────────────────────────────
+    # ── storing, swapping ────────────────────────────────────────────────────
 
     def toggle(self) -> None:
         """Keep what is shown as A, or let A go."""
@@ -140,7 +140,7 @@ class Compare:
         return Compared(self._stored.draft.edits, steps, self.mode.value, self.split, self.gain)
 
     def recall(self, compared: Compared) -> bool:
-        """Compare with A of an earlier session, over the files as they are now; say whether that is done.
+        """Compare with A of an earlier session, over the files as they are now; return whether that is done.
 
         Until it has proved good it is tried as what is saved is: ask again.
         """
@@ -261,7 +261,7 @@ class Compare:
 
 @contextmanager
 def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
-    """Draw something else, and have the engine tell of the picture before it all the same."""
+    """Draw something else, and leave the engine's records those of the picture before it."""
     record, runs, profiling = engine.record, engine.runs.copy(), engine.profiling
     engine.profiling = False
     try:

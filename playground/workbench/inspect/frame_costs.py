@@ -1,4 +1,4 @@
-"""What each of the last pictures cost: milliseconds, texels, triangles. Kept only while it is shown."""
+"""What each of the last pictures cost: milliseconds, texels, triangles. Recorded only while it is shown."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Record:
         for path in gone:
             del self.passes[path]
 
-    def dearest(self, most: int) -> list[str]:
-        """Return the passes that cost most, dearest first."""
+    def most_expensive(self, most: int) -> list[str]:
+        """Return the passes that cost most, most_expensive first."""
         sums = {path: float(ring.values.sum()) for path, ring in self.passes.items()}
         return sorted(sums, key=lambda path: -sums[path])[:most]

@@ -1,7 +1,7 @@
-"""How the numbers of a texture are spread: read and counted a bounded piece a turn, so that no turn waits.
+"""How the numbers of a texture are spread: read and counted a bounded piece a frame, so that no frame waits.
 
 A texture of up to ``MOST`` texels is read whole; of a larger one rows are left out, evenly,
-and it says so. A reading goes twice over its numbers: once for the least, the greatest,
+and it says so. The count goes twice over its numbers: once for the least, the greatest,
 the mean and what is no number, once to count them into bins between the two.
 """
 

@@ -27,7 +27,7 @@ Pixel = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Reading:
+class Sample:
     """What one texture has at a place."""
 
     name: str  # "pass" or "pass:output"
@@ -55,8 +55,8 @@ class Found:
     pixel: Pixel
     picture: tuple[int, ...]  # the picture's own colour, 0..255, display-encoded
     spot: Spot | None  # None: sky, or no terrain in the picture
-    readings: tuple[Reading, ...]
-    shown: Reading | None = None  # in a map: the texture that it shows
+    samples: tuple[Sample, ...]
+    shown: Sample | None = None  # in a map: the texture that it shows
     missing: tuple[str, ...] = ()  # passes that this picture was made without
 
 
@@ -119,8 +119,8 @@ class Inspector:
         hit = self._ground.under(plan.eye, place, heights, extent, relief)
         if hit is None:
             return Found(pixel, bytes_, None, ())
-        readings, missing = self._readings(plan, hit[:2])
-        return Found(pixel, bytes_, spot_of(plan, heights, hit), readings, None, missing)
+        samples, missing = self._samples(plan, hit[:2])
+        return Found(pixel, bytes_, spot_of(plan, heights, hit), samples, None, missing)
 
     def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
         assert self.session.view.map is not None
@@ -135,12 +135,10 @@ class Inspector:
         if heights is not None:
             high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
             spot = spot_of(plan, heights, (*share, float(high)))
-        readings, missing = self._readings(plan, share)
-        return Found(pixel, colour, spot, readings, self._reading(plan, ref, shown, texel), missing)
+        samples, missing = self._samples(plan, share)
+        return Found(pixel, colour, spot, samples, self._sample(plan, ref, shown, texel), missing)
 
-    def _readings(
-        self, plan: Plan, share: tuple[float, float]
-    ) -> tuple[tuple[Reading, ...], tuple[str, ...]]:
+    def _samples(self, plan: Plan, share: tuple[float, float]) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
         found, missing = [], []
         for name in names_of(plan, inner=self.inner):
@@ -148,14 +146,14 @@ class Inspector:
             if texture is None:
                 missing.append(name)
             else:
-                found.append(self._reading(plan, name, texture, _node(share, texture.size)))
+                found.append(self._sample(plan, name, texture, _node(share, texture.size)))
         return tuple(found), tuple(missing)
 
-    def _reading(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Reading:
+    def _sample(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Sample:
         values = tuple(read_texels(texture, texel, (1, 1))[0, 0].tolist())
         relief = plan.terrain.relief
         is_height = len(values) == 1 and name.partition(":")[2] == "height" and relief is not None
-        return Reading(name, texel, values, values[0] * relief if is_height and relief is not None else None)
+        return Sample(name, texel, values, values[0] * relief if is_height and relief is not None else None)
 
     def _texture(self, plan: Plan, name: str) -> moderngl.Texture | None:
         """Return the texture of that name which the last picture was made from; None where it had none."""
@@ -175,7 +173,7 @@ def names_of(plan: Plan, *, inner: bool) -> list[str]:
 
 
 def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) -> tuple[int, int] | None:
-    """Return which texel of a texture ``shown`` texels large ``view/map`` puts at a pixel; None beside it.
+    """Return which texel of a texture ``shown`` texels large ``view/map`` puts at a pixel; None outside it.
 
     In single precision and in the same order as there.
     """
@@ -193,26 +191,26 @@ def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, floa
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
     """
-    land, (nx, ny) = plan.terrain, heights.size
-    assert land.extent is not None and land.relief is not None
+    terrain, (nx, ny) = plan.terrain, heights.size
+    assert terrain.extent is not None and terrain.relief is not None
     x, y = _node(hit[:2], heights.size)
     west, south, east, north = max(x - 1, 0), max(y - 1, 0), min(x + 1, nx - 1), min(y + 1, ny - 1)
     texels = read_texels(heights, (west, south), (east - west + 1, north - south + 1))[..., 0]
-    block = texels.astype(np.float64) * land.relief
+    block = texels.astype(np.float64) * terrain.relief
     row, column = block[y - south], block[:, x - west]
-    steps = land.extent[0] / max(nx - 1, 1), land.extent[1] / max(ny - 1, 1)
+    steps = terrain.extent[0] / max(nx - 1, 1), terrain.extent[1] / max(ny - 1, 1)
     rise = tuple(
         float(line[-1] - line[0]) / ((len(line) - 1) * step) if len(line) > 1 else 0.0
         for line, step in zip((row, column), steps, strict=True)
     )
     steep = math.hypot(*rise)
     long = math.hypot(steep, 1.0)
-    high = hit[2] * land.relief
+    high = hit[2] * terrain.relief
     return Spot(
-        hit[0] * land.extent[0],
-        hit[1] * land.extent[1],
+        hit[0] * terrain.extent[0],
+        hit[1] * terrain.extent[1],
         high,
-        high + (land.base_elevation or 0.0),
+        high + (terrain.base_elevation or 0.0),
         (-rise[0] / long, -rise[1] / long, 1.0 / long),
         math.degrees(math.atan(steep)),
     )

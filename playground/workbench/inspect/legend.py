@@ -42,13 +42,13 @@ def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
 def ends_of(shown: Map) -> tuple[float, float]:
     """Return the numbers at the two ends of a map's legend.
 
-    Around a middle they are as far from it on either side, whatever the map's range begins with.
+    Around a middle they are as far from it on either side, independent of where the map's range begins.
     """
     low, high, middle = (_number(shown, name) for name in ("lowest", "highest", "middle"))
     if _number(shown, "ramp") != 4:
         return low, high
-    reach = max(abs(high - middle), abs(low - middle))
-    return middle - reach, middle + reach
+    half = max(abs(high - middle), abs(low - middle))
+    return middle - half, middle + half
 
 
 @lru_cache(maxsize=256)

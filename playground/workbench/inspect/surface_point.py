@@ -1,6 +1,6 @@
 """Find the place of the terrain under a pixel on the graphics card, so that its heights stay there.
 
-The walk is that of ``terrain.pick``: along the pixel's ray in steps of a texel, then the
+The ray march is that of ``terrain.pick``: along the pixel's ray in steps of a texel, then the
 step that goes below the ground is halved. One fragment does it, and four numbers come back.
 """
 

@@ -40,12 +40,12 @@ class Thumbnails:
         return cached[1] if cached is not None else None
 
     def is_current(self, name: str) -> bool:
-        """Say whether the last picture was made from this very texture."""
+        """Return whether the last picture was made from this very texture."""
         found, cached = self._source(name), self._cached.get(name)
         return found is not None and cached is not None and cached[0] == found[1]
 
     def refresh(self, names: Iterable[str], now: float) -> bool:
-        """Draw the first that is stale, unless another was drawn a moment ago; say whether more are stale.
+        """Draw the first that is stale, unless another was drawn a moment ago; return whether more are stale.
 
         ``now``: seconds of any clock. What has another name is released.
         """

@@ -1,4 +1,4 @@
-"""What is shown beside the picture: what keys and buttons switch, without a screen."""
+"""The state of the inspection tools: what keys and buttons switch, without a screen."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Inspection:
         self.graph = Graph(self.session)
 
     def patience(self, now: float) -> float:
-        """Say how long nothing needs to be done here [s], at a moment of the clock that flickers."""
+        """Return how long nothing needs to be done here [s], at a moment of the clock that flickers."""
         if self.spread_shown and self.counter.waits:
             return 0.0
         if self.compare.on and self.compare.mode is Mode.FLICKER:

@@ -36,7 +36,7 @@ class Numbers:
         ]
 
     def waits(self, lesson: Lesson, name: str) -> bool:
-        """Say whether a number is still to be computed."""
+        """Return whether a number is still to be computed."""
         return any((lesson.name, name) == (other, measure.name) for other, measure in self.wanted)
 
     @property
@@ -45,7 +45,7 @@ class Numbers:
         return bool(self.wanted) and self.session.rests
 
     def compute(self) -> bool:
-        """Compute the next number that is wanted, where the picture rests; say whether one was."""
+        """Compute the next number that is wanted, where the picture rests; return whether one was."""
         session = self.session
         if not self.ready or session.plan is None:
             return False

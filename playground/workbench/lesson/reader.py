@@ -31,11 +31,11 @@ _STEP, _VALUE = 0.8, 0.5
 BOTH = -1
 """The place of a comparison where two pictures are shown at once."""
 
-Seen = Steps | Slider | Compare | Figure | Exercise
+FigureBlock = Steps | Slider | Compare | Figure | Exercise
 
 
 @dataclass
-class Reading:
+class Reader:
     """One reader's."""
 
     bench: Bench
@@ -91,7 +91,7 @@ class Reading:
         return self._shelf.listed(self.language)
 
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
-        """Open a lesson, at the page where it was left; say whether that could be done.
+        """Open a lesson, at the page where it was left; return whether that could be done.
 
         By default the one read last, or the first. ``show``: its figure is shown.
         """
@@ -135,7 +135,7 @@ class Reading:
         first = self._picture_of(page)
         if not show or first is None:
             return
-        if unsaved(self.bench.files.editing) or (self.figure.own is None and self.figure.changed):
+        if unsaved(self.bench.files.editing) or (self.figure.before_lesson is None and self.figure.changed):
             self.bench.notices.say(labels_in(self.language)["yours_stays"])
             return
         self.show(first)
@@ -167,7 +167,7 @@ class Reading:
         else:
             self.playing = ""
             self.bench.interface.panel_shown = self.bench.interface.panel_shown or self._hid
-            if self.figure.own is not None and self.figure.changed:
+            if self.figure.before_lesson is not None and self.figure.changed:
                 self.bench.notices.say(labels_in(self.language)["not_kept"])
         self.remember()
 
@@ -183,8 +183,8 @@ class Reading:
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
-    def is_on(self, block: Seen, index: int | None = None) -> bool:
-        """Say whether a figure of a block is shown."""
+    def is_on(self, block: FigureBlock, index: int | None = None) -> bool:
+        """Return whether a figure of a block is shown."""
         key = self.figure.key
         return (
             key is not None and key[0] == block.name and (index is None or self.at.get(block.name) == index)
@@ -230,7 +230,7 @@ class Reading:
         self.move(block, 0 if at >= len(block.scenes) - 1 else at)
         self.playing, self._due = block.name, self.bench.notices.now() + _pause(block)
 
-    def reset(self, block: Seen) -> None:
+    def reset(self, block: FigureBlock) -> None:
         """Show a block's picture as the lesson has it."""
         self.playing = ""
         self.show(block)
@@ -240,7 +240,7 @@ class Reading:
         self.playing = ""
         self.bugs.close_all(drawn=False)
         self.figure.go_back()
-        if self.figure.own is not None:  # it is gone: the lesson's picture stays, without copies
+        if self.figure.before_lesson is not None:  # it is gone: the lesson's picture stays, without copies
             self.bugs.close_all()
 
     def _put(self, scene: Scene, name: str, index: int) -> None:
@@ -262,7 +262,7 @@ class Reading:
             self.numbers.compute()
 
     def patience(self, now: float) -> float:
-        """Say how long nothing needs to be done here [s]."""
+        """Return how long nothing needs to be done here [s]."""
         if self.lesson is None or not self.progress.shown:
             return math.inf
         if self.playing:

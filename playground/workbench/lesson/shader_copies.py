@@ -39,7 +39,7 @@ class Copy(OpenText):
         return self.base
 
     def changed_outside(self) -> bool:
-        """Return False: nobody else has it."""
+        """Return False: no other program has it."""
         return False
 
     def save(self, text: str, *, over: bool = False) -> bool:
@@ -68,7 +68,7 @@ class Copies:
         self.files.focus(editing, line)
 
     def focus(self, path: Path, line: int = 1) -> bool:
-        """Bring the copy of a file to the front, also where its window was closed; say if there is one."""
+        """Bring the copy of a file to the front, opening its window again; return whether there is one."""
         editing = self._windows.get(path)
         if editing is None:
             return False
