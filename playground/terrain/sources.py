@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
+from playground.images.content_hash import content_hash
 from playground.paths import shown
 from playground.sketch.model import Value
 from playground.terrain.delaunay import Rules, tables, triangulate
@@ -59,7 +60,7 @@ def source_kind(name: str) -> SourceKind:
 @lru_cache(maxsize=4)
 def _read(
     path: str,
-    stamp: tuple[int, int],
+    content: str,  # its hash
     raw_size: tuple[int, int] | None,
     packing: Packing,
     voids: Voids,
@@ -79,17 +80,13 @@ def _memory_explained(path: Path) -> Iterator[None]:
 
 def _elevation(values: Mapping[str, Value]) -> Elevation:
     path = Path(str(values["elevation"]))
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     raw = values["raw_size"]
     size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
     packing: Packing = "rgb" if values["packing"] == 1 else "grey"
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
     with _memory_explained(path):
-        return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
+        return _read(str(path), content_hash(path), size, packing, voids, first_row)
 
 
 def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
