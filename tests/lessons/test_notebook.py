@@ -19,6 +19,7 @@ from PIL import Image
 from playground.errors import SketchError
 from playground.lessons.bugs import BugRegion
 from playground.lessons.figure_renders import broken, draw
+from playground.lessons.glossary import terms
 from playground.lessons.library import interface_labels, lesson_files
 from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Figure, Prose
@@ -163,6 +164,12 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
         assert 'lesson.show("turns")' in code and 'lesson.measure("spread")' in code
         assert "{{" not in text and "lesson:small" not in text
         assert text.count("<details>") == 7
+        definition, section = (
+            terms()["texel"].definition(one.language),
+            interface_labels(one.language)["glossary"],
+        )
+        assert f'[texel](#{section} "{definition}")' in text
+        assert text.endswith(f"## {section}\n\n- {definition}")
         assert len({cell["id"] for cell in cells}) == len(cells)
     assert "Pourquoi est-ce sombre" in text and 'language="fr"' in code[0]
 

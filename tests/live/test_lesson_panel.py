@@ -173,12 +173,14 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
     for address in (
         "https://doi.org/10.1145/358523.358553",
         "thesis:1.3.2",
+        "term:texel",
         "lesson:after",
         "sketch:white_noise",
     ):
         follow(desk.reading, address)
         desk.turn(3)
     assert opened == ["https://doi.org/10.1145/358523.358553"]
+    assert any("One element of a texture" in notice.text for notice in desk.bench.notices.items)
     assert any("section 1.3.2" in notice.text for notice in desk.bench.notices.items)
     assert desk.reading.lesson.name == "after" and desk.session.path == find("white_noise")
     assert desk.reading.figure.own is None, "it is the reader's own"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playground.errors import PlaygroundError
+from playground.lessons.glossary import linked_term
 from playground.sketch.find import find
 from playground.workbench.history import History
 from playground.workbench.lesson.labels import labels_in
@@ -22,8 +23,17 @@ def follow(reading: Reading, address: str) -> None:
         open_sketch(reading, name)
     elif kind == "thesis":
         reading.bench.notices.say(labels_in(reading.language)["thesis_section"].format(name))
+    elif kind == "term":
+        reading.bench.notices.say(described(reading, address))
     elif kind in ("https", "http") and not webbrowser.open(address):
         reading.bench.notices.say(address)
+
+
+def described(reading: Reading, address: str) -> str:
+    """Return what is shown of a link under the mouse: of a term its definition, else its address."""
+    term = linked_term(address)
+    language = reading.lesson.language if reading.lesson else reading.language
+    return term.definition(language) if term else address
 
 
 def play_on(reading: Reading) -> None:
