@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from playground.engine.files import content_hash
 from playground.engine.plan import Step
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
 from playground.gpu.textures import check_size, drain
+from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear

@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from playground.engine.files import content_hash
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
+from playground.images.content_hash import content_hash
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.files import content_hash
 from playground.gpu.textures import make_texture, split_format, write_texels, write_texture
+from playground.images.content_hash import content_hash
 
 if TYPE_CHECKING:
     import moderngl

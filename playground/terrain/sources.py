@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
+from playground.images.content_hash import content_hash
 from playground.paths import shown
 from playground.sketch.model import Value
 from playground.terrain.delaunay import Rules, tables, triangulate
@@ -59,7 +60,7 @@ def source_kind(name: str) -> SourceKind:
 @lru_cache(maxsize=4)
 def _read(
     path: str,
-    stamp: tuple[int, int],
+    content: str,  # its hash
     raw_size: tuple[int, int] | None,
     packing: Packing,
     voids: Voids,
@@ -79,17 +80,13 @@ def _memory_explained(path: Path) -> Iterator[None]:
 
 def _elevation(values: Mapping[str, Value]) -> Elevation:
     path = Path(str(values["elevation"]))
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     raw = values["raw_size"]
     size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
     packing: Packing = "rgb" if values["packing"] == 1 else "grey"
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
     with _memory_explained(path):
-        return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
+        return _read(str(path), content_hash(path), size, packing, voids, first_row)
 
 
 def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
@@ -108,12 +105,12 @@ def _span(elevation: Elevation) -> tuple[float, float]:
 def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     elevation = _elevation(values)
     low, high = _span(elevation)
-    asked = _range(values, elevation)
+    metres = _range(values, elevation)
     relief = base = None
-    if asked is not None:
+    if metres is not None:
         codes = elevation.code_range or (low, high)
-        scale = (asked[1] - asked[0]) / ((codes[1] - codes[0]) or 1.0)
-        base, relief = asked[0] + (low - codes[0]) * scale, (high - low) * scale
+        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
     elif elevation.in_metres:
         base, relief = low, high - low
     return Terrain(elevation.size, elevation.extent, relief, base)

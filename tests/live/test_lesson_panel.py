@@ -160,12 +160,14 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
     for address in (
         "https://doi.org/10.1145/358523.358553",
         "thesis:1.3.2",
+        "term:texel",
         "lesson:after",
         "sketch:white_noise",
     ):
         follow(desk.reader, address)
         desk.run_frames(3)
     assert opened == ["https://doi.org/10.1145/358523.358553"]
+    assert any("One element of a texture" in notice.text for notice in desk.bench.notices.items)
     assert any("section 1.3.2" in notice.text for notice in desk.bench.notices.items)
     assert desk.reader.lesson.name == "after" and desk.session.path == find("white_noise")
     assert desk.reader.figure.before_lesson is None, "it is the reader's own"

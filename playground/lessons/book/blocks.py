@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.lessons import model
-from playground.lessons.book.html import Address, code_block, line, plain, prose
+from playground.lessons.book.html import Anchor, code_block, line, plain, prose
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import Picture, pictures_in
@@ -29,15 +29,15 @@ class Setting:
     label: Labels  # around the lesson, in its language
     numbers: Mapping[str, Number]
     source: Callable[[Picture], str]  # address of a picture
-    address: Address
+    anchor: Anchor
 
     def line(self, markdown: str) -> Markup:
         """Return a text within a line, with the numbers in it."""
-        return line(self._filled(markdown), self.address)
+        return line(self._filled(markdown), self.anchor)
 
     def prose(self, markdown: str) -> Markup:
         """Return a text as paragraphs, with the numbers in it."""
-        return prose(self._filled(markdown), self.address)
+        return prose(self._filled(markdown), self.anchor)
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
         """Return a picture as an element with its size, so that nothing jumps when it is loaded."""

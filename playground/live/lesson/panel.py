@@ -34,7 +34,7 @@ from playground.live.lesson.questions import draw_exercise, draw_measure, draw_p
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
-from playground.workbench.lesson.links import follow, play_on
+from playground.workbench.lesson.links import described, follow, play_on
 from playground.workbench.lesson.progress import NARROWEST, WIDEST
 from playground.workbench.lesson.reader import Reader
 
@@ -70,7 +70,11 @@ class LessonPanel:
         if lesson is None or not reader.progress.shown:
             return 0.0
         if self._texts is None:
-            self._texts = Texts(lambda: self._formulas_of(reader), lambda to: follow(reader, to))
+            self._texts = Texts(
+                lambda: self._formulas_of(reader),
+                lambda to: follow(reader, to),
+                lambda to: described(reader, to),
+            )
         room, scale = imgui.get_main_viewport().size, look.scale
         widest = max(room.x - _LEAST * scale, 160.0)
         imgui.set_next_window_pos(ImVec2(0, 0))

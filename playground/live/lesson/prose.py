@@ -14,6 +14,7 @@ from playground.live import theme
 from playground.live.lesson.formulas import Formulas
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
 from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
+from playground.live.panel_rows import explain
 from playground.live.theme import Theme
 
 _GAP, _CLOSE = 9.0, 4.0  # between parts, in units of scale 1
@@ -53,10 +54,14 @@ class _Layout:
 
 @dataclass
 class Prose:
-    """Draws texts; ``follow`` receives the address of a link that is clicked on."""
+    """Draws texts.
+
+    ``follow`` receives the address of a link that is clicked on; ``describe`` returns the tooltip of one.
+    """
 
     formulas: Callable[[], Formulas]
     follow: Callable[[str], None]
+    describe: Callable[[str], str]
     _layouts: dict[object, _Layout] = field(default_factory=dict)
 
     def draw(
@@ -264,7 +269,7 @@ class Prose:
         draw.add_line(ImVec2(low.x, line), ImVec2(high.x, line), theme.packed(theme.ACCENT, alpha))
         if under:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-            imgui.set_tooltip(run.link)
+            explain(written(self.describe(run.link)), "")
             if imgui.is_mouse_released(0) and not imgui.is_mouse_dragging(0):
                 self.follow(run.link)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playground.errors import PlaygroundError
+from playground.lessons.glossary import linked_term
 from playground.sketch.find import find
 from playground.workbench.history import History
 from playground.workbench.lesson.labels import labels_in
@@ -22,8 +23,17 @@ def follow(reader: Reader, address: str) -> None:
         open_sketch(reader, name)
     elif kind == "thesis":
         reader.bench.notices.say(labels_in(reader.language)["thesis_section"].format(name))
+    elif kind == "term":
+        reader.bench.notices.say(described(reader, address))
     elif kind in ("https", "http") and not webbrowser.open(address):
         reader.bench.notices.say(address)
+
+
+def described(reader: Reader, address: str) -> str:
+    """Return what is shown of a link under the mouse: of a term its definition, else its address."""
+    term = linked_term(address)
+    language = reader.lesson.language if reader.lesson else reader.language
+    return term.definition(language) if term else address
 
 
 def play_on(reader: Reader) -> None:
