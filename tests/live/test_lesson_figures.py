@@ -268,7 +268,7 @@ def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
     assert desk.session.drafts.texts and desk.reading.figure.own is None
     desk.session.drafts.set("height.seed", 7)
     desk.turn(3)
-    assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
+    assert dict(desk.autosave._latest.edits.values) == {"height.seed": 7}, "it is remembered"
     desk.reading.show(block(desk, "seeds"))
     desk.turn(4)
     desk.reading.go_back()
@@ -284,7 +284,7 @@ def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
     desk.turn(60)
     desk.session.drafts.set("height.seed", 8)
     desk.turn(60)
-    desk.rememberer.close()
+    desk.autosave.close()
     kept = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
     assert [(Path(one["sketch"]).parent.name, one["values"]["height.seed"]["value"]) for one in kept] == [
         ("own", 5)
@@ -296,8 +296,8 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     desk.turn(2)
     desk.session.drafts.set("height.seed", 41)
     desk.turn(2)
-    desk.rememberer.look((800, 600))
-    desk.rememberer.write()
+    desk.autosave.look((800, 600))
+    desk.autosave.write()
     desk.open(show=False)
     desk.reading.show(block(desk, "land"))
     desk.turn(2)

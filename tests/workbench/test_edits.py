@@ -235,4 +235,4 @@ def test_choosing_what_the_file_says_is_no_edit(folder: Path) -> None:
     draft = Draft(sketch, sketch).choose("height", "generation/diamond_square")
     assert draft.edits.techniques == (("height", "generation/diamond_square"),)
     assert draft.choose("height", "./land").edits.techniques == ()
-    assert draft.reset().base is sketch
+    assert draft.with_all(Edits()).base is sketch

@@ -227,6 +227,14 @@ def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
     assert desk.value("level") == 0.25 and not desk.bench.undo.history.can_undo
 
 
+def test_a_step_that_fails_gives_its_name_to_no_other(desk: Desk) -> None:
+    with pytest.raises(ZeroDivisionError), desk.bench.undo.step("Random"):
+        raise ZeroDivisionError
+    desk.session.drafts.set("height.level", 0.5)
+    desk.turn()
+    assert [step.name for step in desk.bench.undo.history.steps] == [""]
+
+
 def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
     found = rounded(Camera(12.3456, 30.0, 1234.5678, (1 / 3, 2.0, 3.0), 35.0))
     assert found == Camera(12.35, 30.0, 1234.57, (0.33, 2.0, 3.0), 35.0)

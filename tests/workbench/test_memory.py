@@ -14,7 +14,7 @@ from playground.engine.engine import Engine
 from playground.folders import cache_folder, state_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.workbench.autosave import QUIET, TIME, Rememberer
+from playground.workbench.autosave import QUIET, TIME, Autosave
 from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
 from playground.workbench.memory import Compared, Memory, Remembered
@@ -74,15 +74,15 @@ class Place:
         self.sketch.mkdir()
         (self.sketch / "land.glsl").write_text(LAND, encoding="utf-8")
         (self.sketch / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-        self.open: list[tuple[Session, Rememberer]] = []
+        self.open: list[tuple[Session, Autosave]] = []
 
-    def start(self, **more: object) -> tuple[Session, Rememberer]:
+    def start(self, **more: object) -> tuple[Session, Autosave]:
         memory = Memory(self.sketch / "sketch.toml", self.state)
         found, complaint = memory.read()
         more |= {"start": found.start}
         session = Session(self.engine, self.sketch, **more)  # type: ignore[arg-type]
         session.notes.extend(filter(None, [complaint]))
-        made = session, Rememberer(session, memory, found, lambda: self.now)
+        made = session, Autosave(session, memory, found, lambda: self.now)
         self.open.append(made)
         session.frame(SIZE)
         return made
@@ -95,8 +95,8 @@ class Place:
 def place(tmp_path: Path, any_engine: Engine):
     made = Place(tmp_path, any_engine)
     yield made
-    for session, rememberer in made.open:
-        rememberer.close()
+    for session, autosave in made.open:
+        autosave.close()
         session.release()
 
 
@@ -137,25 +137,25 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
 
 
 def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.clock.set_loop(0.5, 2.0)
-    rememberer.look((900, 600))
-    rememberer.close()
-    again, rememberer = place.start()
+    autosave.look((900, 600))
+    autosave.close()
+    again, autosave = place.start()
     assert again.clock.loop == (0.5, 2.0)
     again.clock.loop = None
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     assert place.start()[0].clock.loop is None
 
 
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     by_hand = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
     session.drafts.set_camera(by_hand)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     other = SKETCH + ("camera = { azimuth = 12.0 }\n" if moved else "# the same camera\n")
     (place.sketch / "sketch.toml").write_text(other, encoding="utf-8")
     again, _ = place.start()
@@ -168,11 +168,11 @@ def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place
 
 
 def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
     before, edits = picture(session), session.shown.edits
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start()
     assert again.shown.edits == edits and again.view.steps == {"height": 3}
     assert again.clock.time == 0.3 and not again.clock.playing
@@ -181,48 +181,48 @@ def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
 
 
 def test_a_map_comes_back_too(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.show("height:height")
     session.view.set_map("highest", 3.0)
     before = picture(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start()
     np.testing.assert_array_equal(picture(again), before)
 
 
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     for value in (0.5, 0.6, 0.7):
         session.drafts.set("height.level", value)
         place.now += QUIET / 2
-        rememberer.look((900, 600))
-        assert place.files() == [] and rememberer.waits
+        autosave.look((900, 600))
+        assert place.files() == [] and autosave.waits
     place.now += QUIET
-    rememberer.look((900, 600))
-    assert len(place.files()) == 1 and not rememberer.waits
+    autosave.look((900, 600))
+    assert len(place.files()) == 1 and not autosave.waits
     assert json.loads((place.state / place.files()[0]).read_text())["values"]["height.level"]["value"] == 0.7
 
 
 def test_time_that_runs_is_written_now_and_then(place: Place) -> None:
-    session, rememberer = place.start()
-    rememberer.look((900, 600))
+    session, autosave = place.start()
+    autosave.look((900, 600))
     place.now += QUIET
-    rememberer.look((900, 600))
+    autosave.look((900, 600))
     written = []
     for _ in range(100):
         place.now += TIME / 20
         session.clock.time += TIME / 20
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         written.append(json.loads((place.state / place.files()[0]).read_text())["time"])
     assert 4 <= len(set(written)) <= 6
 
 
 def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     text = SKETCH.replace('use = "./land"', 'use = "./land"\nset = { level = 0.5 }')
     (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
     again, _ = place.start()
@@ -232,10 +232,10 @@ def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
 
 
 def test_a_new_default_is_no_newer_word_than_what_was_set(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     text = LAND.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
     (place.sketch / "land.glsl").write_text(text, encoding="utf-8")
     again, _ = place.start()
@@ -267,11 +267,11 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
 
     own, default, then, later = SAYS[what]
     save(own, default)
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.drafts.set("height.level", 0.75)
     session.drafts.lock("height.level", locked)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     save(then, later)
     session.drafts.reload()
     session.frame(SIZE)
@@ -285,11 +285,11 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
 
 @pytest.mark.parametrize("locked", [False, True])
 def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.drafts.set("relief", 500.0)
     session.drafts.lock("relief", locked)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     (place.sketch / "sketch.toml").write_text(SKETCH.replace("size = 33", "size = 33\nrelief = 700.0"))
     session.drafts.reload()
     session.frame(SIZE)
@@ -299,19 +299,19 @@ def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> 
 
 
 def test_what_the_command_line_sets_goes_before_all(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start(values={"height.level": 0.125})
     assert values_of(again.sketch)["height.level"] == 0.125
 
 
 def test_when_all_is_reset_nothing_is_remembered_but_the_window(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, second = place.start()
     again.reset_values()
     again.drafts.set_camera(None)
@@ -340,13 +340,13 @@ def test_a_broken_file_is_set_aside_and_one_is_told(place: Place, name: str) -> 
     place.state.mkdir()
     data = BROKEN[name].encode("utf-8", "surrogatepass")
     memory.path.write_bytes(data)
-    session, rememberer = place.start()
+    session, autosave = place.start()
     assert session.shown is not None and session.error is None
     assert "cannot be read" in session.notes[0] and ".unread.json" in session.notes[0]
     assert memory.path.with_suffix(".unread.json").read_bytes() == data, "nothing is lost"
     session.drafts.set("height.level", 0.5)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     found, complaint = memory.read()
     assert complaint == "" and dict(found.edits.values) == {"height.level": 0.5}
 
@@ -365,11 +365,11 @@ def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, w
 def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     first, one = place.start()
     second, two = place.start()
-    for session, rememberer, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
+    for session, autosave, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
         session.drafts.set("height.level", value)
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         place.now += QUIET
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
     assert any("another window" in note for note in second.notes)
     found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
     assert dict(found.edits.values) == {"height.level": 0.625}
@@ -382,17 +382,17 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
 
 
 def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.drafts.set("height.level", 0.5)
-    rememberer.look((900, 600))
+    autosave.look((900, 600))
     other = place.sketch / "other.toml"
     other.write_text(SKETCH, encoding="utf-8")
     session.drafts.path = other
     session.drafts.reload()
     session.drafts.set("height.level", 0.75)
     session.frame(SIZE)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     kept = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
     assert [dict(found.edits.values) for found in kept] == [{"height.level": 0.5}, {"height.level": 0.75}]
 
@@ -409,12 +409,12 @@ def test_where_the_folder_is_a_file_one_is_told_once(place: Place) -> None:
 
 
 def check_told_once(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     for value in (0.5, 0.75):
         session.drafts.set("height.level", value)
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         place.now += QUIET
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
     assert len([note for note in session.notes if "cannot be remembered" in note]) == 1
 
 

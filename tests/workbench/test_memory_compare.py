@@ -14,7 +14,7 @@ from playground.errors import SandboxTimeout
 from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
-from playground.workbench.autosave import Rememberer
+from playground.workbench.autosave import Autosave
 from playground.workbench.framing import framed
 from playground.workbench.inspect.compare import Compare, Mode
 from playground.workbench.memory import Compared, Memory
@@ -61,7 +61,7 @@ class Desk:
         self.trial = SlowTrial()
         self.session = Session(self.engine, self.folder, start=found.start, sandbox=self.trial)
         self.compare = Compare(self.session)
-        self.rememberer = Rememberer(self.session, memory, found, compare=self.compare)
+        self.autosave = Autosave(self.session, memory, found, compare=self.compare)
         self.session.frame(SIZE)
         self.answer(SandboxReport(True))
 
@@ -73,14 +73,14 @@ class Desk:
         picture = self.session.frame(SIZE)
         if picture is not None:
             self.compare.follow(picture)
-        self.rememberer.look((900, 600))
+        self.autosave.look((900, 600))
 
     def first(self) -> NDArray[np.uint8]:
         assert self.compare.picture is not None
         return read_picture(self.compare.picture)
 
     def close(self) -> None:
-        self.rememberer.close()
+        self.autosave.close()
         self.compare.release()
         self.session.release()
 
@@ -107,7 +107,7 @@ def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
     desk.open()
     assert isinstance(desk.found, Compared) and desk.found.mode == "difference"
     desk.turn()
-    assert not desk.compare.on and desk.rememberer.waits, "it waits for the trial"
+    assert not desk.compare.on and desk.autosave.waits, "it waits for the trial"
     assert values_of(desk.trial.asked[-1].sketch)["height.level"] == 0.75
     desk.answer(SandboxReport(True))
     desk.turn()

@@ -13,7 +13,7 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.sketch.values import coerce, tidied
 from playground.workbench.edits import Draft, Edits
-from playground.workbench.history import History, applied, edits_of, in_words, state_of
+from playground.workbench.history import History, State, applied, edits_of, in_words, state_of
 from playground.workbench.parameter_list import Filter, Listing, set_words
 from playground.workbench.randomise import at_random, mutated
 from playground.workbench.typed_values import read_typed
@@ -190,19 +190,30 @@ class Desk:
     """A history, and the edits that it follows; a second passes in each turn."""
 
     def __init__(self) -> None:
-        self.history, self.edits, self.now, self.file = History(), Edits(), 0.0, object()
+        self.history, self.edits, self.now, self.reads = History(), Edits(), 0.0, 0
         self.turn()
 
     def turn(self, held: bool = False, seconds: float = 1.0) -> None:
         self.now += seconds
-        self.history.look(self.edits, {}, self.file, held=held, now=self.now)
+        self.history.look(self.edits, {}, self.reads, held=held, now=self.now)
 
     def set(self, path: str, value: float, **how: float) -> None:
         self.edits = self.edits.with_value(path, value)
         self.turn(**how)  # type: ignore[arg-type]
 
-    def take(self, changes: object) -> None:
-        self.edits = edits_of(applied(state_of(self.edits, {}), changes))  # type: ignore[arg-type]
+    def undo(self) -> None:
+        assert self.history.undo(self._apply)
+        self._settle()
+
+    def redo(self) -> None:
+        assert self.history.redo(self._apply)
+        self._settle()
+
+    def _apply(self, changes: State) -> bool:
+        self.edits = edits_of(applied(state_of(self.edits, {}), changes))
+        return True
+
+    def _settle(self) -> None:
         self.history.settle(self.edits, {})
         self.turn()
 
@@ -216,11 +227,11 @@ def test_undo_and_redo_go_through_every_state() -> None:
     desk.turn()
     states.append(desk.edits)
     for state in reversed(states[:-1]):
-        desk.take(desk.history.undo())
+        desk.undo()
         assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_undo and desk.history.undo() == {}
+    assert not desk.history.can_undo and not desk.history.undo(lambda changes: True)
     for state in states[1:]:
-        desk.take(desk.history.redo())
+        desk.redo()
         assert state_of(desk.edits, {}) == state_of(state, {})
     assert not desk.history.can_redo and len(desk.history.steps) == 6
 
@@ -257,8 +268,8 @@ def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
     for n in range(6):
         desk.set("p.a", float(n))
     assert len(desk.history.steps) == 4 and desk.history.steps[0].after == {("value", "p.a"): 2.0}
-    desk.take(desk.history.undo())
-    desk.take(desk.history.undo())
+    desk.undo()
+    desk.undo()
     desk.set("p.b", 1.0)
     assert len(desk.history.steps) == 3 and not desk.history.can_redo
 
@@ -267,12 +278,12 @@ def test_undo_leaves_alone_what_its_step_did_not_change_and_reloads_are_no_steps
     desk = Desk()
     desk.set("p.a", 1.0)
     desk.set("p.b", 1.0)
-    desk.file, desk.edits = object(), Edits((("p.b", 1.0),))  # a reload took p.a away
+    desk.reads, desk.edits = 1, Edits((("p.b", 1.0),))  # a reload took p.a away
     desk.turn()
     assert len(desk.history.steps) == 2
-    desk.take(desk.history.undo())
+    desk.undo()
     assert desk.edits == Edits()
-    desk.take(desk.history.redo())
+    desk.redo()
     assert desk.edits == Edits((("p.b", 1.0),))
 
 
@@ -280,7 +291,7 @@ def test_an_undo_that_takes_its_time_is_no_step() -> None:
     desk = Desk()
     desk.edits = Edits(techniques=(("p", "x"),))
     desk.turn()
-    desk.history.undo()
+    assert desk.history.undo(lambda changes: True)
     desk.history.settle(desk.edits, {})  # nothing has come of it yet
     desk.turn()
     desk.edits = Edits()
@@ -295,11 +306,11 @@ def test_what_is_saved_into_the_file_can_be_undone() -> None:
     desk = Desk()
     desk.set("p.a", 0.9)
     desk.history.saved({("value", "p.a"): 0.5})
-    desk.file, desk.edits = object(), Edits()  # the reload that follows
+    desk.reads, desk.edits = 1, Edits()  # the reload that follows
     desk.turn()
-    desk.take(desk.history.undo())
+    desk.undo()
     assert desk.edits == Edits((("p.a", 0.5),)), "what the file said before"
-    desk.take(desk.history.redo())
+    desk.redo()
     assert desk.edits == Edits((("p.a", 0.9),))
 
 
@@ -325,3 +336,13 @@ def test_steps_have_names() -> None:
         "Lock P.A",
         "Time 1.00 s to 0.00 s",
     ]
+
+
+def test_a_step_that_is_refused_is_not_undone() -> None:
+    desk = Desk()
+    desk.set("p.a", 0.5)
+    assert not desk.history.undo(lambda changes: False)
+    assert desk.history.done == 1
+    desk.undo()
+    assert not desk.history.redo(lambda changes: False)
+    assert desk.history.done == 0 and desk.history.can_redo

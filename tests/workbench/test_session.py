@@ -252,6 +252,36 @@ def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
     assert not np.array_equal(before, moved) and bench.session.clock.time == 0.5
 
 
+def test_a_size_that_names_time_moves(bench: Bench) -> None:
+    bench.change("sketch.toml", 'use = "./land"', 'use = "./land"\nsize = "9 + time"')
+    bench.picture()
+    session = bench.session
+    assert session.error is None and session.animated and session.plan is not None
+    sizes = []
+    for _ in range(2):
+        session.frame(SIZE)
+        sizes.append(session.plan.step("height").size[0])
+        session.clock.advance(4.0)
+    assert sizes == [9, 13]
+
+
+def test_how_many_steps_there_are_follows_time_and_keyframes(bench: Bench) -> None:
+    bench.change("land.glsl", 'output = "height:r32f"', 'output = "height:r32f", repeat = "2 + time"')
+    bench.picture()
+    assert bench.session.repeats == {"height": 2}
+    bench.session.clock.advance(3.0)
+    assert bench.session.repeats == {"height": 5}
+    bench.change("land.glsl", "2 + time", "count")
+    bench.change("land.glsl", "uniform float", "uniform int count = 2; //! slider(1, 9)\nuniform float")
+    keyframes = [f'[[keyframe]]\ntime = {t}\nset = {{ "height.count" = {n} }}\n' for t, n in ((0, 2), (4, 6))]
+    bench.change("sketch.toml", "[[preset]]", "".join(keyframes) + "[[preset]]")
+    bench.picture()
+    bench.session.clock.time = 0.0
+    assert bench.session.error is None and bench.session.repeats == {"height": 2}
+    bench.session.clock.time = 4.0
+    assert bench.session.repeats == {"height": 6}
+
+
 def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
     bench.picture()
     bench.session.drafts.set("height.level", 0.75)

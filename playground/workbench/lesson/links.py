@@ -42,10 +42,8 @@ def open_sketch(reading: Reading, name: str) -> None:
         return
     reading.playing = ""
     reading.bugs.close_all(drawn=False)
-    if figure.own is None:
-        reading.begins()
     figure.let_go()
     bench.interface.panel_shown = True
     opens: Callable[[Path], None] = reading.play or bench.commands.open
     opens(path)
-    bench.undo.history = History()
+    bench.undo.begin(History())
