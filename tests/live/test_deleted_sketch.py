@@ -16,7 +16,7 @@ from playground.errors import PlaygroundError
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
-from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeTrial
+from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeSandbox
 from .desk import Bare, errors_of
 from .screen import ROOT
 
@@ -28,9 +28,9 @@ def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[Playgroun
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    home = tmp_path / "my-land"
+    home = tmp_path / "my-terrain"
     (home / "inc").mkdir(parents=True)
-    for name, text in {"land.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
         (home / name).write_text(text, encoding="utf-8")
     return home
 
@@ -74,7 +74,7 @@ def test_a_list_that_holds_no_file_is_drawn_all_the_same(bare: Bare) -> None:
 def test_a_refusal_of_the_trial_s_names_the_sketch(
     folder: Path, any_engine: Engine, kind: type[PlaygroundError]
 ) -> None:
-    trial = FakeTrial()
+    trial = FakeSandbox()
     trial.answer = SandboxReport(False, kind("refused"))
     session = Session(any_engine, folder, sandbox=trial)
     session.frame((32, 32))
@@ -132,7 +132,7 @@ with Engine(open_context()) as engine:
 """
     home = tmp_path / "here"
     home.mkdir()
-    (home / "sketch.toml").write_text(SKETCH.replace("./land", "generation/white_noise"), encoding="utf-8")
+    (home / "sketch.toml").write_text(SKETCH.replace("./terrain", "generation/white_noise"), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", script, "sketch.toml"],
         cwd=home,

@@ -21,7 +21,7 @@ from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes
-from .test_session import FakeTrial
+from .test_session import FakeSandbox
 
 SIZE = (32, 24)
 KERNEL = """#pragma kernel(output = "height:r32f", repeat = "4")
@@ -64,11 +64,11 @@ class Desk:
 
     def start(self, name: str) -> None:
         """Open a window on a sketch."""
-        self.trial = FakeTrial()
+        self.sandbox = FakeSandbox()
         memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
         found, _ = memory.read()
         self.session = Session(
-            self.engine, self.folder / name, start=found.start, sandbox=self.trial, now=lambda: self.time
+            self.engine, self.folder / name, start=found.start, sandbox=self.sandbox, now=lambda: self.time
         )
         self.sessions.append(self.session)
         self.drafts = self.session.drafts
@@ -91,7 +91,7 @@ class Desk:
         self.write(name, text.replace(old, new))
         self.drafts.reload()
 
-    def turn(self) -> None:
+    def frame(self) -> None:
         """Let a frame of the window pass, a second after the one before."""
         self.time += 1.0
         self.session.frame(SIZE)
@@ -100,8 +100,8 @@ class Desk:
         self.autosave.write()
 
     def answer(self, report: SandboxReport) -> None:
-        self.trial.answer = report
-        self.turn()
+        self.sandbox.answer = report
+        self.frame()
 
     def close(self) -> None:
         self.autosave.close()
@@ -139,7 +139,7 @@ class Desk:
         return str(self.folder / "one" / name)
 
     @property
-    def said(self) -> str:
+    def messages(self) -> str:
         self.bench.take_notes()
         return "; ".join(notice.text for notice in self.bench.notices.items)
 
@@ -159,13 +159,13 @@ def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
 @pytest.mark.parametrize("how", ["folder", "file"])
 def test_a_dropped_sketch_has_its_remembered_edits(desk: Desk, how: str) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     dropped = desk.folder / "two"
     desk.drops.take([dropped if how == "folder" else dropped / "sketch.toml"])
     desk.answer(GOOD)
     assert (desk.name, desk.level) == ("two", 0.25)
     desk.drafts.set(LEVEL, 0.75)
-    desk.turn()
+    desk.frame()
     desk.drops.take([desk.folder / "one"])
     desk.answer(GOOD)
     assert (desk.name, desk.level) == ("one", 0.5)
@@ -182,13 +182,13 @@ def test_an_edit_belongs_to_the_sketch_that_is_shown(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
     desk.drafts.set_camera(Camera(azimuth=3.0))
     desk.drafts.lock(LEVEL, True)
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.5
     desk.answer(GOOD)
     assert (desk.name, desk.level) == ("two", 0.25) and desk.session.shown is not None
     assert desk.session.shown.sketch == desk.session.shown.file
     desk.bench.undo.undo()
-    assert "nothing to undo" in desk.said and desk.level == 0.25
+    assert "nothing to undo" in desk.messages and desk.level == 0.25
     desk.close()
     desk.start("one")
     assert desk.level == 0.5 and desk.session.shown is not None
@@ -198,22 +198,22 @@ def test_an_edit_belongs_to_the_sketch_that_is_shown(desk: Desk) -> None:
 def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(desk: Desk) -> None:
     desk.session.stop_at("height", 2)
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     desk.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
     desk.bench.commands.open(desk.folder / "two")
     desk.answer(BAD)
     assert "driver crashed" in str(desk.session.error) and (desk.name, desk.level) == ("one", 0.5)
     assert desk.session.view.steps == {"height": 2}
     desk.drafts.set(LEVEL, 0.75)
-    desk.turn()
+    desk.frame()
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.5
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.25
     desk.drafts.set(LEVEL, 0.625)
-    desk.turn()
+    desk.frame()
     desk.save("levle", "level", "two/hills.glsl")
     desk.answer(GOOD)
     assert (desk.name, desk.level, desk.session.view.steps) == ("two", 0.25, {})
@@ -224,7 +224,7 @@ def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(desk: De
 
 def test_a_sketch_that_does_not_draw_leaves_the_view_of_the_one_shown(any_engine: Engine, desk: Desk) -> None:
     desk.session.stop_at("height", 2)
-    desk.turn()
+    desk.frame()
     desk.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
     desk.bench.commands.open(desk.folder / "two")
     desk.answer(GOOD)  # the sandbox has no objection, the driver of this process has one
@@ -236,28 +236,28 @@ def test_a_path_without_a_sketch_changes_nothing(desk: Desk) -> None:
     desk.session.stop_at("height", 2)
     desk.session.clock.time = 3.0
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     desk.bench.commands.open(desk.folder / "none.toml")
-    desk.turn()
-    assert "there is no file" in desk.said and desk.session.path == desk.folder / "one/sketch.toml"
+    desk.frame()
+    assert "there is no file" in desk.messages and desk.session.path == desk.folder / "one/sketch.toml"
     assert desk.session.view.steps == {"height": 2} and desk.session.clock.time == 3.0
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.25
 
 
 def test_the_sketch_that_is_shown_is_opened_again_with_its_edits_and_its_undo(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     desk.bench.commands.open(desk.folder / "two")
     desk.bench.commands.open(desk.folder / "one")
     desk.drafts.set(LEVEL, 0.75)
-    desk.turn()
+    desk.frame()
     desk.answer(GOOD)
     assert (desk.name, desk.level, desk.session.path.parent.name) == ("one", 0.75, "one")
     for level in (0.5, 0.25):
         desk.bench.undo.undo()
-        desk.turn()
+        desk.frame()
         assert desk.level == level
 
 
@@ -266,11 +266,11 @@ def test_what_needs_a_check_waits_until_the_other_sketch_is_there(desk: Desk) ->
     desk.answer(GOOD)
     desk.bench.commands.open(desk.folder / "two")
     desk.drafts.choose("height", "generation/white_noise")
-    assert "height: generation/white_noise is not taken" in desk.said and "two" in desk.said
+    assert "height: generation/white_noise is not taken" in desk.messages and "two" in desk.messages
     desk.drafts.set(ELEVATION, desk.file("b.npy"))
-    assert "data.elevation: b.npy is not taken" in desk.said
+    assert "data.elevation: b.npy is not taken" in desk.messages
     desk.bench.undo.undo()
-    assert "height: what the file says is not taken" in desk.said and desk.technique == "./dunes"
+    assert "height: what the file says is not taken" in desk.messages and desk.technique == "./dunes"
     assert desk.bench.undo.history.done == 1
     desk.answer(GOOD)
     assert (desk.name, desk.technique, desk.elevation) == ("two", "./hills", "a.npy")
@@ -279,11 +279,11 @@ def test_what_needs_a_check_waits_until_the_other_sketch_is_there(desk: Desk) ->
 
 def test_no_keyframe_is_written_while_another_sketch_is_opened(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     before = (desk.folder / "one/sketch.toml").read_bytes()
     desk.bench.commands.open(desk.folder / "two")
     assert not desk.bench.keyframes.add_here([LEVEL], camera=False)
-    assert "two" in desk.said and (desk.folder / "one/sketch.toml").read_bytes() == before
+    assert "two" in desk.messages and (desk.folder / "one/sketch.toml").read_bytes() == before
     assert desk.level == 0.5
     desk.answer(GOOD)
     assert (desk.name, desk.level) == ("two", 0.25)
@@ -291,7 +291,7 @@ def test_no_keyframe_is_written_while_another_sketch_is_opened(desk: Desk) -> No
 
 def test_a_copy_of_what_is_shown_is_opened_instead(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     desk.bench.commands.open(desk.folder / "two")
     desk.bench.commands.save_a_copy()
     desk.answer(GOOD)
@@ -299,7 +299,7 @@ def test_a_copy_of_what_is_shown_is_opened_instead(desk: Desk) -> None:
     assert desk.session.path == Path(desk.session.shown.file.file)
     assert desk.session.path.parent.name.startswith("one") and desk.level == 0.5
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.25
 
 
@@ -324,7 +324,7 @@ PAIRS = [
 def test_what_meets_during_a_check_is_all_taken(desk: Desk, changes: tuple[str, ...]) -> None:
     for what in changes:
         change(desk, what)
-        desk.turn()
+        desk.frame()
         assert desk.drafts.testing
     desk.drafts.set(LEVEL, 0.5)
     desk.answer(GOOD)
@@ -340,8 +340,8 @@ def test_what_fails_is_named_and_the_rest_is_taken(desk: Desk, first: str, secon
     change(desk, second)
     chosen = second if second != "save" else first  # a choice gives way, what is saved is on the disk
     desk.answer(BAD)
-    assert f"{'b.npy' if chosen == 'data' else './dunes'} is not taken: " in desk.said
-    assert "the driver crashed" in desk.said
+    assert f"{'b.npy' if chosen == 'data' else './dunes'} is not taken: " in desk.messages
+    assert "the driver crashed" in desk.messages
     assert desk.drafts.testing, "the rest is tried by itself"
     desk.answer(GOOD)
     assert desk.session.error is None
@@ -355,7 +355,7 @@ def test_a_choice_waits_for_a_file_that_cannot_be_read(desk: Desk) -> None:
     desk.drafts.choose("height", "./dunes")
     desk.save("[view]", "[view")
     assert desk.session.error is not None
-    desk.turn()
+    desk.frame()
     desk.save("[view", "[view]")
     desk.answer(GOOD)
     assert desk.session.error is None and desk.technique == "./dunes"
@@ -366,7 +366,7 @@ def test_the_last_choice_for_a_pass_counts(desk: Desk) -> None:
         desk.drafts.choose("height", use)
     desk.save("size = 9", "size = 17")
     desk.answer(BAD)
-    assert "./dunes is not taken" in desk.said
+    assert "./dunes is not taken" in desk.messages
     desk.answer(GOOD)
     assert (desk.technique, desk.size) == ("./hills", 17)
 
@@ -406,7 +406,7 @@ def test_undo_and_redo_during_a_check(desk: Desk) -> None:
     assert desk.drafts.testing
     undo.redo()
     desk.answer(GOOD)
-    desk.turn()
+    desk.frame()
     assert desk.technique == "./dunes" and not desk.drafts.testing
     undo.undo()
     desk.save("size = 17", "size = 33")
@@ -418,28 +418,28 @@ def test_undo_and_redo_during_a_check(desk: Desk) -> None:
 def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
     compare = desk.bench.inspection.compare
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     compare.keep()
     desk.drafts.set(LEVEL, 0.75)
-    desk.turn()
+    desk.frame()
     desk.save("size = 9", "size = 17")
     desk.answer(GOOD)
     steps = len(desk.bench.undo.history.steps)
     compare.back()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.5 and len(desk.bench.undo.history.steps) == steps + 1
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.level == 0.75
 
 
 def test_going_back_to_a_during_a_check_stays(desk: Desk) -> None:
     compare = desk.bench.inspection.compare
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     compare.keep()
     desk.drafts.set(LEVEL, 0.75)
-    desk.turn()
+    desk.frame()
     desk.save("size = 9", "size = 17")
     compare.back()
     desk.answer(GOOD)
@@ -448,7 +448,7 @@ def test_going_back_to_a_during_a_check_stays(desk: Desk) -> None:
 
 def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     assert desk.bench.keyframes.add_here([LEVEL], camera=False)
     desk.answer(GOOD)
     assert desk.bench.keyframes.keyframes and desk.bench.undo.history.done == 2
@@ -456,8 +456,8 @@ def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(desk: Desk) -> 
     before = file.read_text(encoding="utf-8")
     desk.write("one/sketch.toml", before.replace("size = 9", "size = 17"))
     desk.bench.undo.undo()
-    desk.turn()
-    assert "changed meanwhile" in desk.said and "[[keyframe]]" in file.read_text(encoding="utf-8")
+    desk.frame()
+    assert "changed meanwhile" in desk.messages and "[[keyframe]]" in file.read_text(encoding="utf-8")
     assert desk.bench.undo.history.done == 2, "it is not undone"
     desk.write("one/sketch.toml", before)
     desk.bench.undo.undo()
@@ -468,7 +468,7 @@ def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(desk: Desk) -> 
 
 def test_a_keyframe_keeps_a_technique_that_is_checked(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
-    desk.turn()
+    desk.frame()
     desk.drafts.choose("height", "./dunes")
     assert desk.bench.keyframes.add_here([LEVEL], camera=False)
     desk.answer(GOOD)

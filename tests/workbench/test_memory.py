@@ -1,4 +1,4 @@
-"""What was set by hand is there again after the window is closed, or has crashed."""
+"""What was set by the user is there again after the window is closed, or has crashed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from playground.workbench.session import Session
 from ..cases import each
 
 SIZE = (64, 48)
-LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
+TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "4")
 uniform float level = 0.25; //! slider(0, 1)
 uniform vec2 slope = vec2(1.0, 2.0);
 float kernel(ivec2 texel) {
@@ -34,7 +34,7 @@ SKETCH = """format = 1
 size = 33
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 samples = 1
@@ -72,7 +72,7 @@ class Place:
     def __init__(self, folder: Path, engine: Engine) -> None:
         self.sketch, self.state, self.engine, self.now = folder / "sketch", folder / "state", engine, 100.0
         self.sketch.mkdir()
-        (self.sketch / "land.glsl").write_text(LAND, encoding="utf-8")
+        (self.sketch / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (self.sketch / "sketch.toml").write_text(SKETCH, encoding="utf-8")
         self.open: list[tuple[Session, Autosave]] = []
 
@@ -152,8 +152,8 @@ def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
     session, autosave = place.start()
-    by_hand = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
-    session.drafts.set_camera(by_hand)
+    by_user = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
+    session.drafts.set_camera(by_user)
     autosave.look((900, 600))
     autosave.close()
     other = SKETCH + ("camera = { azimuth = 12.0 }\n" if moved else "# the same camera\n")
@@ -164,7 +164,7 @@ def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place
         assert again.sketch.camera == again.shown.file.camera and again.sketch.camera.azimuth == 12.0
         assert list(again.notes) == ["camera: the file's new one is taken"]
     else:
-        assert again.sketch.camera == by_hand and not again.notes
+        assert again.sketch.camera == by_user and not again.notes
 
 
 def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
@@ -223,7 +223,7 @@ def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
     change_everything(session)
     autosave.look((900, 600))
     autosave.close()
-    text = SKETCH.replace('use = "./land"', 'use = "./land"\nset = { level = 0.5 }')
+    text = SKETCH.replace('use = "./terrain"', 'use = "./terrain"\nset = { level = 0.5 }')
     (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
     again, _ = place.start()
     values = values_of(again.sketch)
@@ -236,15 +236,15 @@ def test_a_new_default_is_no_newer_word_than_what_was_set(place: Place) -> None:
     change_everything(session)
     autosave.look((900, 600))
     autosave.close()
-    text = LAND.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
-    (place.sketch / "land.glsl").write_text(text, encoding="utf-8")
+    text = TERRAIN.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
+    (place.sketch / "terrain.glsl").write_text(text, encoding="utf-8")
     again, _ = place.start()
     values = values_of(again.sketch)
     assert values["height.level"] == 0.75 and values["height.slope"] == (0.5, 0.25)
     assert not again.notes
 
 
-SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.75, and afterwards
+SAYS = {  # what the sketch sets, and the terrain's default, when the user sets 0.75, and afterwards
     "another default": ("", 0.25, "", 0.5),
     "the same": ("level = 0.5", 0.25, "level = 0.5", 0.25),
     "set anew": ("", 0.25, "level = 0.5", 0.25),
@@ -252,7 +252,7 @@ SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.7
     "set otherwise": ("level = 0.125", 0.25, "level = 0.5", 0.25),
     "set no more": ("level = 0.125", 0.25, "", 0.25),
     "set no more, the default as it was set": ("level = 0.25", 0.125, "", 0.25),
-    "set to the hand's": ("", 0.25, "level = 0.75", 0.25),
+    "set to the user's": ("", 0.25, "level = 0.75", 0.25),
 }
 
 
@@ -260,10 +260,10 @@ SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.7
 @pytest.mark.parametrize("what", SAYS)
 def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: bool) -> None:
     def save(own: str, default: float) -> None:
-        text = SKETCH.replace('use = "./land"', f'use = "./land"\nset = {{ {own} }}')
+        text = SKETCH.replace('use = "./terrain"', f'use = "./terrain"\nset = {{ {own} }}')
         (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
-        land = LAND.replace("level = 0.25", f"level = {default}")
-        (place.sketch / "land.glsl").write_text(land, encoding="utf-8")
+        terrain = TERRAIN.replace("level = 0.25", f"level = {default}")
+        (place.sketch / "terrain.glsl").write_text(terrain, encoding="utf-8")
 
     own, default, then, later = SAYS[what]
     save(own, default)
@@ -277,14 +277,14 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
-    # Of an edit that changes a default to no effect only the reload tells: a new start knows of no edit.
+    # Of an edit that changes a default to no effect only the reload reports: a new start knows of no edit.
     assert list(again.notes) == [note for note in session.notes if "the default is" not in note]
     stays = locked or what in ("another default", "the same", "set to what it was") or "as it was" in what
     assert again.shown.edits.has("height.level") == stays
 
 
 @pytest.mark.parametrize("locked", [False, True])
-def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> None:
+def test_the_terrains_own_values_are_the_files_word(place: Place, locked: bool) -> None:
     session, autosave = place.start()
     session.drafts.set("relief", 500.0)
     session.drafts.lock("relief", locked)
@@ -335,7 +335,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_file_is_set_aside_and_one_is_told(place: Place, name: str) -> None:
+def test_a_broken_file_is_set_aside_and_one_is_reported(place: Place, name: str) -> None:
     memory = Memory(place.sketch / "sketch.toml", place.state)
     place.state.mkdir()
     data = BROKEN[name].encode("utf-8", "surrogatepass")
@@ -393,22 +393,22 @@ def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) ->
     session.frame(SIZE)
     autosave.look((900, 600))
     autosave.close()
-    kept = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
-    assert [dict(found.edits.values) for found in kept] == [{"height.level": 0.5}, {"height.level": 0.75}]
+    written = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
+    assert [dict(found.edits.values) for found in written] == [{"height.level": 0.5}, {"height.level": 0.75}]
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
-def test_where_nothing_can_be_written_one_is_told_once(place: Place) -> None:
+def test_where_nothing_can_be_written_it_is_reported_once(place: Place) -> None:
     place.state.mkdir(mode=0o500)
-    check_told_once(place)
+    check_reported_once(place)
 
 
-def test_where_the_folder_is_a_file_one_is_told_once(place: Place) -> None:
+def test_where_the_folder_is_a_file_it_is_reported_once(place: Place) -> None:
     place.state.write_text("not a folder")
-    check_told_once(place)
+    check_reported_once(place)
 
 
-def check_told_once(place: Place) -> None:
+def check_reported_once(place: Place) -> None:
     session, autosave = place.start()
     for value in (0.5, 0.75):
         session.drafts.set("height.level", value)
