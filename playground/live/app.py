@@ -47,7 +47,7 @@ from playground.sketch.allowed_files import TEXTS
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
-from playground.workbench.autosave import QUIET, Rememberer, memory_of
+from playground.workbench.autosave import QUIET, Autosave, memory_of
 from playground.workbench.bench import Bench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.editors import Opener
@@ -124,15 +124,15 @@ def run(
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
-        rememberer = Rememberer(session, memory, found)
+        autosave = Autosave(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, SessionCaching(session, cache_limit), report)
+        live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
         if found.at is not None:
             live.place.move_to(found.at)
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
         stack.callback(live.release)
         stack.callback(live.bench.captures.close)
-        stack.callback(rememberer.close)
+        stack.callback(autosave.close)
         stack.callback(live.caching.close)
         try:
             live.run(time_limit)
@@ -175,12 +175,12 @@ class Live:
         window: Window,
         session: Session,
         watcher: Watcher,
-        rememberer: Rememberer,
+        autosave: Autosave,
         caching: SessionCaching,
         report: Callable[[str], None],
     ) -> None:
         self.window = window
-        self.rememberer = rememberer
+        self.autosave = autosave
         self.caching = caching
         self.session = session
         self.follower = Follower(session, watcher)
@@ -199,13 +199,14 @@ class Live:
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status.from_environment()
-        rememberer.compare = self.bench.inspection.compare
+        autosave.compare = self.bench.inspection.compare
+        self.bench.commands.opens = autosave.open
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
         self.finite = FiniteWatch()
-        self.lessons = Lessons(self.bench, rememberer, self._remember)
+        self.lessons = Lessons(self.bench, autosave, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
         """Go on until the window is closed, or so many seconds have passed."""
@@ -277,7 +278,7 @@ class Live:
             return self.finite.patience
         if self.caching.patience is not None:
             return min(self.caching.patience, QUIET / 2)
-        if self.rememberer.waits:
+        if self.autosave.waits:
             return QUIET / 2
         if self.bench.captures.working is not None or self.bench.notices.items:
             return 0.1
@@ -393,7 +394,7 @@ class Live:
 
     def _remember(self) -> None:
         geometry = self.place.geometry()
-        self.rememberer.look((geometry.width, geometry.height), (geometry.x, geometry.y))
+        self.autosave.look((geometry.width, geometry.height), (geometry.x, geometry.y))
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""

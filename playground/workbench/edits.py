@@ -128,9 +128,10 @@ class Draft:
             base = with_technique(base, name, use)
         return Draft(self.file, base, replace(self.edits, techniques=techniques))
 
-    def reset(self) -> Draft:
-        """Return the draft as the files say it."""
-        return Draft(self.file, self.file)
+    def with_all(self, edits: Edits) -> Draft:
+        """Return the same files with other edits, techniques included; raise as ``with_techniques``."""
+        same = edits.techniques == self.edits.techniques
+        return (self if same else self.with_techniques(edits.techniques)).with_edits(edits)
 
 
 def taken(sketch: Sketch, path: str, value: Value) -> Value | None:

@@ -79,7 +79,7 @@ class History:
         self._most = most
         self._seen: object = None  # the edits that were looked at last, to know at once that nothing moved
         self._state: dict[Key, object] | None = None
-        self._of: object = None  # the files that the state is of
+        self._of = 0  # how often the files had been read
         self._due: dict[Key, object] = {}  # what an undo has requested and is not there yet
         self._open = False  # the last step goes on while the button is held
         self._name = ""
@@ -98,10 +98,10 @@ class History:
         """Give the next change a name, for one that its parts would not explain."""
         self._name = name
 
-    def look(self, edits: Edits, steps: Mapping[str, int], of: object, *, held: bool, now: float) -> None:
+    def look(self, edits: Edits, steps: Mapping[str, int], of: int, *, held: bool, now: float) -> None:
         """Take in the state at the end of a frame.
 
-        ``of`` is the sketch as its files say it: another one is a reload. ``held``: a mouse
+        ``of`` counts how often the files were read: another number is a reload. ``held``: a mouse
         button is down. ``now``: seconds of any clock.
         """
         if self._open and not held:
@@ -110,7 +110,7 @@ class History:
         before, self._state = self._state, self._state if seen == self._seen else state_of(edits, steps)
         assert self._state is not None
         self._seen = seen
-        if before is None or of is not self._of:
+        if before is None or of != self._of:
             self._of = of
             return
         changed = {key for key in {*before, *self._state} if before.get(key) != self._state.get(key)}
@@ -132,19 +132,23 @@ class History:
         self._name = name
         self._add(before, after, held=False, now=now)
 
-    def undo(self) -> State:
-        """Undo a step; return what has to be set, None for what is to be as the file says."""
-        if not self.can_undo:
-            return {}
-        self.done -= 1
-        return self._asked(self.steps[self.done].before)
+    def undo(self, apply: Callable[[State], bool]) -> bool:
+        """Undo a step: ``apply`` sets what it changed, None for what is to be as the file says.
 
-    def redo(self) -> State:
-        """Redo a step; return what has to be set."""
-        if not self.can_redo:
-            return {}
-        self.done += 1
-        return self._asked(self.steps[self.done - 1].after)
+        Where there is none, or ``apply`` returns False, nothing is undone, and False is returned.
+        """
+        return self.can_undo and self._go(self.steps[self.done - 1].before, self.done - 1, apply)
+
+    def redo(self, apply: Callable[[State], bool]) -> bool:
+        """Redo a step, as ``undo`` undoes one."""
+        return self.can_redo and self._go(self.steps[self.done].after, self.done + 1, apply)
+
+    def _go(self, wanted: State, done: int, apply: Callable[[State], bool]) -> bool:
+        if not apply(wanted):
+            return False
+        self.done, self._open = done, False
+        self._due |= wanted
+        return True
 
     def saved(self, before: State) -> None:
         """Take in that these are in the file from now on, and what the file said before."""
@@ -152,11 +156,6 @@ class History:
             replace(step, before=_said(step.before, before), after=_said(step.after, before))
             for step in self.steps
         ]
-
-    def _asked(self, wanted: State) -> State:
-        self._open = False
-        self._due |= wanted
-        return wanted
 
     def settle(self, edits: Edits, steps: Mapping[str, int]) -> None:
         """Take a state for granted: an undo has made it. What is still to come of it is no step either."""

@@ -118,11 +118,7 @@ class KeyframeEdits:
         if edits is not None and edits != draft.edits:
             old, new = changes_between(draft.edits, edits)
             before, after = before | old, after | new
-            if drafts.coming is not None:  # what is shown stays as it is until the keyframe is in it
-                techniques = drafts.coming.edits.techniques
-                drafts.coming = drafts.coming.with_edits(replace(edits, techniques=techniques))
-            else:
-                drafts.restore(edits)
+            drafts.restore_with_save(edits)
         self.undo.history.record(before, after, name, now=self.notices.now())
         self.undo.settle()
         return True

@@ -19,7 +19,7 @@ from watchfiles import watch
 
 from playground.sketch.allowed_files import Signature, signature
 
-STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is notify; longest batch
+STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is reported; longest batch
 LOOK_EVERY = 500  # [ms]
 _GRACE = 0.08  # [s] a deleted file may take to come back: editors delete and create
 _JUST = 0.05  # [s] how far a file's time of change may lag behind the clock

@@ -15,7 +15,7 @@ from playground.live.code_window import draw_code
 from playground.live.inspect.timeline import height_of_timeline
 from playground.live.lesson.host import Lessons
 from playground.paths import GLSL
-from playground.workbench.autosave import Rememberer, memory_of
+from playground.workbench.autosave import Autosave, memory_of
 from playground.workbench.lesson.reader import Reader
 
 from ..sketch_texts import map_of_height
@@ -256,8 +256,8 @@ class Desk(Bare):
         super().__init__(engine, path, size)
         for name in ("small_button", "radio_button"):
             self._watch(imgui, name)
-        self.rememberer = Rememberer(self.session, memory_of(self.session.path))
-        self.lessons = Lessons(self.bench, self.rememberer, lambda: self.rememberer.look(size))
+        self.autosave = Autosave(self.session, memory_of(self.session.path))
+        self.lessons = Lessons(self.bench, self.autosave, lambda: self.autosave.look(size))
         self.bench.interface.panel_shown = True
 
     @property
@@ -289,7 +289,7 @@ class Desk(Bare):
     def close(self) -> None:
         if self.lessons is not None:
             self.lessons.release()
-        self.rememberer.close()
+        self.autosave.close()
         super().close()
 
 

@@ -17,7 +17,7 @@ from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
 from ..workbench import test_session
-from ..workbench.test_session import KERNEL, TILT, FakeTrial
+from ..workbench.test_session import KERNEL, TILT, FakeSandbox
 from .desk import Bare, errors_of
 from .screen import ROOT
 
@@ -77,7 +77,7 @@ def test_a_list_that_holds_no_file_is_drawn_all_the_same(bare: Bare) -> None:
 def test_a_refusal_of_the_sandbox_names_the_sketch(
     folder: Path, any_engine: Engine, kind: type[PlaygroundError]
 ) -> None:
-    sandbox = FakeTrial()
+    sandbox = FakeSandbox()
     sandbox.answer = SandboxReport(False, kind("refused"))
     session = Session(any_engine, folder, sandbox=sandbox)
     session.frame((32, 32))

@@ -245,7 +245,7 @@ def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
     assert desk.session.drafts.texts and desk.reader.figure.before_lesson is None
     desk.session.drafts.set("height.seed", 7)
     desk.run_frames(3)
-    assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
+    assert dict(desk.autosave._latest.edits.values) == {"height.seed": 7}, "it is remembered"
     desk.reader.show(block(desk, "seeds"))
     desk.run_frames(4)
     desk.reader.go_back()
@@ -261,7 +261,7 @@ def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
     desk.run_frames(60)
     desk.session.drafts.set("height.seed", 8)
     desk.run_frames(60)
-    desk.rememberer.close()
+    desk.autosave.close()
     memories = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
     assert [(Path(one["sketch"]).parent.name, one["values"]["height.seed"]["value"]) for one in memories] == [
         ("own", 5)
@@ -273,8 +273,8 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     desk.run_frames(2)
     desk.session.drafts.set("height.seed", 41)
     desk.run_frames(2)
-    desk.rememberer.look((800, 600))
-    desk.rememberer.write()
+    desk.autosave.look((800, 600))
+    desk.autosave.write()
     desk.open(show=False)
     desk.reader.show(block(desk, "rubble"))
     desk.run_frames(2)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playground.live.lesson.panel import LessonPanel
 from playground.live.theme import Theme
-from playground.workbench.autosave import Rememberer
+from playground.workbench.autosave import Autosave
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.progress import progress_file, read_progress
 from playground.workbench.lesson.reader import Reader
@@ -16,11 +16,11 @@ from playground.workbench.lesson.reader import Reader
 class Lessons:
     """One window's; ``remember`` takes in what is shown, for the next start."""
 
-    def __init__(self, bench: Bench, rememberer: Rememberer, remember: Callable[[], None]) -> None:
+    def __init__(self, bench: Bench, autosave: Autosave, remember: Callable[[], None]) -> None:
         file = progress_file()
         self.reader = Reader(bench, read_progress(file), file, self._store_own, self._play)
         self._panel = LessonPanel()
-        self._rememberer = rememberer
+        self._autosave = autosave
         self._remember = remember
         bench.lessons.toggle, bench.lessons.turn_page = self.reader.toggle, self.reader.turn_page
         bench.lessons.is_shown = lambda: self.reader.lesson is not None and self.reader.progress.shown
@@ -52,7 +52,7 @@ class Lessons:
     def _store_own(self) -> None:
         """Remember what is shown, before a lesson shows something else."""
         self._remember()
-        self._rememberer.write()
+        self._autosave.pause()
 
     def _play(self, sketch: Path) -> None:
-        self._rememberer.open(sketch)
+        self._autosave.open(sketch)

@@ -182,7 +182,7 @@ class Compare:
         session = self.session
         if session.shown is not None and stored.draft.file is not session.shown.file:
             session.notes.append("A is of the files as they were; the next save brings those of now")
-        session.drafts.shown = stored.draft
+        session.drafts.show(stored.draft)
         session.view.steps.clear()
         session.view.steps.update(stored.steps)
         session.redraw()

@@ -96,7 +96,7 @@ class FigureView:
             history, before = self._histories.get(path, (History(), edits))
             _record_change(history, before, edits, undo.notices.now())
             session.open(path, start=StoredEdits(edits), texts=texts)
-            undo.history = history
+            undo.begin(history)
         else:
             undo.record()
             undo.history.call(f"Lesson: {key[0]}")
@@ -151,7 +151,7 @@ class FigureView:
             return
         self.compared_with.end()
         self._compared, self._first = own.compared, None
-        self.undo.history = own.history
+        self.undo.begin(own.history)
         session.restore_view(own.steps, own.map)
         session.view.framed_for = DEFAULT_PICTURE
         clock = session.clock
@@ -172,7 +172,7 @@ class FigureView:
         clock, compared = replace(session.clock), self._compared or self.compared_with.stored
         self._compared = None
         self.before_lesson = BeforeLesson(
-            session.path, edits, steps, shown, clock, self.undo.history, compared
+            session.path, edits, steps, shown, clock, self.undo.opened, compared
         )
         self._path = session.path
 

@@ -52,10 +52,8 @@ def open_sketch(reader: Reader, name: str) -> None:
         return
     reader.playing = ""
     reader.bugs.close_all(drawn=False)
-    if figure.before_lesson is None:
-        reader.begins()
     figure.forget_figure()
     bench.interface.panel_shown = True
     opens: Callable[[Path], None] = reader.play or bench.commands.open
     opens(path)
-    bench.undo.history = History()
+    bench.undo.begin(History())
