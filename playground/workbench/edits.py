@@ -100,12 +100,12 @@ class Draft:
 
     def without(self, path: str) -> Draft:
         """Return the draft with a parameter as the file says, by whatever name it was set."""
-        mine = _leaves(self.base, path)
+        mine = leaves(self.base, path)
         return self.with_edits(
             replace(
                 self.edits,
                 values=tuple(
-                    v for v in self.edits.values if v[0] != path and not mine & _leaves(self.base, v[0])
+                    v for v in self.edits.values if v[0] != path and not mine & leaves(self.base, v[0])
                 ),
             )
         )
@@ -222,10 +222,10 @@ def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]
     if old.edits.locked:
         now = values_of(old.sketch)
         for path in old.edits.locked:
-            leaves = _leaves(old.base, path)
-            moved = any(leaf in after and after[leaf] != now[leaf] for leaf in leaves)
+            inner = leaves(old.base, path)
+            moved = any(leaf in after and after[leaf] != now[leaf] for leaf in inner)
             if moved and not old.edits.has(path):
-                found.append((path, now[min(leaves)]))
+                found.append((path, now[min(inner)]))
     return found
 
 
@@ -260,7 +260,7 @@ def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Val
     return found if isinstance(value, tuple) else found[0]
 
 
-def _leaves(sketch: Sketch, path: str) -> set[str]:
+def leaves(sketch: Sketch, path: str) -> set[str]:
     """Return the paths of the parameters that a path represents; none where it is gone."""
     try:
         return {target.path for target in resolve(sketch.graph, path)}

@@ -132,21 +132,18 @@ class History:
         self._name = name
         self._add(before, after, held=False, now=now)
 
-    def undo(self, apply: Callable[[State], bool]) -> bool:
-        """Undo a step: ``apply`` sets what it changed, None for what is to be as the file says.
+    def go(self, by: int, apply: Callable[[State], bool]) -> bool:
+        """Undo (-1) or redo (1) a step: ``apply`` sets what it changed, None for what the file says.
 
-        Where there is none, or ``apply`` returns False, nothing is undone, and False is returned.
+        Where there is none, or ``apply`` returns False, nothing is done, and False is returned.
         """
-        return self.can_undo and self._go(self.steps[self.done - 1].before, self.done - 1, apply)
-
-    def redo(self, apply: Callable[[State], bool]) -> bool:
-        """Redo a step, as ``undo`` undoes one."""
-        return self.can_redo and self._go(self.steps[self.done].after, self.done + 1, apply)
-
-    def _go(self, wanted: State, done: int, apply: Callable[[State], bool]) -> bool:
+        if not (self.can_redo if by > 0 else self.can_undo):
+            return False
+        step = self.steps[self.done if by > 0 else self.done - 1]
+        wanted = step.after if by > 0 else step.before
         if not apply(wanted):
             return False
-        self.done, self._open = done, False
+        self.done, self._open = self.done + by, False
         self._due |= wanted
         return True
 
