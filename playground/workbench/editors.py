@@ -24,7 +24,7 @@ from playground.workbench.shell_quoting import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
-_LEAST = 4000  # bytes of what a failing editor errors that are looked at
+_LEAST = 4000  # last bytes of a failing editor's messages that are read
 
 _COLON = ("{file}:{line}:{column}",)
 _PLUS = ("+{line}", "{file}")
@@ -64,7 +64,7 @@ TERMINALS: dict[str, tuple[str, ...]] = {
     "wezterm": ("start", "--"),
     "xterm": ("-e",),
 }
-"""What stands between each terminal and the command that runs in it; ``-e`` for any other."""
+"""What comes between each terminal and the command that runs in it; ``-e`` for any other."""
 
 _WINDOWED = ("code", "codium", "cursor", "zed", "subl", "kate", "gedit", "geany", "notepad++")
 _ON_A_MAC = ("bbedit", "mate", "xed")
@@ -103,7 +103,7 @@ class Editor:
 def find_editor(
     environ: Mapping[str, str] | None = None, which: Which = shutil.which, platform: str = sys.platform
 ) -> tuple[Editor | None, str]:
-    """Return (the editor to use, a sentence on what was requested and cannot be).
+    """Return (the editor to use, a sentence on a requested one that cannot be used).
 
     None: the one in the window. The sentence is ``""`` where there is nothing to say.
     """
@@ -188,7 +188,7 @@ class Opener:
     """Starts editors and waits for them in the background; what went wrong is in ``notes``."""
 
     def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
-        self.notes: deque[str] = deque(maxlen=8)  # sentences; whoever shows them takes them out
+        self.notes: deque[str] = deque(maxlen=8)  # sentences; removed when they are shown
         self.threads: list[threading.Thread] = []
         self._wake = wake
 

@@ -9,7 +9,7 @@ Edits survive a reload. In full, for an edited parameter:
 * it keeps its value while the files change elsewhere, and also where its declaration changes:
   another default, label, step or wider range;
 * where the sketch's own ``set`` (or the terrain's size, extent, relief or base elevation) now says
-  another value than it said, the file wins (see ``edit_merge``): its value is taken, and a notice
+  another value than before, the file wins (see ``edit_merge``): its value is taken, and a notice
   says so, unless it is the very value that the user had set;
 * where its range no longer holds the value, the nearest end of the range is taken, with a notice;
 * where its type is another now, or its menu has lost the choice, it goes back to the file's value,
@@ -20,7 +20,7 @@ Edits survive a reload. In full, for an edited parameter:
 
 A parameter that is not edited shows what the files say, new defaults included. A camera set by the
 user stays until the file moves the camera, and a technique chosen by the user until the file fills
-that pass with another. A locked parameter keeps its value, edited or not, whatever the files say, as
+that pass with another. A locked parameter keeps its value, edited or not, over any change of the files, as
 long as it fits at all.
 """
 

@@ -134,7 +134,7 @@ class KeyframeEdits:
         if parts["target"] is None and "target" in named and plan is not None:
             parts["target"] = tuple(round(float(n), 2) for n in plan.eye.target)
         if parts["field_of_view"] == file.camera.field_of_view and "field_of_view" not in named:
-            del parts["field_of_view"]  # nobody changes it
+            del parts["field_of_view"]  # it never changes
         return {name: value for name, value in parts.items() if value is not None}
 
 

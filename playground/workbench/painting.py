@@ -64,7 +64,7 @@ class Painting:
 
     @property
     def files(self) -> frozenset[Path]:
-        """The masks that were begun: whoever watches files need not hear of these."""
+        """The masks that were begun: they need not be watched."""
         return frozenset(canvas.path for canvas in self._canvases.values())
 
     @property
@@ -93,29 +93,29 @@ class Painting:
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
-        plan, heights = self.session.plan, self._land()
+        plan, heights = self.session.plan, self._height()
         if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
             return None
         return ground_under(plan.eye, place, heights, plan.terrain.extent, plan.terrain.relief)
 
     def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
         """Return the brush's circle as it lies on the terrain, in shares of the picture; [] in the sky."""
-        plan, heights, middle = self.session.plan, self._land(), self.ground(place)
+        plan, heights, middle = self.session.plan, self._height(), self.ground(place)
         if middle is None or heights is None or plan is None:
             return []
         if plan.terrain.extent is None or plan.terrain.relief is None:
             return []
-        turns = np.linspace(0, 2 * np.pi, corners, endpoint=False)
-        around = np.stack([np.cos(turns), np.sin(turns)], axis=1) * self.brush.radius
+        angles = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+        around = np.stack([np.cos(angles), np.sin(angles)], axis=1) * self.brush.radius
         shares = np.clip(np.array(middle) + around / plan.terrain.extent, 0.0, 1.0)
         return seen_from(plan.eye, shares, heights, plan.terrain.extent, plan.terrain.relief)
 
     def press(self, place: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
         if self.canvas is not None and not self.canvas.holds():
-            # Somebody has taken the file away, or painted on it.
+            # Another program has removed the file, or painted on it.
             self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
-        if self._land() is None:
+        if self._height() is None:
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
         canvas = self._begun() if self._last is not None else None
@@ -223,7 +223,7 @@ class Painting:
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
         return canvas
 
-    def _land(self) -> NDArray[np.float32] | None:
+    def _height(self) -> NDArray[np.float32] | None:
         """Return the heights that the picture shows, read once for each picture; a stroke moves none."""
         session = self.session
         if self._last is None and self._heights[0] != session.draws:

@@ -136,7 +136,7 @@ def set_words(draft: Draft, values: Values) -> str:
     for path, value in draft.applied.items():
         targets = resolve(draft.base.graph, path) if path not in values.of and "." in path else ()
         parameter = targets[0].parameter if targets else _parameter(draft.base, path)
-        text = write(parameter, value) if parameter is not None else _land(value)
+        text = write(parameter, value) if parameter is not None else _terrain_text(value)
         found.append(f"--set {_quoted(f'{path}={text}')}")
     return " ".join(found)
 
@@ -145,7 +145,7 @@ def _parameter(sketch: Sketch, path: str) -> Parameter | None:
     return resolve(sketch.graph, path)[0].parameter if "." in path else None
 
 
-def _land(value: Value) -> str:
+def _terrain_text(value: Value) -> str:
     return "x".join(f"{n:g}" for n in value) if isinstance(value, tuple) else f"{value:g}"
 
 

@@ -121,7 +121,7 @@ class OpenText:
 
 
 class TextView(Protocol):
-    """Whatever shows an open file and takes what is typed."""
+    """What shows an open file and takes what is typed."""
 
     @property
     def changed(self) -> bool:

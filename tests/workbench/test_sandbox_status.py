@@ -56,7 +56,7 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
         (folder / "inc/tilt.glsl").write_text(TILT.replace("x)", "y)"), encoding="utf-8")
         watcher.changed = {folder / "terrain.glsl", folder / "inc" / "tilt.glsl", folder / "sketch.toml"}
         assert follower.take()
-        subject = "terrain.glsl, sketch.toml and 1 more"
+        subject = "sketch.toml, terrain.glsl and 1 more"
         assert session.drafts.checking == (subject, 0.0), "a newer save begins anew"
     finally:
         session.release()
