@@ -99,7 +99,7 @@ class Draft:
         return made
 
     def without(self, path: str) -> Draft:
-        """Return the draft with a parameter as the file says, by whatever name it was set."""
+        """Return the draft with a parameter as the file says, by any name that it was set by."""
         mine = leaves(self.base, path)
         return self.with_edits(
             replace(

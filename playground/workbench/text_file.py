@@ -41,7 +41,7 @@ class OpenText:
         return True
 
     def saved(self) -> str:
-        """Return what is said when it was saved."""
+        """Return the notice after a save."""
         return f"saved {self.title}"
 
     @classmethod
