@@ -119,15 +119,13 @@ def find_editor(
         if found is not None:
             return found, complaint
         complaint = complaint or f"${variable} {why}"
-    for name in (*_WINDOWED, *(_ON_A_MAC if platform == "darwin" else ())):
+    names = [*_WINDOWED, *(_ON_A_MAC if platform == "darwin" else ())]
+    if platform == "win32":
+        folders = filter(None, (environ.get(name) for name in ("ProgramFiles", "ProgramFiles(x86)")))
+        names += [rf"{folder}\Notepad++\notepad++.exe" for folder in folders]
+    for name in names:
         if path := which(name):
             return Editor((path,)), complaint
-    if platform == "win32":
-        folders = [environ.get(name, "") for name in ("ProgramFiles", "ProgramFiles(x86)")]
-        for folder in filter(None, folders):
-            path = rf"{folder}\Notepad++\notepad++.exe"
-            if which(path):
-                return Editor((path,)), complaint
     if platform == "darwin" and which("open"):
         return Editor(("open", "-t")), complaint
     terminal = find_terminal(environ, which)
