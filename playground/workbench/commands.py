@@ -149,7 +149,7 @@ def rounded(camera: Camera) -> Camera:
 
 
 def _values_in_file(draft: Draft) -> dict[Key, object]:
-    """Return what the file said of everything that is edited."""
+    """Return what the file sets for everything that is edited."""
     values = values_of(draft.base)
     found: dict[Key, object] = {}
     for path in draft.applied:

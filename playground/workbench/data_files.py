@@ -1,6 +1,6 @@
 """Which images and elevation files have been drawn with: new contents go through the sandbox first.
 
-Nobody knows yet what a new file does to its reader; a process of its own finds out.
+What a new file does to its reader is not known yet; a process of its own finds out.
 """
 
 from __future__ import annotations

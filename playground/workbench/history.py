@@ -1,14 +1,14 @@
 """Undo and redo: what each step changed, from what to what.
 
 Edits need not be reported to it. It gets the state at the end of every frame and
-keeps what differs from the frame before, so that whatever can be set can be undone. A
+keeps what differs from the frame before, so that all that can be set can be undone. A
 step holds only the things that it changed: undoing it leaves all else alone, also
 after the files have been reloaded in between.
 
 What changes while a mouse button is held is one step, and so is what goes on changing
 in the same way within a moment, as the wheel does. A reload is no step: what it takes
 away, it says. Saving moves values into the file: for the steps before it, "as the file
-says" then means what the file said.
+says" then means what the file set before.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ State = Mapping[Key, object]
 class Step:
     """What one action changed."""
 
-    before: State  # of each thing that changed; None: as the file said
+    before: State  # of each thing that changed; None: as in the file
     after: State
-    name: str = ""  # in words, where whoever did it gave one
+    name: str = ""  # in words, where one was given
     at: float = 0.0  # [s] when it last went on
 
 
@@ -49,7 +49,7 @@ def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
     found: dict[Key, object] = {("value", path): value for path, value in edits.values}
     found |= {("technique", name): use for name, use in edits.techniques}
     found |= {("lock", path): True for path in edits.locked}
-    found |= {("step", path): turn for path, turn in steps.items()}
+    found |= {("step", path): step for path, step in steps.items()}
     if edits.camera is not None:
         found["camera", ""] = edits.camera
     return found
@@ -67,7 +67,7 @@ def edits_of(state: State) -> Edits:
 
 def steps_of(state: State) -> dict[str, int]:
     """Return the repeats that a state stops early."""
-    return {path: cast(int, turn) for (kind, path), turn in state.items() if kind == "step"}
+    return {path: cast(int, step) for (kind, path), step in state.items() if kind == "step"}
 
 
 class History:
@@ -132,28 +132,25 @@ class History:
         self._name = name
         self._add(before, after, held=False, now=now)
 
-    def undo(self, apply: Callable[[State], bool]) -> bool:
-        """Undo a step: ``apply`` sets what it changed, None for what is to be as the file says.
+    def go(self, by: int, apply: Callable[[State], bool]) -> bool:
+        """Undo (-1) or redo (1) a step: ``apply`` sets what it changed, None for what the file says.
 
-        Where there is none, or ``apply`` returns False, nothing is undone, and False is returned.
+        Where there is none, or ``apply`` returns False, nothing is done, and False is returned.
         """
-        return self.can_undo and self._go(self.steps[self.done - 1].before, self.done - 1, apply)
-
-    def redo(self, apply: Callable[[State], bool]) -> bool:
-        """Redo a step, as ``undo`` undoes one."""
-        return self.can_redo and self._go(self.steps[self.done].after, self.done + 1, apply)
-
-    def _go(self, wanted: State, done: int, apply: Callable[[State], bool]) -> bool:
+        if not (self.can_redo if by > 0 else self.can_undo):
+            return False
+        step = self.steps[self.done if by > 0 else self.done - 1]
+        wanted = step.after if by > 0 else step.before
         if not apply(wanted):
             return False
-        self.done, self._open = done, False
+        self.done, self._open = self.done + by, False
         self._due |= wanted
         return True
 
     def saved(self, before: State) -> None:
-        """Take in that these are in the file from now on, and what the file said before."""
+        """Take in that these are in the file from now on, and what the file set before."""
         self.steps = [
-            replace(step, before=_said(step.before, before), after=_said(step.after, before))
+            replace(step, before=_filled(step.before, before), after=_filled(step.after, before))
             for step in self.steps
         ]
 
@@ -227,7 +224,7 @@ def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, ob
     return f"{name_of(path)}: {write(path, before)} to {write(path, after)}"
 
 
-def _said(state: State, before: State) -> State:
+def _filled(state: State, before: State) -> State:
     return {key: before.get(key) if value is None else value for key, value in state.items()}
 
 

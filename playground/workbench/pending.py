@@ -15,7 +15,7 @@ Change = Callable[[Draft], Draft]
 
 @dataclass(frozen=True)
 class Choice:
-    """One choice that waits for its check, with whatever else the same action sets."""
+    """One choice that waits for its check, with what else the same action sets."""
 
     change: Change
     keys: frozenset[Key]  # all that it sets

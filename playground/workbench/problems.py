@@ -34,7 +34,7 @@ class Problems:
     heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
     moved: bool = False  # it was moved to another, which must come into view
     _error: PlaygroundError | None = None
-    _also: tuple[Diagnostic, ...] = ()  # mistakes in files that were not come to
+    _also: tuple[Diagnostic, ...] = ()  # mistakes in files after the first wrong one
     _texts: dict[Path, tuple[object, list[str]]] = field(default_factory=dict)
 
     @property
@@ -48,7 +48,7 @@ class Problems:
         warnings: Iterable[Diagnostic] = (),
         sketch: Sketch | None = None,
     ) -> None:
-        """Take in what is wrong now. A new error opens the list; mended, an open list closes.
+        """Take in what is wrong now. A new error opens the list; once fixed, an open list closes.
 
         ``sketch`` is the one that is shown: what else of its files cannot be read is reported as well.
         """
@@ -184,7 +184,7 @@ class Warnings:
 def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the headers of a sketch's own kernels, as their files are now.
 
-    Whoever loads a sketch stops at the first.
+    Loading a sketch stops at the first.
     """
     found: dict[Diagnostic, None] = {}
     paths = {k.path for _, k in kernels_of(sketch.graph)} if sketch is not None else set()

@@ -1,6 +1,6 @@
 """A live session: the drafts of a sketch, what is drawn of it, its time, and the picture.
 
-No window and no keys: ``frame(size)`` gives a texture to whoever has a screen.
+No window and no keys: ``frame(size)`` returns the texture to show.
 
     drafts   what the files say, and the user's edits
     view     a map instead of the sketch's own view, repeats stopped early

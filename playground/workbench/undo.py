@@ -67,43 +67,40 @@ class Undo:
 
     def undo(self) -> None:
         """Undo the last step; while painting, the last stroke."""
-        if self.painting.on:
-            canvas = self.painting.canvas
-            if canvas is None or not canvas.can_undo:
-                self.notices.say("no stroke to take back; put the brush down (B) to undo values")
-            else:
-                self.painting.undo()
-                self.notices.say("took the last stroke back; put the brush down (B) to undo values")
-            return
-        self.record()
-        if not self.history.can_undo:
+        canvas = self.painting.canvas
+        if self.painting.on and (canvas is None or not canvas.can_undo):
+            self.notices.say("no stroke to take back; put the brush down (B) to undo values")
+        elif self.painting.on:
+            self.painting.undo()
+            self.notices.say("took the last stroke back; put the brush down (B) to undo values")
+        elif not self._go(-1):
             self.notices.say("there is nothing to undo")
-        elif self.history.undo(self._apply):
-            self.settle()
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
-        if self.painting.on:
-            canvas = self.painting.canvas
-            if canvas is None or not canvas.can_redo:
-                self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
-            else:
-                self.painting.redo()
-                self.notices.say("painted the stroke again; put the brush down (B) to redo values")
-            return
-        self.record()
-        if not self.history.can_redo:
+        canvas = self.painting.canvas
+        if self.painting.on and (canvas is None or not canvas.can_redo):
+            self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
+        elif self.painting.on:
+            self.painting.redo()
+            self.notices.say("painted the stroke again; put the brush down (B) to redo values")
+        elif not self._go(1):
             self.notices.say("there is nothing to do again")
-        elif self.history.redo(self._apply):
-            self.settle()
+
+    def _go(self, by: int) -> bool:
+        """Undo (-1) or redo (1) a step; return False where there is none."""
+        self.record()
+        history = self.history
+        if not (history.can_redo if by > 0 else history.can_undo):
+            return False
+        self.go_to(history.done + by)
+        return True
 
     def go_to(self, done: int) -> None:
         """Undo or redo until so many steps are done, or one of them is refused."""
         self.record()
         history = self.history
-        while history.done > done and history.undo(self._apply):
-            self.settle()
-        while history.done < done and history.redo(self._apply):
+        while history.done != done and history.go(1 if done > history.done else -1, self._apply):
             self.settle()
 
     def settle(self) -> None:

@@ -3,7 +3,7 @@
 Folders are watched, not files, because a file that is renamed over or created anew is
 another file; a change counts only if the contents differ. Twice a second the thread
 also looks for itself, so that a folder that vanished and came back is found again, and
-a file system that tells nobody anything is followed all the same.
+a file system that reports no changes is followed all the same.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Watcher:
     """Watches a set of files in a thread of its own, once started.
 
     ``wake`` is called from that thread whenever there is something to ``take``.
-    ``also`` are endings of files that are reported although nobody follows them, where
-    they lie beside one that is followed.
+    ``also`` are endings of files that are reported although they are not followed, where
+    they lie next to one that is followed.
     """
 
     def __init__(self, wake: Callable[[], None] = lambda: None, also: Iterable[str] = ()) -> None:
@@ -132,7 +132,7 @@ class Watcher:
                 self._watch(folders, identities)
 
     def _watch(self, folders: frozenset[Path], identities: dict[Path, int]) -> None:
-        """Tell of changes until the folders to watch are no longer the same."""
+        """Report changes until the folders to watch are no longer the same."""
         batches = watch(
             *identities,
             step=STEP,

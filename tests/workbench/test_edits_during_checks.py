@@ -17,6 +17,7 @@ from playground.sketch.model import Camera
 from playground.workbench.autosave import Autosave, memory_of
 from playground.workbench.bench import Bench
 from playground.workbench.edits import Edits
+from playground.workbench.inspect.compare import Compare
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -415,7 +416,8 @@ def test_undo_and_redo_during_a_check(desk: Desk) -> None:
     assert (desk.technique, desk.size, desk.level) == ("./hills", 33, 0.5)
 
 
-def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
+def save_after_keeping_a(desk: Desk) -> Compare:
+    """Keep a state as A, edit it, and save the sketch; return the comparison."""
     compare = desk.bench.inspection.compare
     desk.drafts.set(LEVEL, 0.5)
     desk.frame()
@@ -423,6 +425,11 @@ def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.75)
     desk.frame()
     desk.save("size = 9", "size = 17")
+    return compare
+
+
+def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
+    compare = save_after_keeping_a(desk)
     desk.answer(GOOD)
     steps = len(desk.bench.undo.history.steps)
     compare.back()
@@ -434,13 +441,7 @@ def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
 
 
 def test_going_back_to_a_during_a_check_stays(desk: Desk) -> None:
-    compare = desk.bench.inspection.compare
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    compare.keep()
-    desk.drafts.set(LEVEL, 0.75)
-    desk.frame()
-    desk.save("size = 9", "size = 17")
+    compare = save_after_keeping_a(desk)
     compare.back()
     desk.answer(GOOD)
     assert (desk.level, desk.size) == (0.5, 17)

@@ -21,6 +21,7 @@ from playground.workbench.memory import Compared, Memory, Remembered
 from playground.workbench.session import Session
 
 from ..cases import each
+from ..sketch_texts import TERRAIN_IN_3D as SKETCH
 
 SIZE = (64, 48)
 TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "4")
@@ -29,15 +30,6 @@ uniform vec2 slope = vec2(1.0, 2.0);
 float kernel(ivec2 texel) {
     return previous(texel) * 0.5 + level * dot(slope, vec2(texel)) * (0.5 + fract(time)) / float(size.x);
 }
-"""
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/terrain"
-samples = 1
 """
 FULL = Remembered(
     Edits(

@@ -202,11 +202,11 @@ class Desk:
         self.frame(**how)  # type: ignore[arg-type]
 
     def undo(self) -> None:
-        assert self.history.undo(self._apply)
+        assert self.history.go(-1, self._apply)
         self._settle()
 
     def redo(self) -> None:
-        assert self.history.redo(self._apply)
+        assert self.history.go(1, self._apply)
         self._settle()
 
     def _apply(self, changes: State) -> bool:
@@ -229,7 +229,7 @@ def test_undo_and_redo_go_through_every_state() -> None:
     for state in reversed(states[:-1]):
         desk.undo()
         assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_undo and not desk.history.undo(lambda changes: True)
+    assert not desk.history.can_undo and not desk.history.go(-1, lambda changes: True)
     for state in states[1:]:
         desk.redo()
         assert state_of(desk.edits, {}) == state_of(state, {})
@@ -291,7 +291,7 @@ def test_an_undo_that_takes_its_time_is_no_step() -> None:
     desk = Desk()
     desk.edits = Edits(techniques=(("p", "x"),))
     desk.frame()
-    assert desk.history.undo(lambda changes: True)
+    assert desk.history.go(-1, lambda changes: True)
     desk.history.settle(desk.edits, {})  # nothing has come of it yet
     desk.frame()
     desk.edits = Edits()
@@ -341,8 +341,8 @@ def test_steps_have_names() -> None:
 def test_a_step_that_is_refused_is_not_undone() -> None:
     desk = Desk()
     desk.set("p.a", 0.5)
-    assert not desk.history.undo(lambda changes: False)
+    assert not desk.history.go(-1, lambda changes: False)
     assert desk.history.done == 1
     desk.undo()
-    assert not desk.history.redo(lambda changes: False)
+    assert not desk.history.go(1, lambda changes: False)
     assert desk.history.done == 0 and desk.history.can_redo

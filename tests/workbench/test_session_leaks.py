@@ -13,19 +13,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.workbench.session import Session
 
+from ..sketch_texts import TERRAIN_IN_3D as SKETCH
+
 SIZE = (64, 36)
 TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float level = 0.25; //! slider(0, 1)
 float kernel(ivec2 texel) { return previous(texel) * EDIT + level * float(texel.x) / float(size.x); }
-"""
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/terrain"
-samples = 1
 """
 
 
