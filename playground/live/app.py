@@ -198,7 +198,7 @@ class Live:
         self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
-        self.status = Status.from_environment()
+        self.status = Status()
         rememberer.compare = self.bench.inspection.compare
         self._settling = _SETTLES
         self._last = time.perf_counter()

@@ -6,9 +6,7 @@ time to make parts; what is not there yet is far away, in the haze.
 
 from __future__ import annotations
 
-import json
 import math
-import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
@@ -28,10 +26,10 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
-from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
+from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
 from playground.live.keys import ctrl_held, pressed_sign
-from playground.live.status import VARIABLE
+from playground.live.status import add_line, status_file
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
@@ -47,16 +45,16 @@ _IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
 
 _K = imgui.Key
-_HOLDS: tuple[tuple[str, tuple[imgui.Key, ...]], ...] = (
-    ("up", (_K.s, _K.down_arrow)),
-    ("down", (_K.w, _K.up_arrow)),
-    ("left", (_K.a, _K.left_arrow)),
-    ("right", (_K.d, _K.right_arrow)),
-    ("yaw_left", (_K.q,)),
-    ("yaw_right", (_K.e,)),
-    ("faster", (_K.left_shift, _K.right_shift, _K.page_up)),
-    ("slower", (_K.left_ctrl, _K.right_ctrl, _K.page_down)),
-)
+_HOLDS: dict[str, tuple[imgui.Key, ...]] = {
+    "up": (_K.s, _K.down_arrow),
+    "down": (_K.w, _K.up_arrow),
+    "left": (_K.a, _K.left_arrow),
+    "right": (_K.d, _K.right_arrow),
+    "yaw_left": (_K.q,),
+    "yaw_right": (_K.e,),
+    "faster": (_K.left_shift, _K.right_shift, _K.page_up),
+    "slower": (_K.left_ctrl, _K.right_ctrl, _K.page_down),
+}
 
 
 def run(
@@ -140,7 +138,7 @@ class Fly:
         self._reset = False
         self._buttons: tuple[int, ...] = ()
         self._wheel = Wheel()
-        self._status = Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
+        self._status = status_file()
         self._written = 0.0
 
     def run(self, time_limit: float | None = None) -> None:
@@ -237,8 +235,8 @@ class Fly:
 
     def _controls(self) -> Controls:
         self._wheel.scroll(imgui.get_io().mouse_wheel)
-        down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
-        found = [by_keys(Keys(**down))]
+        held = {name for name, keys in _HOLDS.items() if any(map(imgui.is_key_down, keys))}
+        found = [by_keys(held)]
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             found.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
@@ -327,8 +325,7 @@ class Fly:
             "changes": self.changes,
             "error": str(self.saves.error) if self.saves is not None and self.saves.error else "",
         }
-        with self._status.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(line) + "\n")
+        add_line(self._status, line)
 
 
 _PRESSES: dict[imgui.Key, str] = {
