@@ -28,8 +28,9 @@ from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
 from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
-from playground.live.keys import ctrl_held, pressed_sign
+from playground.live.keys import pressed_sign
 from playground.live.status import add_line, status_file
+from playground.live.text_field import ctrl_held, letters
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
@@ -265,7 +266,8 @@ class Fly:
         if self.paused and "quit" in pressed and ctrl:
             self.window.ask_to_close()
         if ctrl:
-            self._resize("0" if imgui.is_key_pressed(imgui.Key._0) else self._sign())
+            zero = imgui.is_key_pressed(imgui.Key._0)
+            self._resize("0" if zero else pressed_sign(lambda: self.window.sign_held))
         if "leave" in pressed:
             self._leave()
         if "help" in pressed:
@@ -281,9 +283,6 @@ class Fly:
                 hour = self.flight.hour if self._hour is None else self._hour
                 self._hour = (hour + hours) % 24.0
                 self.paused = False
-
-    def _sign(self) -> str:
-        return pressed_sign(lambda: self.window.sign_held)
 
     def _resize(self, key: str) -> None:
         """Draw text larger, smaller or as large as the screen says, and remember it for every window."""
@@ -346,11 +345,4 @@ _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 
 def _pressed() -> set[str]:
     found = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
-    if any(chr(c) == "?" for c in _typed()):
-        found.add("help")
-    return found
-
-
-def _typed() -> list[int]:
-    """Return the characters typed since the last frame: the key of ? depends on the keyboard."""
-    return [int(c) for c in imgui.get_io().input_queue_characters]
+    return found | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard

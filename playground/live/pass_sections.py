@@ -21,6 +21,7 @@ from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
+from playground.workbench.inspect.pass_graph import cost_of
 from playground.workbench.open_files import OpenFiles, editor_name
 from playground.workbench.parameter_list import Group, Item, Section, in_words
 from playground.workbench.session import Session
@@ -125,19 +126,15 @@ class _Drawing:
         ``opened``: whether it is open until it is clicked on.
         """
         session, look = self.rows.session, self.look
-        engine = session.engine
-        mine = [path for path in engine.runs if path == spec.name or path.startswith(f"{spec.name}.")]
-        ran = any(path in mine for path in engine.ran)
         flags = imgui.TreeNodeFlags_.allow_overlap
         if opened:
             flags |= imgui.TreeNodeFlags_.default_open
         with look.font(look.bold):
             unfolded = imgui.collapsing_header(f"{in_words(spec.name)}###pass", flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        text = counted(sum(engine.runs[path] for path in mine), "run")
-        spent = [session.times[path] for path in mine if path in session.times]
-        if engine.profiling and spent:
-            text = f"{sum(spent):.1f} ms    {text}"
+        text, ran, spent = cost_of(session, spec.name)
+        if session.engine.profiling and spent is not None:
+            text = f"{spent:.1f} ms    {text}"
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale
         place = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
