@@ -11,7 +11,7 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.live import theme
-from playground.live.draw import QUIET, Area, button, styled
+from playground.live.draw import QUIET, Area, button, buttons, styled
 from playground.live.text_field import ctrl_held
 from playground.live.theme import Theme
 from playground.workbench.dependencies import path_named
@@ -168,14 +168,12 @@ def _take_keys(editing: Editing, notices: Notices) -> None:
 
 def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
     note = "Ctrl+S; what is saved is checked at once, as from any editor"
-    if button("Save", note, enabled=view.changed, small=True):
-        save(editing, notices)
-    imgui.same_line()
-    if button("Undo", enabled=view.editor.can_undo(), small=True):
-        view.editor.undo()
-    imgui.same_line()
-    if button("Redo", enabled=view.editor.can_redo(), small=True):
-        view.editor.redo()
+    buttons(
+        ("Save", note, lambda: save(editing, notices), view.changed),
+        ("Undo", "", view.editor.undo, view.editor.can_undo()),
+        ("Redo", "", view.editor.redo, view.editor.can_redo()),
+        small=True,
+    )
     imgui.same_line()
     place = view.editor.get_main_cursor_position()
     with look.font(look.text, theme.SMALL):

@@ -13,7 +13,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from playground.live import theme
-from playground.live.draw import table
+from playground.live.draw import header, table
 from playground.live.inspect import plots
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
@@ -32,8 +32,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     """Draw the plots, then the table of what ran, how often and how long."""
     engine, record = session.engine, inspection.record
     imgui.spacing()
-    with look.font(look.bold):
-        opened = imgui.collapsing_header("Cost###costs")
+    opened = header("Cost###costs", look)
     if not opened:
         return
     inspection.costs_shown = True
