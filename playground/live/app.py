@@ -43,6 +43,7 @@ from playground.live.part_labels import draw_part_labels
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
+from playground.paths import DEFAULT_SKETCH
 from playground.sketch.allowed_files import TEXTS
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -102,7 +103,7 @@ def run(
     """
     if lesson:
         lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
-    path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
+    path, unpacked = opened_from(Path(sketch)) if sketch else (find(DEFAULT_SKETCH), "")
     checked = _checked(path, values or {})
     if software:
         prefer_software()
@@ -139,13 +140,6 @@ def run(
         except KeyboardInterrupt:
             return 130
     return 0
-
-
-def find_default() -> Path:
-    """Return the file of the sketch that opens when none is named."""
-    from playground.paths import DEFAULT_SKETCH
-
-    return find(DEFAULT_SKETCH)
 
 
 def title_of(path: Path) -> str:
@@ -198,7 +192,7 @@ class Live:
         self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
-        self.status = Status.from_environment()
+        self.status = Status()
         autosave.compare = self.bench.inspection.compare
         self.bench.commands.opens = autosave.open
         self._settling = _SETTLES

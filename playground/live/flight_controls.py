@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
 
 from playground.flight.craft import Controls
 
@@ -16,32 +15,12 @@ FULL = 0.3
 """Of the window's height: so far from where the button went down, the mouse is a full stick."""
 
 
-@dataclass(frozen=True)
-class Keys:
-    """Which of the keys that fly are down."""
-
-    up: bool = False  # nose up
-    down: bool = False
-    left: bool = False
-    right: bool = False
-    yaw_left: bool = False
-    yaw_right: bool = False
-    faster: bool = False
-    slower: bool = False
+_AXES = (("faster", "slower"), ("up", "down"), ("right", "left"), ("yaw_right", "yaw_left"))
 
 
-def by_keys(keys: Keys) -> Controls:
-    """Return what keys ask for: all or nothing."""
-
-    def pair(more: bool, less: bool) -> int:
-        return 100 * (more - less)
-
-    return Controls(
-        pair(keys.faster, keys.slower),
-        pair(keys.up, keys.down),
-        pair(keys.right, keys.left),
-        pair(keys.yaw_right, keys.yaw_left),
-    )
+def by_keys(held: Collection[str]) -> Controls:
+    """Return the controls of the keys that are held, by name: full or nothing; "up" is nose up."""
+    return Controls(*(100 * ((more in held) - (less in held)) for more, less in _AXES))
 
 
 def by_mouse(across: float, down: float, height: float) -> Controls:

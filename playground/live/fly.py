@@ -6,9 +6,7 @@ time to make parts; what is not there yet is far away, in the haze.
 
 from __future__ import annotations
 
-import json
 import math
-import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
@@ -28,10 +26,11 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
-from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
+from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
-from playground.live.keys import ctrl_held, pressed_sign
-from playground.live.status import VARIABLE
+from playground.live.keys import pressed_sign
+from playground.live.status import add_line, status_file
+from playground.live.text_field import ctrl_held, letters
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
@@ -47,16 +46,16 @@ _IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
 
 _K = imgui.Key
-_HOLDS: tuple[tuple[str, tuple[imgui.Key, ...]], ...] = (
-    ("up", (_K.s, _K.down_arrow)),
-    ("down", (_K.w, _K.up_arrow)),
-    ("left", (_K.a, _K.left_arrow)),
-    ("right", (_K.d, _K.right_arrow)),
-    ("yaw_left", (_K.q,)),
-    ("yaw_right", (_K.e,)),
-    ("faster", (_K.left_shift, _K.right_shift, _K.page_up)),
-    ("slower", (_K.left_ctrl, _K.right_ctrl, _K.page_down)),
-)
+_HOLDS: dict[str, tuple[imgui.Key, ...]] = {
+    "up": (_K.s, _K.down_arrow),
+    "down": (_K.w, _K.up_arrow),
+    "left": (_K.a, _K.left_arrow),
+    "right": (_K.d, _K.right_arrow),
+    "yaw_left": (_K.q,),
+    "yaw_right": (_K.e,),
+    "faster": (_K.left_shift, _K.right_shift, _K.page_up),
+    "slower": (_K.left_ctrl, _K.right_ctrl, _K.page_down),
+}
 
 
 def run(
@@ -140,7 +139,7 @@ class Fly:
         self._reset = False
         self._buttons: tuple[int, ...] = ()
         self._wheel = Wheel()
-        self._status = Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
+        self._status = status_file()
         self._written = 0.0
 
     def run(self, time_limit: float | None = None) -> None:
@@ -237,8 +236,8 @@ class Fly:
 
     def _controls(self) -> Controls:
         self._wheel.scroll(imgui.get_io().mouse_wheel)
-        down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
-        found = [by_keys(Keys(**down))]
+        held = {name for name, keys in _HOLDS.items() if any(map(imgui.is_key_down, keys))}
+        found = [by_keys(held)]
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             found.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
@@ -267,7 +266,8 @@ class Fly:
         if self.paused and "quit" in pressed and ctrl:
             self.window.ask_to_close()
         if ctrl:
-            self._resize("0" if imgui.is_key_pressed(imgui.Key._0) else self._sign())
+            zero = imgui.is_key_pressed(imgui.Key._0)
+            self._resize("0" if zero else pressed_sign(lambda: self.window.sign_held))
         if "leave" in pressed:
             self._leave()
         if "help" in pressed:
@@ -283,9 +283,6 @@ class Fly:
                 hour = self.flight.hour if self._hour is None else self._hour
                 self._hour = (hour + hours) % 24.0
                 self.paused = False
-
-    def _sign(self) -> str:
-        return pressed_sign(lambda: self.window.sign_held)
 
     def _resize(self, key: str) -> None:
         """Draw text larger, smaller or as large as the screen says, and remember it for every window."""
@@ -327,8 +324,7 @@ class Fly:
             "changes": self.changes,
             "error": str(self.saves.error) if self.saves is not None and self.saves.error else "",
         }
-        with self._status.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(line) + "\n")
+        add_line(self._status, line)
 
 
 _PRESSES: dict[imgui.Key, str] = {
@@ -349,11 +345,4 @@ _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 
 def _pressed() -> set[str]:
     found = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
-    if any(chr(c) == "?" for c in _typed()):
-        found.add("help")
-    return found
-
-
-def _typed() -> list[int]:
-    """Return the characters typed since the last frame: the key of ? depends on the keyboard."""
-    return [int(c) for c in imgui.get_io().input_queue_characters]
+    return found | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard

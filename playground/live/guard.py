@@ -60,22 +60,15 @@ class Guard:
 def _without_complaint() -> Iterator[None]:
     """Have imgui end what is open without raising, printing or showing anything."""
     io = imgui.get_io()
-    before = (
-        io.config_error_recovery_enable_assert,
-        io.config_error_recovery_enable_debug_log,
-        io.config_error_recovery_enable_tooltip,
-    )
-    io.config_error_recovery_enable_assert = False
-    io.config_error_recovery_enable_debug_log = False
-    io.config_error_recovery_enable_tooltip = False
+    names = [f"config_error_recovery_enable_{way}" for way in ("assert", "debug_log", "tooltip")]
+    before = {name: getattr(io, name) for name in names}
+    for name in names:
+        setattr(io, name, False)
     try:
         yield
     finally:
-        (
-            io.config_error_recovery_enable_assert,
-            io.config_error_recovery_enable_debug_log,
-            io.config_error_recovery_enable_tooltip,
-        ) = before
+        for name, value in before.items():
+            setattr(io, name, value)
 
 
 def _brief(error: Exception) -> str:

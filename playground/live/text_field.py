@@ -61,6 +61,12 @@ def letters() -> str:
     return "".join(chr(letter) for letter in imgui.get_io().input_queue_characters)
 
 
+def ctrl_held() -> bool:
+    """Return whether Ctrl is down, or went up in this frame, as in a slow one together with its key."""
+    io = imgui.get_io()
+    return bool(io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl))
+
+
 def _is_active() -> bool:
     context = imgui.get_current_context()
     return context.active_id != 0 and context.active_id == context.input_text_state.id_

@@ -30,6 +30,14 @@ if TYPE_CHECKING:
     import moderngl
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
+_HINTS = {
+    glfw.OPENGL_PROFILE: glfw.OPENGL_CORE_PROFILE,
+    glfw.OPENGL_FORWARD_COMPAT: True,
+    glfw.SCALE_TO_MONITOR: True,
+    glfw.DEPTH_BITS: 0,
+    glfw.STENCIL_BITS: 0,
+    glfw.CONTEXT_ROBUSTNESS: glfw.LOSE_CONTEXT_ON_RESET,
+}
 _SMALLEST = (480, 320)
 _SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
 _SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
@@ -227,14 +235,10 @@ def _create(title: str, size: tuple[int, int]) -> Any:
         glfw.default_window_hints()
         glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, major)
         glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, minor)
-        glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-        glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
-        glfw.window_hint(glfw.DEPTH_BITS, 0)
-        glfw.window_hint(glfw.STENCIL_BITS, 0)
-        glfw.window_hint_string(glfw.WAYLAND_APP_ID, "terrain-shader-playground")
-        glfw.window_hint_string(glfw.X11_CLASS_NAME, "terrain-shader-playground")
-        glfw.window_hint(glfw.CONTEXT_ROBUSTNESS, glfw.LOSE_CONTEXT_ON_RESET)
+        for hint, value in _HINTS.items():
+            glfw.window_hint(hint, value)
+        for hint in (glfw.WAYLAND_APP_ID, glfw.X11_CLASS_NAME):
+            glfw.window_hint_string(hint, "terrain-shader-playground")
         handle = glfw.create_window(*size, title, None, None)
         if handle:
             return handle

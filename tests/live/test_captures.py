@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from playground.api import headless
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, do
-from playground.capture.job_process import JobProcess
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, do
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
@@ -70,13 +68,8 @@ def wishing(bench: Bench, wish: Wish) -> Captures:
     return bench.captures
 
 
-def done(bench: Bench) -> None:
-    """Start what is wished for, and wait until it has ended; the window goes on meanwhile."""
-    bench.captures.start()
-    wait(bench)
-
-
 def wait(bench: Bench) -> None:
+    """Wait until the capture has ended; the window goes on meanwhile."""
     end = time.monotonic() + LIMIT
     while bench.captures.working is not None:
         assert time.monotonic() < end
@@ -95,16 +88,20 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
     bench.session.frame(SIZE)
     frame = bench.session.read()
     assert frame is not None
-    done(bench)
+    bench.captures.start()
+    working = bench.captures.working
+    wait(bench)
     made = bench.captures.made
+    assert working is not None and working.progress == (1, 1)
     assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, notices_of(bench)
     pixels, _ = read_png(made)
     assert np.array_equal(pixels, frame.array)
     assert f"saved {made}, 40 x 30 pixels" in notices_of(bench)
+    here = bench.session.engine.render(bench.captures.job().sketch, size=SIZE, time=1.5)
+    assert np.array_equal(pixels, here.array), "its process gives the bytes of this one"
     bench.captures.wish.multiple = 4
-    done(bench)
-    assert bench.captures.made is not None and bench.captures.made != made
-    assert read_png(bench.captures.made)[0].shape == (120, 160, 4)
+    larger = do(bench.captures.job(), bench.session.engine, lambda *_: None, lambda _: None)
+    assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
 def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Bench) -> None:
@@ -230,21 +227,6 @@ def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
     names = [do(job, engine, lambda *_: None, lambda _: None).name for _ in range(3)]
     stem = job.sketch.name
     assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
-
-
-def test_a_job_in_its_process_gives_the_bytes_of_this_one(bench: Bench) -> None:
-    sketch = wishing(bench, Wish()).job().sketch
-    job = CaptureJob(
-        kind=PICTURE, sketch=sketch, folder=bench.captures.folder, size=(64, 64), fps=Fraction(30)
-    )
-    working = JobProcess(job, software=bench.session.engine.info.software)
-    end = time.monotonic() + LIMIT
-    while (finished := working.poll()) is None and time.monotonic() < end:
-        time.sleep(0.01)
-    assert finished is not None and finished.path is not None, finished
-    here = bench.session.engine.render(job.sketch, size=(64, 64))
-    assert np.array_equal(read_png(finished.path)[0], here.array)
-    assert working.progress == (1, 1)
 
 
 def test_the_window_is_there_for_c_and_goes_with_esc(

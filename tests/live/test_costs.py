@@ -10,7 +10,7 @@ import pytest
 from imgui_bundle import implot
 
 from playground.engine.engine import Engine
-from playground.workbench.inspect.frame_costs import Record, Ring
+from playground.workbench.inspect.frame_costs import Record
 
 from ..variants import trust
 from .desk import Bare
@@ -46,24 +46,25 @@ def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
     made.close()
 
 
-def test_a_ring_keeps_the_last_numbers_in_order() -> None:
-    ring = Ring(4)
+def test_a_record_keeps_the_last_numbers_in_order() -> None:
+    record = Record(4)
     for n in range(11):
-        ring.add(n)
-        assert ring.values.tolist() == list(range(max(0, n - 3), n + 1))
+        record.add({"a": n}, n, n)
+        for numbers in (record.passes["a"], record.whole, record.texels, record.triangles):
+            assert list(numbers) == list(range(max(0, n - 3), n + 1))
 
 
 def test_a_record_keeps_its_rows_in_step() -> None:
     record = Record(3)
     record.add({"a": 1.0}, 10, 2)
     record.add({"a": 2.0, "b": 5.0}, 20, 0)
-    assert record.passes["b"].values.tolist() == [0.0, 5.0]
-    assert record.whole.values.tolist() == [1.0, 7.0]
+    assert list(record.passes["b"]) == [0.0, 5.0]
+    assert list(record.whole) == [1.0, 7.0]
     assert record.most_expensive(1) == ["b"]
     for _ in range(3):
         record.add({"b": 1.0}, 0, 0)
     assert list(record.passes) == ["b"]  # what cost nothing for so long is gone
-    assert record.texels.values.tolist() == [0.0, 0.0, 0.0]
+    assert list(record.texels) == [0.0, 0.0, 0.0]
 
 
 def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
@@ -86,16 +87,16 @@ def test_each_frame_is_recorded_while_the_costs_are_shown(bare: Bare) -> None:
         bare.run_frames()
     bare.run_frames(4)
     assert record.pictures == before + 5  # a frame without a picture is none
-    assert record.texels.values[-1] == 33 * 17 + 48 * 32
-    assert record.triangles.values[-1] == engine.triangles == _triangles(engine, 5)
-    assert set(record.passes) == {"height", "view"} and record.whole.values[-1] > 0
-    assert np.isclose(record.whole.values, sum(ring.values for ring in record.passes.values())).all()
+    assert record.texels[-1] == 33 * 17 + 48 * 32
+    assert record.triangles[-1] == engine.triangles == _triangles(engine, 5)
+    assert set(record.passes) == {"height", "view"} and record.whole[-1] > 0
+    assert np.isclose(record.whole, np.sum(list(record.passes.values()), axis=0)).all()
     assert implot.get_current_context() is not None
     bare.session.drafts.set("view.grid", 9)
     bare.run_frames(2)
-    assert record.texels.values[-1] == 48 * 32  # the terrain was not computed again
-    assert record.triangles.values[-1] == _triangles(engine, 9)
-    assert record.passes["height"].values[-1] == 0
+    assert record.texels[-1] == 48 * 32  # the terrain was not computed again
+    assert record.triangles[-1] == _triangles(engine, 9)
+    assert record.passes["height"][-1] == 0
     bare.click("Cost###costs")
     assert not engine.profiling and record.pictures == 0 and not bare.session.times
 

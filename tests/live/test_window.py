@@ -7,7 +7,6 @@ itself comes as JSON lines (``playground.live.status``).
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -17,7 +16,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from .screen import ON_LINUX, ROOT, Program, Screen
+from playground.errors import ContextError
+from playground.live.app import run
+
+from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 800, 500
 PANEL = 330  # pixels at scale 1
@@ -73,6 +75,14 @@ class App(Program):
 SCREEN = WIDTH, HEIGHT  # [pixels]
 
 
+@pytest.fixture(scope="module")
+def shared(screen: Screen, tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
+    """Give a window for tests that leave the files and the picture as they were."""
+    made = App(screen, tmp_path_factory.mktemp("shared"))
+    yield made
+    made.close()
+
+
 @pytest.fixture
 def app(screen: Screen, tmp_path: Path) -> Iterator[App]:
     made = App(screen, tmp_path)
@@ -102,13 +112,13 @@ def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
     return found
 
 
-def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None:
-    land, wave = app.sketch / "terrain.glsl", app.sketch / "inc" / "wave.glsl"
+def test_an_edit_that_works_one_that_breaks_and_one_that_fixes(shared: App) -> None:
+    app, terrain, wave = shared, shared.sketch / "terrain.glsl", shared.sketch / "inc" / "wave.glsl"
     for save in (save_in_place, save_by_rename):
         first, first_hash = app.picture(), app.now()["picture"]
         assert first.std() > 1.0, "there is terrain on the screen"
 
-        save(land, TERRAIN.replace("level * wave", "0.3 * level * wave"))
+        save(terrain, TERRAIN.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now, old=first_hash: now["picture"] != old and not now["error"])
         lower = app.picture()
         assert not np.array_equal(lower, first)
@@ -120,10 +130,33 @@ def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None
         assert soon(lambda: is_red(app.screen.pixels()[HEIGHT - 40, PANEL + 30])), "a red box says so"
 
         save(wave, WAVE)
-        save(land, TERRAIN)
+        save(terrain, TERRAIN)
         app.wait(lambda now, old=first_hash: now["picture"] == old and not now["error"])
         assert soon(lambda old=first: np.array_equal(app.picture(), old))
     assert app.process.poll() is None
+
+
+def test_a_sketch_that_vanishes_says_so_and_goes_on_when_it_is_back(shared: App) -> None:
+    folder, path = shared.sketch, shared.sketch / "sketch.toml"
+    first, errors = shared.now()["picture"], shared.complaint().count("the file is gone")
+    path.unlink()
+    error = shared.wait(lambda now: now["error"])["error"]
+    assert "the file is gone" in error and "sketch.toml" in error
+    path.write_text(SKETCH.replace("relief = 200.0", "relief = 300.0"), encoding="utf-8")
+    shared.wait(lambda now: not now["error"] and now["picture"] != first)
+    path.unlink()
+    time.sleep(0.15)
+    path.write_text(SKETCH, encoding="utf-8")
+    shared.wait(lambda now: not now["error"] and now["picture"] == first)
+    folder.rename(folder.with_name("elsewhere"))
+    error = shared.wait(lambda now: now["error"])["error"]
+    assert "gone with its folder" in error
+    assert shared.now()["picture"] == first, "the last good picture stays"
+    folder.with_name("elsewhere").rename(folder)
+    shared.wait(lambda now: not now["error"] and now["picture"] == first)
+    errors = shared.complaint().count("the file is gone") - errors
+    assert errors in (2, 3), "the terminal shows each once"
+    assert "Traceback" not in shared.complaint()
 
 
 @pytest.mark.slow
@@ -290,28 +323,17 @@ def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     assert app.ended() == 0, app.complaint()
 
 
-def test_without_a_display_it_says_so_in_one_sentence(tmp_path: Path) -> None:
-    gone = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR")
-    environment = {k: v for k, v in os.environ.items() if k not in gone}
-    environment["PYTHONPATH"] = str(ROOT)
-    (tmp_path / "terrain.frag").write_text(
-        "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8"
-    )
-    code = (
-        "import sys; from playground.errors import PlaygroundError; from playground.live.app import run\n"
-        "try: run(sys.argv[1])\n"
-        "except PlaygroundError as error: print(type(error).__name__, error); sys.exit(error.exit_status)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "terrain.frag")],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=180,
-    )
-    assert done.returncode == 2, done.stderr
-    assert done.stdout.startswith("ContextError ") and done.stdout.count("\n") == 1
-    assert "no screen to open a window on" in done.stdout and "Traceback" not in done.stderr
+def test_without_a_display_it_says_so_in_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    file = tmp_path / "terrain.frag"
+    file.write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8")
+    with pytest.raises(ContextError, match="no screen to open a window on") as caught:
+        run(file)
+    assert caught.value.exit_status == 2 and "\n" not in str(caught.value)
+    assert "Traceback" not in capfd.readouterr().err
 
 
 def cpu_seconds(pid: int) -> float:

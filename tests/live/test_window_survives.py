@@ -105,33 +105,6 @@ def look(screen: Screen, name: str) -> None:
         Image.fromarray(screen.pixels()).save(Path(os.environ["LOOK"]) / f"{name}.png")
 
 
-def test_a_sketch_that_vanishes_says_so_and_goes_on_when_it_is_back(
-    screen: Screen, window: Program, folder: Path
-) -> None:
-    first, path = window.now()["picture"], folder / "sketch.toml"
-    path.unlink()
-    error = window.wait(lambda now: now["error"])["error"]
-    assert "the file is gone" in error and "sketch.toml" in error
-    time.sleep(0.5)
-    look(screen, "gone")
-    path.write_text(SKETCH.replace("relief = 200.0", "relief = 300.0"), encoding="utf-8")
-    window.wait(lambda now: not now["error"] and now["picture"] != first)
-    path.unlink()
-    time.sleep(0.15)
-    path.write_text(SKETCH, encoding="utf-8")
-    window.wait(lambda now: not now["error"] and now["picture"] == first)
-    folder.rename(folder.with_name("elsewhere"))
-    error = window.wait(lambda now: now["error"])["error"]
-    assert "gone with its folder" in error
-    time.sleep(0.5)
-    look(screen, "folder-gone")
-    assert window.now()["picture"] == first, "the last good picture stays"
-    folder.with_name("elsewhere").rename(folder)
-    window.wait(lambda now: not now["error"] and now["picture"] == first)
-    assert window.complaint().count("the file is gone") in (2, 3), "the terminal shows each once"
-    assert "Traceback" not in window.complaint()
-
-
 @pytest.mark.slow
 def test_a_slow_sandbox_check_is_announced(screen: Screen, window: Program, folder: Path) -> None:
     (folder / "terrain.glsl").write_text(BUSY, encoding="utf-8")

@@ -92,10 +92,16 @@ def _show(block: Figure, page: Page) -> None:
     shows = page.say("show" if not on else "coming" if reader.figure.busy else "on_view")
     if page.button(shows, block.alt or page.say("show_note"), on=on) and not on:
         reader.show(block)
-    if on and reader.figure.changed:
+    if on:
+        _reset(block, page)
+
+
+def _reset(block: Figure | Slider, page: Page) -> None:
+    """Draw a button that resets the figure, where the reader has changed it."""
+    if page.reader.figure.changed:
         imgui.same_line()
         if page.button(page.say("reset"), page.say("reset_note")):
-            reader.reset(block)
+            page.reader.reset(block)
 
 
 def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
@@ -115,10 +121,8 @@ def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
                 reader.move(block, at + by)
             else:
                 reader.play_or_pause(block)
-    if on and reader.figure.changed and isinstance(block, Slider):
-        imgui.same_line()
-        if page.button(page.say("reset"), page.say("reset_note")):
-            reader.reset(block)
+    if on and isinstance(block, Slider):
+        _reset(block, page)
 
 
 def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> None:

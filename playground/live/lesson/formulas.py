@@ -130,7 +130,8 @@ def _as_american() -> Iterator[None]:
     On Linux it is only there where somebody has made it. The plain one of Unicode has the same
     character classes; MicroTeX asks once, and keeps what it was given.
     """
-    plain = next((p for p in _plain_locales() if p.is_dir()), None)
+    locales = Path("/usr/lib/locale")
+    plain = next((p for p in (locales / "C.utf8", locales / "C.UTF-8") if p.is_dir()), None)
     if not sys.platform.startswith("linux") or plain is None:
         yield
         return
@@ -145,7 +146,3 @@ def _as_american() -> Iterator[None]:
                 del os.environ["LOCPATH"]
             else:
                 os.environ["LOCPATH"] = before
-
-
-def _plain_locales() -> list[Path]:
-    return [Path(folder) / name for folder in ("/usr/lib/locale",) for name in ("C.utf8", "C.UTF-8")]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 from playground.live.lesson.panel import LessonPanel
 from playground.live.theme import Theme
@@ -18,7 +17,7 @@ class Lessons:
 
     def __init__(self, bench: Bench, autosave: Autosave, remember: Callable[[], None]) -> None:
         file = progress_file()
-        self.reader = Reader(bench, read_progress(file), file, self._store_own, self._play)
+        self.reader = Reader(bench, read_progress(file), file, self._store_own, autosave.open)
         self._panel = LessonPanel()
         self._autosave = autosave
         self._remember = remember
@@ -53,6 +52,3 @@ class Lessons:
         """Remember what is shown, before a lesson shows something else."""
         self._remember()
         self._autosave.pause()
-
-    def _play(self, sketch: Path) -> None:
-        self._autosave.open(sketch)

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.gpu.textures import read_texels
+from playground.workbench.inspect.results import result_of
+from playground.workbench.session import Session
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.workbench.session import Session
 
 BINS = 128
 PIECE = 2**17
@@ -198,15 +198,6 @@ class Counter:
         return self._counted[:2] if isinstance(self._counted, tuple) else ()
 
     def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
-        session = self.session
-        plan, engine = session.plan, session.engine
-        if session.view.map is None or plan is None:
-            return None
-        path, _, output = session.view.map.ref.partition(":")
-        ref = plan.flat.outputs.get(path, {}).get(output)
-        result = engine.results.get(ref.path) if ref is not None else None
-        if result is None or ref is None:
-            return None
-        texture = result.textures[ref.output]
-        # The same texture's numbers change only when its pass runs again.
-        return texture, (session.view.map.ref, id(engine), result.number, engine.runs[ref.path])
+        shown = self.session.view.map
+        found = result_of(self.session, shown.ref) if shown is not None else None
+        return (found[0], (shown.ref, *found[1])) if shown is not None and found is not None else None

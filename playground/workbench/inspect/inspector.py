@@ -15,7 +15,7 @@ import numpy as np
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_height
 from playground.gpu.textures import read_texels
-from playground.sketch.flat import Ref
+from playground.workbench.inspect.results import result_of
 from playground.workbench.inspect.surface_point import Ground
 from playground.workbench.session import Session
 
@@ -109,7 +109,7 @@ class Inspector:
         if session.view.map is not None:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
         ref = view_height(plan)
-        heights = self._texture(plan, ref)
+        heights = self._texture(ref)
         extent, relief = plan.terrain.extent, plan.terrain.relief
         if heights is None or extent is None or relief is None or not session.orbits:
             return Found(pixel, bytes_, None, ())
@@ -125,12 +125,12 @@ class Inspector:
     def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
         assert self.session.view.map is not None
         ref = self.session.view.map.ref
-        shown = self._texture(plan, ref)
+        shown = self._texture(ref)
         texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
         if shown is None or texel is None:
             return Found(pixel, colour, None, ())
         share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
-        heights = self._texture(plan, view_height(plan))
+        heights = self._texture(view_height(plan))
         spot = None
         if heights is not None:
             high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
@@ -142,7 +142,7 @@ class Inspector:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
         found, missing = [], []
         for name in names_of(plan, inner=self.inner):
-            texture = self._texture(plan, name)
+            texture = self._texture(name)
             if texture is None:
                 missing.append(name)
             else:
@@ -155,12 +155,9 @@ class Inspector:
         is_height = len(values) == 1 and name.partition(":")[2] == "height" and relief is not None
         return Sample(name, texel, values, values[0] * relief if is_height and relief is not None else None)
 
-    def _texture(self, plan: Plan, name: str) -> moderngl.Texture | None:
-        """Return the texture of that name which the last picture was made from; None where it had none."""
-        path, _, output = name.partition(":")
-        ref: Ref | None = plan.flat.outputs.get(path, {}).get(output) if name else None
-        result = self.session.engine.results.get(ref.path) if ref is not None else None
-        return result.textures.get(ref.output) if result is not None and ref is not None else None
+    def _texture(self, name: str) -> moderngl.Texture | None:
+        found = result_of(self.session, name)
+        return found[0] if found is not None else None
 
 
 def names_of(plan: Plan, *, inner: bool) -> list[str]:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
 from playground.paths import GLSL
-from playground.workbench.full_screen import FullScreen
+from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:
     import moderngl
@@ -27,15 +26,11 @@ def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
     The context is the caller's to make current and to leave as it was; nothing stays in it.
     """
     ramp_functions = (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8")
-    shader = FullScreen(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}")
-    texture = make_texture(ctx, (STEPS, 1), "rgba32f")
-    framebuffer = make_framebuffer(ctx, [texture])
+    shader = TexelShader(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}", (STEPS, 1))
     try:
-        shader.draw(framebuffer, {}, ramp=ramp, steps=float(STEPS))
-        values = np.frombuffer(texture.read(), np.float32).reshape(STEPS, 4)
+        (values,) = shader.compute({}, ramp=ramp, steps=float(STEPS))
     finally:
-        for made in (framebuffer, texture, shader):
-            made.release()
+        shader.release()
     return tuple((float(r), float(g), float(b)) for r, g, b, _ in values)
 
 

@@ -8,26 +8,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
 from playground.terrain.camera import Eye
 from playground.terrain.pick import ray_over
-from playground.workbench.full_screen import FullScreen
+from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:
     import moderngl
 
 
-class Ground:
+class Ground(TexelShader):
     """Finds, in one context, places of the terrain."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("surface_point.frag"))
-        self._texture = make_texture(ctx, (1, 1), "rgba32f")
-        self._framebuffer = make_framebuffer(ctx, [self._texture])
+        super().__init__(ctx, own_shader("surface_point.frag"), (1, 1))
 
     def under(
         self,
@@ -47,8 +41,7 @@ class Ground:
         if found is None:
             return None
         origin, way, entry, leave, steps = found
-        self._shader.draw(
-            self._framebuffer,
+        texels = self.compute(
             {"height": heights},
             start=tuple((origin + entry * way).tolist()),
             way=tuple(way.tolist()),
@@ -57,10 +50,5 @@ class Ground:
             extent=extent,
             relief=relief,
         )
-        east, north, hit, high = np.frombuffer(self._texture.read(), np.float32).tolist()
+        east, north, hit, high = texels.ravel().tolist()
         return (east, north, high) if hit else None
-
-    def release(self) -> None:
-        """Release all of it."""
-        for made in (self._framebuffer, self._texture, self._shader):
-            made.release()
