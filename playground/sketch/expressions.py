@@ -75,7 +75,7 @@ def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
-    """Return the two integers of ``"w, h"``."""
+    """Evaluate the two integers of ``"w, h"``."""
     parts = _parts(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions parted by a comma")
@@ -96,18 +96,12 @@ def names_in(text: str) -> frozenset[str]:
     """Return the dotted names that an expression, or several parted by commas, reads."""
     found: set[str] = set()
 
-    def visit(node: ast.AST) -> None:
-        if isinstance(node, ast.Name | ast.Attribute):
-            found.add(_dotted(node, text))
-        elif isinstance(node, ast.Call):
-            for argument in node.args:
-                visit(argument)
-        else:
-            for child in ast.iter_child_nodes(node):
-                visit(child)
+    def look_up(name: str) -> int:
+        found.add(name)
+        return 1
 
     for part in _parts(text):
-        visit(_parse(part))
+        _value_of(_parse(part), part, look_up, (), dry=True)
     return frozenset(found)
 
 
@@ -191,9 +185,7 @@ def _parse(text: str) -> ast.expr:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore"
-            )  # "1 if 2else 3" is deprecated, and not worth a line on the console
+            warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated: no line on the console for it
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
