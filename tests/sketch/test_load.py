@@ -22,15 +22,8 @@ from playground.sketch.values import coerce
 from ..cases import each
 from ..loading import library
 from ..loading import load as load_once
+from .conftest import PASS, TAIL, TERRAIN
 
-TERRAIN = """\
-// terrain.glsl -- a slope.
-#pragma kernel(output = "height:r32f")
-uniform float rise = 0.5;  //! slider(0, 2) How steep
-float kernel(ivec2 texel) { return rise * float(texel.x); }
-"""
-PASS = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
-TAIL = '[view]\nuse = "./look"\n'
 IMAGE = """\
 #pragma kernel(output = "height:r32f")
 uniform sampler2D picture;  //! file("")
