@@ -172,23 +172,19 @@ def _usage_message(error: Exception) -> str:
     ctx: Any = getattr(error, "ctx", None)
     path = ctx.command_path if ctx is not None else "playground"
     if text.startswith("No such command"):
-        return _no_command(text) if ctx is None or ctx.parent is None else _no_command_of(text, ctx)
+        return _no_command(text.split("'")[1] if text.count("'") >= 2 else "", ctx)
     if not text:
         return f"something is missing; see {path} --help"
     return f"{text[0].lower()}{text[1:].rstrip('.')}; see {path} --help"
 
 
-def _no_command(text: str) -> str:
-    name = text.split("'")[1] if text.count("'") >= 2 else ""
+def _no_command(name: str, ctx: Any) -> str:
+    if ctx is not None and ctx.parent is not None:
+        return f"no command '{name}' in {ctx.command_path}{nearest(name, ctx.command.list_commands(ctx))}"
     if name in options.complete_sketch("") or Path(name).exists():
         shell = quoted(name)
         return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
     return f"no command '{name}'{nearest(name, _COMMANDS)}"
-
-
-def _no_command_of(text: str, group: Any) -> str:
-    name = text.split("'")[1] if text.count("'") >= 2 else ""
-    return f"no command '{name}' in {group.command_path}{nearest(name, group.command.list_commands(group))}"
 
 
 app.command("live", help=live.HELP)(live.live)

@@ -88,7 +88,7 @@ def begun(folder: Path) -> subprocess.Popen[bytes]:
     (folder / "plain.frag").write_text(PLAIN, encoding="utf-8")
     command = [sys.executable, "-m", "playground", "render", "plain.frag"]
     process = subprocess.Popen(
-        [*command, "--size", "30000x30000", "-o", "picture.png"],
+        [*command, "--size", "6000x60000", "-o", "picture.png"],
         cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=receive_signals,
     )  # fmt: skip

@@ -33,11 +33,10 @@ from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
-from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Terrain, source_kind

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import TypeVar
 
 from playground.paths import GLSL
 
@@ -28,6 +29,8 @@ FAST = (".comp", ".fast.toml")
 
 _MOST_FOLDERS = 500
 
+T = TypeVar("T")
+
 Signature = tuple[int, int, int]
 """Inode, time of change [ns] and size of a file: what differs when it was saved since."""
 
@@ -44,12 +47,8 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
     followed once each.
     """
     found: dict[Path, Signature | None] = {}
-    noted, led = _noted.set(found), _led.set({})
-    try:
+    with _set(_noted, found), _set(_led, {}):
         yield found
-    finally:
-        _noted.reset(noted)
-        _led.reset(led)
 
 
 @contextmanager
@@ -58,23 +57,28 @@ def following_links_once() -> Iterator[None]:
 
     A sketch names hundreds of places in a few folders, most of them several times.
     """
-    led = _led.set({} if (known := _led.get()) is None else known)
-    try:
+    with _set(_led, {} if (known := _led.get()) is None else known):
         yield
-    finally:
-        _led.reset(led)
 
 
 @contextmanager
 def noting_part() -> Iterator[dict[Path, Signature | None]]:
     """Note the places of a part of a load by itself; they are noted for the whole load, too."""
     found: dict[Path, Signature | None] = {}
-    noted = _noted.set(found)
     try:
-        yield found
+        with _set(_noted, found):
+            yield found
     finally:
-        _noted.reset(noted)
         note_again(found)
+
+
+@contextmanager
+def _set(variable: ContextVar[T], value: T) -> Iterator[None]:
+    token = variable.set(value)
+    try:
+        yield
+    finally:
+        variable.reset(token)
 
 
 def note_again(places: Mapping[Path, Signature | None]) -> None:

@@ -6,7 +6,7 @@ mistake does not hide the rest.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
@@ -83,18 +83,8 @@ class Entry:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "title": self.title,
-            "file": self.file,
-            "inputs": list(self.inputs),
-            "outputs": list(self.outputs),
-            "shots": list(self.shots),
-            "presets": list(self.presets),
-            "parameters": [choice.as_json() for choice in self.parameters],
-            "error": self.error,
-        }
+        table: dict[str, object] = {field.name: getattr(self, field.name) for field in fields(self)}
+        return table | {"parameters": [choice.as_json() for choice in self.parameters]}
 
 
 def sketches() -> list[Entry]:
@@ -172,10 +162,7 @@ def _of_technique(name: str, technique: Technique) -> Entry:
     # A sketch of this one pass lists its parameters.
     alone = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
     values = values_of(alone)
-    choices = []
-    for shown in shown_parameters(alone):
-        choice = _choice(alone, shown, values)
-        choices.append(replace(choice, path=choice.path.removeprefix("it.")))
+    choices = [_choice(alone, shown, values) for shown in shown_parameters(alone)]
     return Entry(
         name,
         technique.kind if isinstance(technique, Kernel) else "several passes",
@@ -183,7 +170,7 @@ def _of_technique(name: str, technique: Technique) -> Entry:
         technique.path,
         input_names(technique),
         output_names(technique),
-        tuple(choices),
+        tuple(replace(choice, path=choice.path.removeprefix("it.")) for choice in choices),
     )
 
 

@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from functools import lru_cache
+from typing import cast
 
 from playground.errors import nearest
 from playground.sketch.model import LARGEST_SIDE
@@ -75,7 +76,7 @@ def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
-    """Return the two integers of ``"w, h"``."""
+    """Evaluate the two integers of ``"w, h"``."""
     parts = _parts(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions parted by a comma")
@@ -96,18 +97,12 @@ def names_in(text: str) -> frozenset[str]:
     """Return the dotted names that an expression, or several parted by commas, reads."""
     found: set[str] = set()
 
-    def visit(node: ast.AST) -> None:
-        if isinstance(node, ast.Name | ast.Attribute):
-            found.add(_dotted(node, text))
-        elif isinstance(node, ast.Call):
-            for argument in node.args:
-                visit(argument)
-        else:
-            for child in ast.iter_child_nodes(node):
-                visit(child)
+    def look_up(name: str) -> int:
+        found.add(name)
+        return 1
 
     for part in _parts(text):
-        visit(_parse(part))
+        _value_of(_parse(part), part, look_up, (), dry=True)
     return frozenset(found)
 
 
@@ -191,9 +186,7 @@ def _parse(text: str) -> ast.expr:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore"
-            )  # "1 if 2else 3" is deprecated, and not worth a line on the console
+            warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated: no line on the console for it
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
@@ -275,27 +268,22 @@ def _value_of(
         return _value_of(inner, text, look_up, known, dry=dry)
 
     value: Number
-    if (
-        isinstance(node, ast.Constant)
-        and isinstance(node.value, int | float)
-        and not isinstance(node.value, bool)
-    ):
-        value = node.value
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        value = cast(Number, node.value)
     elif isinstance(node, ast.Name | ast.Attribute):
         name = _dotted(node, text)
         try:
             value = look_up(name)
         except KeyError:
-            raise ExpressionError(
-                f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
-            ) from None
+            message = f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
+            raise ExpressionError(message) from None
     elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         left, right = go(node.left), go(node.right)
-        value = 1 if dry else _binary(type(node.op), left, right)
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        value = -go(node.operand)
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
-        value = +go(node.operand)
+        if not dry and right == 0 and isinstance(node.op, ast.Div | ast.FloorDiv | ast.Mod):
+            raise ExpressionError("division by zero")
+        value = 1 if dry else _BINARY[type(node.op)](left, right)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+        value = go(node.operand) * (-1 if isinstance(node.op, ast.USub) else 1)
     elif isinstance(node, ast.IfExp):
         test = go(node.test)
         value = go(node.body) if test or dry else go(node.orelse)
@@ -310,20 +298,13 @@ def _value_of(
         try:
             value = _FUNCTIONS[node.func.id](*([1] * len(arguments) if dry else arguments))
         except TypeError:
-            raise ExpressionError(
-                f"'{text}' calls '{node.func.id}' with the wrong number of values"
-            ) from None
+            message = f"'{text}' calls '{node.func.id}' with the wrong number of values"
+            raise ExpressionError(message) from None
     else:
         raise ExpressionError(
             f"'{text}' holds something other than numbers, names, + - * / // % ** and log2()"
         )
     return _checked(value, text)
-
-
-def _binary(kind: type[ast.operator], left: Number, right: Number) -> Number:
-    if right == 0 and kind in (ast.Div, ast.FloorDiv, ast.Mod):
-        raise ExpressionError("division by zero")
-    return _BINARY[kind](left, right)
 
 
 def _checked(value: Number, text: str) -> Number:

@@ -128,3 +128,23 @@ def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
         else:
             found.append(node)
     return found
+
+
+def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:
+    """Return the paths of the passes that repeat, those inside loops included."""
+    kernels = {leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1"}
+    return sorted(kernels | _loops_of(nodes))
+
+
+def repeated_path(path: str, nodes: tuple[Node, ...]) -> str | None:
+    """Return the pass that repeats at a path: the pass itself, or the only one inside it."""
+    valid = repeated_paths(nodes)
+    if path in valid:
+        return path
+    inside = [name for name in valid if name.startswith(f"{path}.")]
+    return inside[0] if len(inside) == 1 else None
+
+
+def _loops_of(nodes: tuple[Node, ...]) -> set[str]:
+    loops = [node for node in nodes if isinstance(node, Loop)]
+    return {loop.path for loop in loops}.union(*(_loops_of(loop.body) for loop in loops))

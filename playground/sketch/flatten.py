@@ -20,9 +20,9 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from playground.errors import ParameterError, SketchError, nearest
+from playground.errors import SketchError, nearest
 from playground.paths import shown
-from playground.sketch.assign import effective_values, resolve
+from playground.sketch.assign import effective_values, find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
@@ -70,15 +70,12 @@ def flatten(
             values[target] = value
     follow(shape.rules, values)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
-    fill = _Filler(shape, values, sketch.folder)
-    if before is None or before.shape is not shape or before.folder != sketch.folder:
-        nodes = tuple([fill.node(node) for node in shape.nodes])
-    else:
+    nodes, stale = shape.nodes, None
+    if before is not None and before.shape is shape and before.folder == sketch.folder:
         changed = [path for path, value in values.items() if value is not before.values[path]]
-        stale = set[str]().union(*[shape.readers.get(path, ()) for path in changed])
-        nodes = fill.renewed(before.nodes, stale)
+        nodes, stale = before.nodes, set[str]().union(*[shape.readers.get(path, ()) for path in changed])
     return Flat(
-        nodes=nodes,
+        nodes=_filled(nodes, shape, values, sketch.folder, stale),
         specs=shape.specs,
         graphs=shape.graphs,
         values=values,
@@ -129,52 +126,32 @@ def _shape(
     )
 
 
-class _Filler:
-    """Puts values into the leaves of a shape."""
-
-    def __init__(self, shape: Shape, values: Mapping[str, Value], folder: str) -> None:
-        self.shape = shape
-        self.values = values
-        self.folder = folder
-
-    def node(self, node: Node) -> Node:
-        """Return a node of the shape with its values."""
+def _filled(
+    nodes: tuple[Node, ...],
+    shape: Shape,
+    values: Mapping[str, Value],
+    folder: str,
+    stale: Collection[str] | None,
+) -> tuple[Node, ...]:
+    """Return nodes with values in their leaves; where ``stale`` is not None, new ones in those alone."""
+    if stale is not None and not stale:
+        return nodes
+    found: list[Node] = []
+    for node in nodes:
         if isinstance(node, Loop):
-            return replace(node, body=tuple([self.node(inside) for inside in node.body]))
-        values = self.values
-        own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
-        return Leaf(
-            path=node.path,
-            kernel=node.kernel,
-            values=own,
-            inputs=node.inputs,
-            folder=self.folder,
-            spec=node.spec,
-        )
-
-    def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
-        """Return nodes that had values, with those of now in the ``stale`` leaves."""
-        if not stale:
-            return nodes
-        return tuple(
-            [
-                replace(node, body=self.renewed(node.body, stale))
-                if isinstance(node, Loop)
-                else self.node(node)
-                if node.path in stale
-                else node
-                for node in nodes
-            ]
-        )
+            found.append(replace(node, body=_filled(node.body, shape, values, folder, stale)))
+        elif stale is None or node.path in stale:
+            own = tuple([(name, values[path]) for name, path in shape.paths[node.path]])
+            found.append(Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec))
+        else:
+            found.append(node)
+    return tuple(found)
 
 
 def _is_exported(graph: Graph, path: str) -> bool:
     """Return whether a technique exports a parameter inside, and nothing else, by some name."""
-    try:
-        wanted = {target.path for target in resolve(graph, path)}
-        return any({t.path for t in resolve(graph, e.name)} == wanted for e in graph.parameters)
-    except ParameterError:  # setting it reports the error
-        return False
+    wanted = {target.path for target in find_targets(graph, path)}
+    return any({t.path for t in find_targets(graph, e.name)} == wanted for e in graph.parameters)
 
 
 class _Flattener:
@@ -400,10 +377,9 @@ class _Flattener:
             for outputs in [self.outputs[_join(prefix, other.name)]]
             for output in outputs
         ]
-        hint = f"; candidates: {', '.join(candidates)}" if candidates else "; there is no earlier pass"
-        raise spec.error(
-            f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}{hint}"
-        )
+        hint = f"candidates: {', '.join(candidates)}" if candidates else "there is no earlier pass"
+        message = f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}"
+        raise spec.error(f"{message}; {hint}")
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:

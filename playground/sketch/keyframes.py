@@ -109,39 +109,36 @@ def at(
 ) -> tuple[dict[str, Any], tuple[tuple[str, Value], ...]]:
     """Return what keyframes say of the camera's fields and of a graph's parameters at a time in seconds."""
     cameras, tracks = _tracks(keyframes, Identity(graph))
-    return {name: track.at(time) for name, track in cameras}, tuple(
-        (path, track.at(time)) for path, track in tracks
-    )
+    camera = {name: track.at(time) for name, track in cameras.items()}
+    return camera, tuple((path, track.at(time)) for path, track in tracks.items())
 
 
 @lru_cache(maxsize=64)
 def _tracks(
     keyframes: tuple[Keyframe, ...], graph: Identity[Graph]
-) -> tuple[tuple[tuple[str, Track], ...], tuple[tuple[str, Track], ...]]:
+) -> tuple[dict[str, Track], dict[str, Track]]:
     """Return the tracks of the camera and of the parameters, by name and path."""
     names = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)
-    paths = dict.fromkeys(path for keyframe in keyframes for path, _ in keyframe.values)
-    found = []
-    for path in paths:
+    cameras = {
+        name: _track(keyframes, "camera", name, angles=(0,) if name == "azimuth" else ()) for name in names
+    }
+    tracks = {}
+    for path in dict.fromkeys(path for keyframe in keyframes for path, _ in keyframe.values):
         parameter = resolve(graph.object, path)[0].parameter
-        given = [(k, dict(k.values)[path]) for k in keyframes if path in dict(k.values)]
-        found.append((path, _track(given, holds=_holds(parameter), angles=_angles(parameter))))
-    cameras = []
-    for name in names:
-        given = [(k, dict(k.camera)[name]) for k in keyframes if name in dict(k.camera)]
-        cameras.append((name, _track(given, angles=(0,) if name == "azimuth" else ())))
-    return tuple(cameras), tuple(found)
+        how = {"holds": _holds(parameter), "angles": _angles(parameter)}
+        tracks[path] = _track(keyframes, "values", path, **how)
+    return cameras, tracks
 
 
-def _track(
-    given: Sequence[tuple[Keyframe, Value]], *, holds: bool = False, angles: tuple[int, ...] = ()
-) -> Track:
+def _track(keyframes: Sequence[Keyframe], part: str, name: str, **how: Any) -> Track:
+    """Return the track of a camera field or a parameter: the keyframes that name it."""
+    given = [(keyframe, dict(getattr(keyframe, part))) for keyframe in keyframes]
+    given = [(keyframe, values) for keyframe, values in given if name in values]
     return Track(
         tuple(keyframe.time for keyframe, _ in given),
-        tuple(value for _, value in given),
+        tuple(values[name] for _, values in given),
         tuple(keyframe.ease for keyframe, _ in given),
-        holds,
-        angles,
+        **how,
     )
 
 

@@ -8,12 +8,13 @@ found out by drawing.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.allowed_files import TECHNIQUES
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
@@ -30,12 +31,9 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     """
     spec = _pass(sketch, pass_name)
     outputs = set(output_names(spec.technique))
-    found = []
     whole = [name for name in shipped_names() if not is_part(name)]
-    for use in dict.fromkeys([*whole, *_own_names(sketch), spec.use]):
-        if use == spec.use or _fits(sketch, spec, use, outputs):
-            found.append(use)
-    return found
+    uses = dict.fromkeys([*whole, *_own_names(sketch), spec.use])
+    return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs)]
 
 
 def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
@@ -107,24 +105,15 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
     overrides += [(prefix + path, value) for path, value in _values_taken(technique, own)]
     graph = replace(sketch.graph, passes=passes)
-    main = tuple(path for path in sketch.main if _is_there(graph, path))
+    main = tuple(path for path in sketch.main if find_targets(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
     flatten(result)
     return result
 
 
-def _is_there(technique: Technique, path: str) -> bool:
-    try:
-        return bool(resolve(technique, path))
-    except ParameterError:
-        return False
-
-
 def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
     found = []
     for path, value in values:
-        try:
+        with suppress(ParameterError):
             found.append((path, coerce(resolve(technique, path)[0].parameter, value, path)))
-        except ParameterError:
-            continue
     return tuple(found)

@@ -180,23 +180,17 @@ class Graph:
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the technique is made of."""
-        found = dict.fromkeys([self.path])
-        for spec in self.passes:
-            found |= dict.fromkeys(spec.technique.files)
-        for variant in self.variants:
-            found |= dict.fromkeys(variant.files)
-        return tuple(found)
+        parts = (*(spec.technique for spec in self.passes), *self.variants)
+        return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
     @cached_property
     def kernels(self) -> tuple[tuple[str, Kernel], ...]:
         """Every kernel inside, by its path."""
-        found: list[tuple[str, Kernel]] = []
-        for spec in self.passes:
-            if isinstance(spec.technique, Kernel):
-                found.append((spec.name, spec.technique))
-            else:
-                found += [(f"{spec.name}.{path}", kernel) for path, kernel in spec.technique.kernels]
-        return tuple(found)
+        return tuple(
+            (f"{spec.name}.{path}" if path else spec.name, kernel)
+            for spec in self.passes
+            for path, kernel in kernels_of(spec.technique)
+        )
 
     @cached_property
     def leaf_parameters(self) -> dict[str, Parameter]:

@@ -66,14 +66,10 @@ def technique_beside(path: Path) -> Path | None:
 
     A ``.comp`` with its own ``#version`` is a plain shader and replaces none.
     """
-    if not is_variant(path) or (path.suffix == ".comp" and _is_plain(path)):
+    if not is_variant(path):
         return None
-    return canonical_of(path)
-
-
-def _is_plain(path: Path) -> bool:
-    kernel = read_kernel(path, root_of(path))
-    return kernel is not None and kernel.kind.startswith("plain")
+    kernel = read_kernel(path, root_of(path)) if path.suffix == ".comp" else None
+    return None if kernel is not None and kernel.kind.startswith("plain") else canonical_of(path)
 
 
 def lonely_variant(path: Path) -> SketchError:
@@ -234,14 +230,9 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     if present:
         return present[0].resolve(), limit
     ending = f" (without '{base.suffix}')" if base.suffix in TECHNIQUES else ""
-    raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, _known_names(own, folder))}")
-
-
-def _known_names(own: bool, folder: Path) -> list[str]:
-    if not own:
-        return shipped_names()
-    files = names_below((folder,), TECHNIQUES)
-    return [f"./{name.rpartition('.')[0]}" for name in files]
+    files = names_below((folder,), TECHNIQUES) if own else []
+    names = [f"./{name.rpartition('.')[0]}" for name in files] if own else shipped_names()
+    raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, names)}")
 
 
 def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:

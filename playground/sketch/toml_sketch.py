@@ -9,9 +9,9 @@ from typing import Any
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
+from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.model import LARGEST_SIDE, Camera, Graph, PassSpec, Preset, Shot, Sketch
-from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Any
 
 from playground.errors import Diagnostic, ParameterError, nearest
 from playground.paths import shown
@@ -119,11 +120,11 @@ def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
             for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
                 name, column = one.group(1), match.start(2) + one.start() + 1
                 example = f'uniform sampler2D {name};  //! file("picture.png")'
-                more = (
-                    f"an image file does: {example}" if kind == "sampler2D" else "only a sampler2D may be fed"
-                )
-                message = f"nothing feeds '{name}', so it reads black; {more}"
+                more = f"an image file does: {example}"
+                if kind != "sampler2D":
+                    more = "only a sampler2D may be fed"
                 if name not in fed:
+                    message = f"nothing feeds '{name}', so it reads black; {more}"
                     found.append(line.diagnostic(message, column, "warning"))
     return tuple(dict.fromkeys(found))
 
@@ -162,16 +163,12 @@ def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
 
 
 def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
-    words = _WORD_UNIFORM.findall(line.code)
-    if (
-        words
-        and not line.code.lstrip().startswith("#")
-        and not _IMAGE.search(line.code)
-        and (not match or len(words) > 1)
-    ):
-        raise line.error(
-            "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
-        )
+    count = len(_WORD_UNIFORM.findall(line.code))
+    if line.code.lstrip().startswith("#") or _IMAGE.search(line.code) or count == bool(match):
+        return
+    raise line.error(
+        "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
+    )
 
 
 def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
@@ -185,9 +182,14 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     path = words.pop(0) if is_file and words else ""
     if "\0" in path:
         raise line.error(f"the path of '{name}' holds a zero byte")
-    valid = {"nearest", "linear", "clamp", "repeat", "mipmap"} | (
-        {"paint"} if is_file else {"white", "black"}
-    )
+    valid = [
+        "nearest",
+        "linear",
+        "clamp",
+        "repeat",
+        "mipmap",
+        *(["paint"] if is_file else ["white", "black"]),
+    ]
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
@@ -207,13 +209,9 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "sampler2D",
         path,
         Widget("file"),
-        group=_text(calls, "group", line),
-        label=_text(calls, "label", line),
-        tooltip=tooltip,
         sampling=sampling,
         painted="paint" in words,
-        file=line.file,
-        line=line.number,
+        **_described(calls, tooltip, line),
     )
 
 
@@ -240,12 +238,8 @@ def _parameter(
         _widget(name, kind, calls.get(kind, []), line),
         step,
         _text(calls, "unit", line),
-        _text(calls, "group", line),
-        _text(calls, "label", line),
-        tooltip,
         parts=_parts(name, glsl_type, kind, calls, line),
-        file=line.file,
-        line=line.number,
+        **_described(calls, tooltip, line),
     )
     default = _literal(name, glsl_type, initial, line)
     try:
@@ -294,11 +288,15 @@ def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line)
         numbers = ()
     ordered = count == 1 or (len(numbers) == 2 and numbers[0] < numbers[1])
     if len(numbers) != count or not ordered or not all(map(math.isfinite, numbers)):
-        wanted = (
-            f"two numbers, the lower first, as {word}(0, 1)" if count == 2 else "one number, as step(0.01)"
-        )
-        raise line.error(f"{word} of '{name}': expected {wanted}")
+        two = f"two numbers, the lower first, as {word}(0, 1)"
+        raise line.error(f"{word} of '{name}': expected {two if count == 2 else 'one number, as step(0.01)'}")
     return numbers
+
+
+def _described(calls: Calls, tooltip: str, line: Line) -> dict[str, Any]:
+    """Return the fields that any parameter has, of a number or a file."""
+    texts = {word: _text(calls, word, line) for word in ("group", "label")}
+    return {**texts, "tooltip": tooltip, "file": line.file, "line": line.number}
 
 
 def _text(calls: Calls, word: str, line: Line) -> str:

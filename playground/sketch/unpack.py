@@ -84,23 +84,19 @@ def unpacked_beside(path: Path, cache: Path | None = None) -> tuple[Path, str]:
     Where the zip's own folder cannot be written to, it is one in the cache, and stays there.
     """
     pack = read_pack(path)
-    name = PurePosixPath(pack.manifest.sketch).parts[0] if "/" in pack.manifest.sketch else path.stem
-    inner = (
-        pack.manifest.sketch if "/" not in pack.manifest.sketch else pack.manifest.sketch.partition("/")[2]
-    )
+    top, in_folder, inner = pack.manifest.sketch.partition("/")
+    name, inner = (top, inner) if in_folder else (path.stem, top)
     for home in (path.resolve().parent, (cache or cache_folder()) / "edited" / pack.digest):
         for number in range(1, 1000):
             target = home / (name if number == 1 else f"{name}-{number}")
             if _stamp_of(target) == pack.digest and (target / inner).is_file():
-                return (
-                    target / inner,
-                    f"{path.name} is unpacked in {target}: this is what opens, and edits stay",
-                )
+                message = f"{path.name} is unpacked in {target}: this is what opens, and edits stay"
+                return target / inner, message
             if target.exists() or target.is_symlink():
                 continue
             if not _can_make(target):
                 break
-            _unpack(pack, target, strip="/" in pack.manifest.sketch)
+            _unpack(pack, target, strip=bool(in_folder))
             return target / inner, f"{path.name} is unpacked into {target}: edits go there, the zip stays"
     raise DataError("no folder could be made to unpack it into", file=path)
 
@@ -152,19 +148,21 @@ def _check(path: Path, entries: list[zipfile.ZipInfo]) -> None:
 
 
 def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
-    name, mode = entry.filename, entry.external_attr >> 16
-    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
-        raise DataError(f"'{_plain(name)}' is a link or a device; only plain files are unpacked", file=path)
-    if entry.flag_bits & 1:
-        raise DataError(f"'{_plain(name)}' is encrypted; a packed sketch has no password", file=path)
-    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise DataError(f"'{_plain(name)}' is compressed in a way other than deflate", file=path)
-    parts = name.split("/")
-    wrong = name.startswith("/") or _FORBIDDEN.search(name) is not None or len(name) > 200
-    if wrong or entry.orig_filename != name or any(_is_bad_part(part) for part in parts):
-        raise DataError(
-            f"'{_plain(name)}' is no name that a file of a sketch may have; nothing was unpacked", file=path
-        )
+    name, wrong = entry.filename, ""
+    if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
+        wrong = "is a link or a device; only plain files are unpacked"
+    elif entry.flag_bits & 1:
+        wrong = "is encrypted; a packed sketch has no password"
+    elif entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        wrong = "is compressed in a way other than deflate"
+    elif (
+        (name.startswith("/") or len(name) > 200 or entry.orig_filename != name)
+        or _FORBIDDEN.search(name)
+        or any(map(_is_bad_part, name.split("/")))
+    ):
+        wrong = "is no name that a file of a sketch may have; nothing was unpacked"
+    if wrong:
+        raise DataError(f"'{_plain(name)}' {wrong}", file=path)
 
 
 def _is_bad_part(part: str) -> bool:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.sketch.widgets import SCALARS
+
+_GIVEN = ("time", "compute", "size.x", "size.y")  # what every expression may name
 
 
 def output_names(technique: Technique) -> tuple[str, ...]:
@@ -132,31 +134,25 @@ def _check_expressions(graph: Graph, spec: PassSpec) -> None:
 
 
 def _is_number(graph: Graph, name: str) -> bool:
-    if name in ("time", "compute", "size.x", "size.y"):
+    if name in _GIVEN:
         return True
     head, _, axis = name.rpartition(".")
     if axis in ("x", "y") and head.endswith(".size"):
         sized = head.removesuffix(".size")
         if inner(graph, sized) is not None or sized in input_names(graph):
             return True
-    try:
-        return resolve(graph, name)[0].parameter.type in ("float", "int", "uint", "bool")
-    except SketchError:
-        return False
+    return any(target.parameter.type in SCALARS for target in find_targets(graph, name)[:1])
 
 
-def _numbers(graph: Graph) -> Iterable[str]:
+def _numbers(graph: Graph) -> list[str]:
     """Return names that an expression may well mean, for a hint."""
-    yield from ("time", "compute", "size.x", "size.y")
-    for spec in graph.passes:
-        yield from (f"{spec.name}.size.x", f"{spec.name}.size.y")
-    for name in input_names(graph):
-        yield from (f"{name}.size.x", f"{name}.size.y")
-    for export in graph.parameters:
-        yield export.name
-    for spec in graph.passes:
-        names = spec.technique.parameters
-        yield from (f"{spec.name}.{p.name}" for p in names)
+    sized = [spec.name for spec in graph.passes] + list(input_names(graph))
+    return [
+        *_GIVEN,
+        *(f"{name}.size.{axis}" for name in sized for axis in "xy"),
+        *(export.name for export in graph.parameters),
+        *(f"{spec.name}.{p.name}" for spec in graph.passes for p in spec.technique.parameters),
+    ]
 
 
 def _leaf_output(graph: Graph, name: str) -> Output:

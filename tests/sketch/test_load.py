@@ -12,23 +12,18 @@ from pathlib import Path
 import pytest
 
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
-from playground.paths import GLSL, SKETCHES
+from playground.paths import SKETCHES
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import is_technique, load, load_with
 from playground.sketch.model import Camera, Kernel
-from playground.sketch.techniques import Techniques, WithLibrary, read_technique, shipped_techniques
+from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
 from playground.sketch.values import coerce
 
 from ..cases import each
+from ..loading import library
+from ..loading import load as load_once
+from .conftest import PASS, TAIL, TERRAIN
 
-TERRAIN = """\
-// terrain.glsl -- a slope.
-#pragma kernel(output = "height:r32f")
-uniform float rise = 0.5;  //! slider(0, 2) How steep
-float kernel(ivec2 texel) { return rise * float(texel.x); }
-"""
-PASS = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
-TAIL = '[view]\nuse = "./look"\n'
 IMAGE = """\
 #pragma kernel(output = "height:r32f")
 uniform sampler2D picture;  //! file("")
@@ -160,17 +155,18 @@ def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
 
 
 def test_every_shipped_sketch_loads_and_is_a_value():
-    one, other = WithLibrary(Techniques()), WithLibrary(Techniques())  # each reads the library for itself
+    other = WithLibrary(Techniques())  # it reads the library for itself
+    found = {}
 
     @each("name", shipped_sketches())
     def check(name):
-        found = load_with(one, name)
-        assert found.title and hash(found) == hash(load_with(other, name))
-        assert pickle.loads(pickle.dumps(found)) == found
-        for shot in found.shots:
-            found.for_shot(shot)
+        found[name] = sketch = load_once(name)
+        assert sketch.title and hash(sketch) == hash(load_with(other, name))
+        for shot in sketch.shots:
+            sketch.for_shot(shot)
 
     check()
+    assert pickle.loads(pickle.dumps(found)) == found
 
 
 # Names
@@ -183,8 +179,7 @@ def test_what_ships_is_listed_and_found():
     assert not {"noise/hash", "colour/encode"} & set(techniques)
     assert set(techniques) <= set(shipped_names())
     assert find("jacksboro") == SKETCHES / "jacksboro.toml"
-    for name in techniques:
-        read_technique(name, GLSL, GLSL)
+    assert library().keys() == set(techniques), "each can be read"
 
 
 def test_a_shipped_name_wins_over_a_folder_that_holds_no_sketch(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from playground.errors import ShaderError
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel
 from playground.sketch.source import read_source
-from playground.sketch.unused_parameters import unread
+from playground.sketch.warnings import unread
 
 PRAGMA = '#pragma kernel(output = "height:r32f")\n'
 SUN = """#ifndef SUN

@@ -9,7 +9,7 @@ import pytest
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.techniques import read_kernel
-from playground.sketch.unused_parameters import unread
+from playground.sketch.warnings import unread
 
 
 def found_in(folder: Path, declared: str, body: str = "", pragma: str = "") -> list[str]:
