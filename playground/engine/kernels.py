@@ -1,6 +1,6 @@
 """Run what computes texels: a kernel by either driver, or a plain shader.
 
-A kernel that repeats writes two sets of textures alternately, reading one and writing the
+A kernel that repeats writes two sets of textures alternately: it reads one and writes the
 other; one with visits, in compute, changes its only set in place. One whose iterations fill a
 lattice ever more closely fills, in fragment, as small a part of its textures as that takes.
 """

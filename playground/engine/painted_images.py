@@ -19,7 +19,7 @@ from playground.gpu.textures import make_texture, split_format, write_texels, wr
 if TYPE_CHECKING:
     import moderngl
 
-_MOST = 4  # textures kept
+_MOST = 4  # textures cached
 
 
 class Painted(Protocol):

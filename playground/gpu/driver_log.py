@@ -1,21 +1,21 @@
-r"""Read what an OpenGL driver says about a shader: entries with lines, and hints in plain words.
+r"""Read the log of an OpenGL driver for a shader: entries with lines, and hints in plain words.
 
 Every driver words and numbers its log differently; here all of them become the same
 `LogEntry`. Pure text: no context, no files. Turning a line of the flattened text into
-(file, line) belongs to whoever flattened it.
+(file, line) is left to ``program``.
 
 What the drivers count:
 
 * The number before the line is the source string (`0:12`, `0(12)`, `3:27`). A shader here
   is one string, so it is ignored: it could only be a leftover of `#line`.
-* Lines are 1-based everywhere; 0 stands for "no place": Mesa prints `0:0(0)`, NVIDIA `(0)`.
+* Lines are 1-based everywhere; 0 means "no place": Mesa prints `0:0(0)`, NVIDIA `(0)`.
   Only Mesa prints a column, and it counts in the *preprocessed* line, where a run of blanks
   or a comment is one space and macros are expanded: `source_column` undoes the blanks.
 * Mesa 22.3.6 gives every part of a line continued by `\` the number of its first part, and
   code behind the `*/` of a long comment the line where the comment began (so comments are
   blanked before compiling). The lines after are right again.
 * A syntax error is placed where the compiler gave up: after a missing `;` that is the line
-  of the *next* word. Intel on Windows is said to be off at times (DaemonEngine/Daemon#1241).
+  of the *next* word. Intel on Windows is reported to be off at times (DaemonEngine/Daemon#1241).
 * `#line n` names the next line n from GLSL 3.30 on, and n + 1 before it; Mesa moreover
   applies its string number to some errors and not to others (seen in 22.3.6), and tools
   that emit it report errors off by one (3Dickulus/FragM#71, #157); a file name after it is
@@ -153,8 +153,8 @@ def parse_log(log: str) -> tuple[LogEntry, ...]:
         line = raw.strip()
         if line and not _BENIGN.fullmatch(line) and not _FRAME.fullmatch(line):
             _take(drafts, line, indented=raw[0].isspace())
-    told = [draft for draft in drafts if not _SUMMARY.fullmatch(draft.head)] or drafts
-    return tuple(dict.fromkeys(draft.entry() for draft in told))
+    entries = [draft for draft in drafts if not _SUMMARY.fullmatch(draft.head)] or drafts
+    return tuple(dict.fromkeys(draft.entry() for draft in entries))
 
 
 def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
@@ -213,9 +213,9 @@ def _clean(message: str) -> str:
 
 
 def source_column(line: str, column: int) -> int:
-    """Turn a driver's column into the column of the source line it means; 0 where there is none.
+    """Convert a driver's column to the column of the source line it means; 0 where there is none.
 
-    Exact unless a macro or a comment that was not blanked stands before it on the line.
+    Exact unless a macro or a comment that was not blanked is before it on the line.
     """
     counted, blank = 0, False
     for place, character in enumerate(line, start=1):
@@ -284,7 +284,7 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             rf"|{_Q}({_WORDS}){_Q} ?: syntax error)",
             "`{1}` is a reserved word of GLSL: choose another name.",
         ),
-        (r"(?-i:unexpected ERROR_TOK)", ""),  # Mesa said why in the entry before
+        (r"(?-i:unexpected ERROR_TOK)", ""),  # Mesa gives the reason in the entry before
         (
             rf"{_Q}(gl_\w*){_Q}.*(?:reserved|prefix|redeclared)",
             "Names that begin with `gl_` belong to GLSL: choose another name.",

@@ -409,7 +409,7 @@ def kept_of(shelf: Shelf, sketch, **options) -> set[str]:
     engine = shelf.engine()
     engine.render(sketch, size=(64, 36), **options)
     shelf.keep(engine)
-    return {each.kept.made_for.partition(": ")[2] for each in listed(shelf.folder)}
+    return {each.textures.made_for.partition(": ")[2] for each in listed(shelf.folder)}
 
 
 def test_what_reads_the_time_or_the_camera_is_not_kept_nor_what_reads_it(any_shelf, folder):
@@ -488,7 +488,7 @@ def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_
 def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp_path):
     """A picture for a test must not come from a store."""
     monkeypatch.setattr(DiskCache, "read", lambda *_: pytest.fail("the store was read"))
-    monkeypatch.setattr(DiskCache, "keep", lambda *_: pytest.fail("the store was written"))
+    monkeypatch.setattr(DiskCache, "write", lambda *_: pytest.fail("the store was written"))
     assert any_engine.disk_caching is None
     picture(any_engine, worn)
     using = {
@@ -531,7 +531,7 @@ DAMAGE = {
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_file_is_dropped(tmp_path, damage):
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     path = store._path("one")
     whole = path.read_bytes()
@@ -563,7 +563,7 @@ def test_a_texture_of_another_size_is_not_taken(kept, folder):
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
     key = engine.keys_of(engine.plan).steps["a"]
-    store.keep(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
+    store.write(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
     store.close()
     assert key in store
     assert reopened(kept, sketch) == {"a"}
@@ -574,7 +574,7 @@ def test_a_texture_of_another_size_is_not_taken(kept, folder):
 
 def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypatch):
     costs = {"land": 500.0, "worn": 1.0, "light": 100.0}
-    monkeypatch.setattr("playground.engine.disk_caching.reading", lambda size: 4.0)
+    monkeypatch.setattr("playground.engine.disk_caching.read_time", lambda size: 4.0)
 
     def kept_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)
@@ -585,7 +585,7 @@ def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypat
         for name, cost in (costs | more).items():
             engine.disk_caching._costs[keys.loops.get(name) or keys.steps[name]] = cost
         any_shelf.keep(engine)
-        return {each.kept.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
+        return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
     # The view reads worn and light. Wearing is cheap: the land is kept, and worn anew.
     assert kept_with(20.0) == {"land", "light"}
@@ -604,7 +604,7 @@ def test_costs_are_measured_where_land_is_made_and_a_loop_counts_as_one(any_shel
     assert set(engine.disk_caching._costs) == expected
     assert all(cost > 0.0 for cost in engine.disk_caching._costs.values())
     any_shelf.keep(engine)
-    (light,) = (each.kept for each in listed(any_shelf.folder) if "light" in each.kept.made_for)
+    (light,) = (each.textures for each in listed(any_shelf.folder) if "light" in each.textures.made_for)
     assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
 
 
@@ -657,12 +657,12 @@ def some(number: int, size: int = 64) -> CachedTextures:
 
 def test_a_store_gives_back_what_it_was_given(tmp_path):
     store = DiskCache(tmp_path / "deep" / "land")
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     found = store.read("one")
     assert found == replace(some(1), data=found.data) and bytes(found.data[0]) == bytes(some(1).data[0])
     assert "one" in store and "two" not in store and store.read("two") is None
-    assert [(each.kept, each.bytes) for each in listed(store.folder)] == [
+    assert [(each.textures, each.bytes) for each in listed(store.folder)] == [
         (replace(some(1), data=()), bytes_in(store.folder)[1])
     ]
     assert bytes_in(tmp_path / "nowhere") == (0, 0) and clear(tmp_path / "nowhere") == (0, 0)
@@ -671,7 +671,7 @@ def test_a_store_gives_back_what_it_was_given(tmp_path):
 def test_what_was_used_least_recently_goes_first(tmp_path):
     store = DiskCache(tmp_path, limit=2**30)
     for number in range(5):
-        store.keep(str(number), some(number))
+        store.write(str(number), some(number))
     store.close()
     for number in range(5):
         os.utime(store._path(str(number)), (1000.0 + number, 1000.0 + number))
@@ -686,7 +686,7 @@ def test_what_was_used_least_recently_goes_first(tmp_path):
 def test_the_bound_holds_while_it_is_written(tmp_path):
     store = DiskCache(tmp_path, limit=5 * 64 * 64 * 4)
     for number in range(20):
-        store.keep(str(number), some(number))
+        store.write(str(number), some(number))
     store.close()
     number, size = bytes_in(tmp_path)
     assert 3 <= number <= 4 and size <= store.limit
@@ -725,7 +725,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     writers = [DiskCache(tmp_path, limit=3 * 64 * 64 * 4) for _ in range(2)]
     for turn in range(40):
         for store in writers:
-            store.keep(str(turn % 4), some(turn % 4))
+            store.write(str(turn % 4), some(turn % 4))
         if turn % 10 == 0:
             clear(tmp_path)
     for store in writers:
@@ -740,33 +740,33 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
 def test_where_nothing_can_be_written_one_is_told_and_nothing_more_is_tried(tmp_path):
     (tmp_path / "land").write_text("a file where the folder should be")
     store = DiskCache(tmp_path / "land")
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
-    assert store.trouble.startswith("land cannot be kept on disk: ") and not store.fits(1)
+    assert store.trouble.startswith("terrain cannot be cached on disk: ") and not store.fits(1)
     assert store.read("one") is None and listed(store.folder) == []
 
 
 def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypatch):
     """On Windows nobody may rename over a file that is being read."""
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
 
     def refuses(*_: object) -> None:
         raise PermissionError(13, "The process cannot access the file")
 
     monkeypatch.setattr(Path, "replace", refuses)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     assert store.trouble == "" and store.read("one") is not None
-    store.keep("two", some(2))
+    store.write("two", some(2))
     store.close()
     assert "cannot access" in store.trouble
 
 
 def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     store._path("one").write_bytes(b"damaged")
 
@@ -805,7 +805,7 @@ def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monke
     goes_on = threading.Event()
     monkeypatch.setattr(store_module, "trim", lambda *_: goes_on.wait(60))
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     start = time.monotonic()
     store.close(patience=0.01)
     assert time.monotonic() - start < 30
