@@ -2,7 +2,7 @@
 
 A kernel with a ``stride`` sets, iteration by iteration, the nodes of an ever closer lattice; all else is
 still 0. Its header says how the nodes are joined (``between``). Only pictures are interpolated:
-values that are read stay as they are, and a run goes on from those. ``fill_between`` does it.
+values that are read stay as they are, and a run goes on from those. ``fill_between.frag`` does it.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Check files: compile every kernel by both drivers, load every sketch, draw one small frame of each.
 
-A kernel is drawn on a stage of its own: placeholder textures for its inputs, a placeholder
+A kernel is drawn in a sketch of its own: placeholder textures for its inputs, a placeholder
 picture for files that nothing names, and a view that only copies, so that a mistake
 elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox,
 where it can crash or hang.
 
 Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
-texture holds nothing else, for placeholders may be what it has no answer to.
+texture holds nothing else, for placeholders may be what it cannot compute with.
 """
 
 from __future__ import annotations
@@ -177,7 +177,7 @@ class _Check:
         elif kernel.kind == "compute":
             raise lonely_variant(self.path)
         else:
-            self.on_stage(kernel)
+            self.check_standalone(kernel)
 
     def variant(self) -> None:
         """Try a fast variant, verified or not."""
@@ -198,7 +198,7 @@ class _Check:
     def technique(self) -> None:
         if is_variant(self.path):
             raise lonely_variant(self.path)
-        self.on_stage(self.read(self.path))
+        self.check_standalone(self.read(self.path))
 
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
@@ -224,8 +224,8 @@ class _Check:
 
     # ── trying ───────────────────────────────────────────────────────────────
 
-    def on_stage(self, technique: Technique) -> None:
-        """Try a technique: what it says by both drivers, then its fast variants, verified or not."""
+    def check_standalone(self, technique: Technique) -> None:
+        """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
         self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
         self.attempt(self.request(without_variants(technique), BOTH))
         if any_variants(technique) and not self.plain and not self.errors:
@@ -263,7 +263,7 @@ class _Check:
     @property
     def picture(self) -> Path:
         """The file that replaces those that nothing names."""
-        return self.scratch / "stand-in.png"
+        return self.scratch / "placeholder.png"
 
 
 def _inside(folder: Path) -> Iterator[Path]:

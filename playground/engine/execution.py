@@ -11,7 +11,6 @@ from contextlib import AbstractContextManager, nullcontext
 
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
-from playground.engine.fill_between import filled
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
@@ -78,7 +77,8 @@ class Execution:
             return self._computed(step)
         cached = self.cache.get(self.keys.raw[step.path])
         raw = cached.result if cached else self._computed(step)
-        found = filled(self.runner.kernels, raw, step.between)
+        uniforms = {"k_stride": step.between.stride, "k_form": step.between.form}
+        found = self.runner.kernels.drawn_own("fill_between.frag", raw, **uniforms)
         self.cache.put(self.keys.steps[step.path], Cached({step.path: found}))
         return found
 

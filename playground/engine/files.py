@@ -13,7 +13,7 @@ _IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".
 def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
     """Return the file that a parameter's text names.
 
-    Looked for in the sketch's own folder, beside the kernel that declares it, and in
+    Looked for in the sketch's own folder, in that of the kernel that declares it, and in
     ``glsl/``; a path from anywhere else works only when it is absolute, which a sketch's
     file may not be (``load`` and ``--set`` see to that). Raises ``DataError`` with the nearest name.
     """

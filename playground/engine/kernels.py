@@ -1,6 +1,6 @@
 """Run what computes texels: a kernel by either driver, or a plain shader.
 
-A kernel that repeats writes two sets of textures alternately, reading one and writing the
+A kernel that repeats writes two sets of textures alternately: it reads one and writes the
 other; one with visits, in compute, changes its only set in place. One whose iterations fill a
 lattice ever more closely fills, in fragment, as small a part of its textures as that takes.
 """
@@ -109,13 +109,28 @@ class Kernels:
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         return self.programs.get(kernel, driver, (*choices, *more))
 
+    def draw_own(
+        self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
+    ) -> None:
+        """Fill a framebuffer by one of the engine's own fragment shaders, which reads a texture."""
+        target.use()
+        program = self.programs.own(own_shader(shader))
+        self.binder.texture(program, "k_picture", 0, source, Sampling())
+        program.set_all(uniforms)
+        program.fill()
+
+    def drawn_own(self, shader: str, result: Result, **uniforms: Any) -> Result:
+        """Return new textures, the caller's, each filled from that of a result as ``draw_own`` does."""
+        found = self.pool.take(result.size, result.outputs)
+        for output in result.outputs:
+            target = make_framebuffer(self.ctx, [found.textures[output.name]])
+            self.draw_own(shader, target, result.textures[output.name], **uniforms)
+            target.release()
+        return found
+
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
-        target.use()
-        program = self.programs.own(own_shader("copy.frag"))
-        self.binder.texture(program, "k_picture", 0, texture, Sampling())
-        program.set("k_size", size)
-        program.fill()
+        self.draw_own("copy.frag", target, texture, k_size=size)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
@@ -197,8 +212,9 @@ class Kernels:
             before, state = result, result.textures
             iteration += count
         assert before is not None
-        if shift:
-            before = self._spread(before, shift)
+        if shift:  # each texel of the lattice goes to its place, with zeros between
+            close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)
+            self.pool.give(close)
         before.iterations = step.repeat
         return before
 
@@ -216,20 +232,6 @@ class Kernels:
             return expressions.evaluate(text, job.numbers(**more))
         except ExpressionError as error:
             raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
-
-    def _spread(self, close: Result, shift: int) -> Result:
-        """Return textures with each texel of a lattice where it belongs, and zeros between."""
-        result = self.pool.take(close.size, close.outputs)
-        for output in close.outputs:
-            single = make_framebuffer(self.ctx, [result.textures[output.name]])
-            single.use()
-            program = self.programs.own(own_shader("spread.frag"))
-            self.binder.texture(program, "k_picture", 0, close.textures[output.name], Sampling())
-            program.set("k_shift", shift)
-            program.fill()
-            single.release()
-        self.pool.give(close)
-        return result
 
     def _fill(self, program: Program) -> None:
         """Draw over the whole of the bound framebuffer.

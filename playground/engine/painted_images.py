@@ -19,7 +19,7 @@ from playground.images.content_hash import content_hash
 if TYPE_CHECKING:
     import moderngl
 
-_MOST = 4  # textures kept
+_MOST = 4  # textures cached
 
 
 class Painted(Protocol):

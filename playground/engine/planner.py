@@ -127,7 +127,7 @@ class Planner:
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
-    """Return the path of the repeated pass that a path stands for, or raise ``SketchError``.
+    """Return the path of the repeated pass that a path means, or raise ``SketchError``.
 
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
@@ -170,7 +170,7 @@ class _Planning:
         self.time = time
         self.stopped = dict(request.stopped)
         self.known = known if known and known.plan.flat.shape is flat.shape else None
-        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
+        self.lacking: dict[str, None] = {}  # techniques that lack compute shaders, by path
         copied = after.flat.shape.copied if after else {}
         self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
         self.by_time: bool = after is not None and after.by_time
@@ -306,10 +306,10 @@ class _Planning:
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
-        asked = self.stopped.get(path, whole)
-        if asked > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
-            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
-        return min(asked, whole)
+        steps = self.stopped.get(path, whole)
+        if steps > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+            raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
+        return min(steps, whole)
 
     def _count(self, text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int:
         """Return how many iterations; ``owner`` is what says so, and where a mistake is."""

@@ -24,7 +24,7 @@ Choices = tuple[tuple[str, int], ...]
 """Checkboxes and menus with their values."""
 
 _CORNERS = struct.pack("6f", -1.0, -1.0, 3.0, -1.0, -1.0, 3.0)  # of a triangle over the whole picture
-_SPARE = 64  # programs kept beyond those of the current frame
+_SPARE = 64  # programs cached beyond those of the current frame
 
 
 class Program:

@@ -134,7 +134,7 @@ class Pool:
         return Result(size, wanted, made, number=self._taken)
 
     def give(self, result: Result) -> None:
-        """Take a result that nobody reads any more; it may be released at once."""
+        """Take a result that is no longer read; it may be released at once."""
         if result.surface is not None:
             result.surface.release()
             result.surface = None

@@ -1,4 +1,4 @@
-"""Run one step on a context, whatever its kind, and know what the engine gives it.
+"""Run one step of any kind on a context, and know what the engine gives it.
 
 Programs, meshes and file textures stay here; results are the caller's.
 """

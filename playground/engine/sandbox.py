@@ -8,8 +8,8 @@ The limit on time is for each pass, in all its steps: whichever exceeds it is na
 many slow passes is tried to its end.
 
 A worker that died is replaced at once, and one that takes suspiciously long has a spare,
-warm by the time that it is needed. Whoever submits something newer does not wait for a
-worker that hangs: it is killed, and the spare takes its place.
+warm by the time that it is needed. A newer request does not wait for a
+worker that hangs: that is killed, and the spare takes its place.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Report what this machine offers: an OpenGL context, its limits, a display, the packages.
 
-It opens a context and gives it back; what cannot be had is said in a sentence, with the advice for it.
+It opens a context and releases it; what is missing is reported in a sentence, with the advice for it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Read the playground's own GLSL: what wraps a kernel's text, and small programs beside the passes.
+"""Read the playground's own GLSL: what wraps a kernel's text, and small programs besides the passes.
 
 A file ending in .vert or .frag is a whole shader; of the others each is a part of one. ``$name`` in a
 part is filled in: names and types that a kernel's header declares.

@@ -53,12 +53,12 @@ def make_texture(
     check_size(ctx, size, "a texture")
     drain(ctx)
     texture = ctx.texture(size, components, data, alignment=1, dtype=dtype)
-    fault = ctx.error
-    if fault != "GL_NO_ERROR":
+    error = ctx.error
+    if error != "GL_NO_ERROR":
         texture.release()
         megabytes = bytes_of(size, form) / 2**20
         raise ContextError(
-            f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {fault}"
+            f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {error}"
         )
     return texture
 

@@ -25,7 +25,7 @@ class Setup:
 
     options: object  # for its handler
     memory_bytes: int | None  # that it may take; None: as many as the machine has
-    alarm_seconds: float  # after which the system ends it, should nobody else; 0: never
+    alarm_seconds: float  # after which the system ends it, if its parent does not; 0: never
     life: int  # file number of a pipe that the parent holds open while it lives; -1: none
 
 

@@ -139,19 +139,19 @@ def at_work(sandbox: Sandbox) -> int:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"),
+    ("number", "message"),
     [
         ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the sandbox (SIGSEGV)"),
         ("SIGKILL", "pass 'a' was killed by the system in the sandbox (SIGKILL); did memory run out?"),
     ],
 )
-def test_a_crash_says_how_and_where(sandbox, folder, number, said):
+def test_a_crash_says_how_and_where(sandbox, folder, number, message):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
     sandbox.submit(TrySketch(folder.one(SLOW)))
     os.kill(at_work(sandbox), signal.Signals[number])
     report = wait(sandbox)
     assert isinstance(report.error, SandboxCrash)
-    assert report.error.diagnostics[0].message == said
+    assert report.error.diagnostics[0].message == message
     assert report.error.diagnostics[0].file == str(folder.path / "one.glsl")
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
