@@ -44,16 +44,6 @@ class Reference:
         """What it comes from, as far as the file says."""
         return read_fingerprint(self.text)
 
-    @property
-    def drawn_by(self) -> str:
-        """Renderer and OpenGL version that drew it; "" where the file does not say."""
-        return ", ".join(self.text[key] for key in ("renderer", "version") if key in self.text)
-
-
-def drawn_by(renderer: ContextInfo) -> str:
-    """Name a renderer and its OpenGL version, for comparing with a reference's."""
-    return f"{renderer.renderer}, {renderer.version}"
-
 
 def home_of(sketch: Sketch) -> Path:
     """Return the ``screenshots`` folder that a sketch's references are in, which may not exist yet.
