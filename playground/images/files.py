@@ -425,6 +425,24 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 
 @contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Let a ``DataError`` that the block raises name a file."""
+    try:
+        yield
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from error
+
+
+def make_folder(path: Path) -> Path:
+    """Make a folder, with its parents, where there is none; raise ``DataError`` where it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DataError(f"no folder can be made: {reason(error)}", file=path) from error
+    return path
+
+
+@contextmanager
 def new_name(path: str | Path) -> Iterator[Path]:
     """Take the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
 

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.images.files import encode_png, replacing
+from playground.images.files import encode_png, make_folder, replacing
 from playground.json_text import read_json
 from playground.shots.plugin_constants import REPORT
 
@@ -160,12 +160,7 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
     that cannot be a file's.
     """
     _check_names(record.sketch, record.shot, folder)
-    place = folder / record.place_name
-    make_folder(folder)
-    try:
-        place.mkdir(exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
+    make_folder(make_results_folder(folder) / record.place_name)
     result_path(folder, record).unlink(missing_ok=True)
     files: dict[str, str] = {}
     digest = ""
@@ -186,15 +181,11 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
     return whole
 
 
-def make_folder(folder: Path) -> Path:
+def make_results_folder(folder: Path) -> Path:
     """Make the results folder if it is not there, with a ``.gitignore`` of everything in it."""
-    try:
-        if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            with replacing(folder / ".gitignore") as handle:
-                handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    if not folder.is_dir():
+        with replacing(make_folder(folder) / ".gitignore") as handle:
+            handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
     return folder
 
 
