@@ -38,7 +38,7 @@ from playground.commands import (
     shots,
     variants,
 )
-from playground.commands.arguments import Renderer, help_text, quoted, read_device
+from playground.commands.arguments import Renderer, help_text, moment_of, quoted, read_device
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
@@ -157,12 +157,13 @@ def _global(
 def _open_default(renderer: Renderer) -> None:
     from playground.gpu.doctor import where_to_show
     from playground.paths import DEFAULT_SKETCH
+    from playground.sketch.load import load
 
     if where_to_show(os.environ, sys.platform):
         live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, show_lessons=True)
         return
     note("no display here, so a picture is rendered instead; playground --help lists the commands")
-    render.make_picture(render.Request(), renderer)
+    render.write_output(moment_of(load()), render.Output(), renderer)
 
 
 def _usage_message(error: Exception) -> str:

@@ -9,6 +9,7 @@ before a texel is computed.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,7 +30,7 @@ from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
-from playground.images.files import encode_samples
+from playground.images.files import encode_samples, naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
@@ -88,15 +89,11 @@ def export(
 
     Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
-    form, found = (
-        Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light),
-        opened(sketch),
-    )
+    form = Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light)
+    found = opened(sketch)
     check(Path(path), form)
-    if engine is not None:
-        return run(engine, prepare(engine, found, Path(path), form, time=time, steps=steps))
-    with headless() as own:
-        return run(own, prepare(own, found, Path(path), form, time=time, steps=steps))
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return run(used, prepare(used, found, Path(path), form, time=time, steps=steps))
 
 
 def prepare(
@@ -180,13 +177,11 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
         )
     rows, cols = values.shape[:2]
     spacing = _spacing(job, (cols, rows))
-    try:
+    with naming(job.path):
         if job.ending in PICTURES:
             made = encode_picture(values, job.ending)
         else:
             made = encode(Layer(values, job.kind, spacing, job.form.bits, job.form.span), job.ending)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
     files = {job.path: made.data}
     sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()
     files |= dict.fromkeys(sidecars, made.sidecar)
@@ -208,10 +203,8 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's terrain is known
-    try:
+    with naming(job.path):
         mesh = terrain_mesh(sampled(heights, size), extent, texels or (2, 2))
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
     name = job.sketch.name
     sidecars: list[Path] = []
     if job.ending == ".glb":
@@ -252,15 +245,12 @@ def _texture(engine: Engine, job: ExportJob) -> tuple[bytes, tuple[int, int] | N
     colours = sampled(layers[0], size)
     for other in layers[1:]:
         colours = colours * sampled(other, size)
-    text = {"Software": SOFTWARE}
-    try:
+    with naming(job.path):
         if job.kind != COLOUR and not job.light:
             made: Encoded = encode(Layer(colours, NUMBERS, (1.0, 1.0), 8), ".png")
             return made.data, size, made.warning
         samples, warning = colour_samples(colours)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
-    return encode_samples(samples, text), size, warning
+    return encode_samples(samples, {"Software": SOFTWARE}), size, warning
 
 
 def _three(values: NDArray[np.float32]) -> NDArray[np.float32]:

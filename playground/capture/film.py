@@ -9,7 +9,7 @@ not use stays in the cache.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -140,7 +140,5 @@ def render_video(
     Raises ``PlaygroundError`` in a sentence; a file of that name is replaced at the end.
     """
     film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
-    if engine is not None:
-        return write_film(engine, film, path, quality=quality)
-    with headless() as made:
-        return write_film(made, film, path, quality=quality)
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return write_film(used, film, path, quality=quality)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -18,7 +19,7 @@ from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_un
 from playground.capture.large import is_large, write_large
 from playground.engine.engine import Engine, opened
 from playground.errors import DataError, ParameterError
-from playground.images.files import read_png, reason
+from playground.images.files import make_folder, read_png
 from playground.sketch.model import Sketch
 
 MADE_OF = "Made of"
@@ -65,11 +66,7 @@ def write_sequence(
     """
     check_pattern(pattern)
     wanted = range(film.count) if numbers is None else list(numbers)
-    folder = Path(pattern).expanduser().parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"cannot be made a folder: {reason(error)}", file=folder) from None
+    make_folder(Path(pattern).expanduser().parent)
     drawn, kept = [], []
     for number in wanted:
         path = numbered(pattern, number)
@@ -128,7 +125,5 @@ def render_sequence(
         raise ParameterError(f"pictures are numbered from 0 to {MOST_FRAMES - 1}; at least one was expected")
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
     film = Film(sketch=opened(sketch), count=max(wanted) + 1, fps=rate, size=size)
-    if engine is not None:
-        return write_sequence(engine, film, pattern, numbers=wanted, resume=resume)
-    with headless() as made:
-        return write_sequence(made, film, pattern, numbers=wanted, resume=resume)
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return write_sequence(used, film, pattern, numbers=wanted, resume=resume)

@@ -33,9 +33,7 @@ from playground.errors import ParameterError
 from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
-    from playground.reduce.failures import Finding
-    from playground.reduce.initial_case import InitialCase, Question
-    from playground.reduce.output import Account
+    from playground.reduce.initial_case import Question
     from playground.reduce.search import Search, State
 
 HELP = help_text(
@@ -212,7 +210,7 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
     """Shrink the sketch, and write what is left of it into the folder."""
     from playground.reduce.initial_case import CandidateBench
-    from playground.reduce.output import claim, plain_texts, write_folder
+    from playground.reduce.output import Account, claim, plain_texts, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
@@ -233,34 +231,14 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
             finding = search.finding
         shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
         finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
-    for path in write_folder(folder, _account(question, beginning, search, finding, folder), shader):
+    command_line = f"playground {' '.join(map(quoted, sys.argv[1:]))}"
+    for path in write_folder(folder, Account(command_line, question, beginning, search, finding), shader):
         print(path)
     if plain and not shader:
         note("the plain shader does not fail in the same way, so none is written")
     note(_summary(beginning.case.lines, search))
     if stopped:
         raise typer.Exit(130)
-
-
-def _account(
-    question: Question, beginning: InitialCase, search: Search, finding: Finding, folder: Path
-) -> Account:
-    """Return what the text in the folder says."""
-    from playground.reduce.output import Account, to_reproduce
-
-    return Account(
-        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
-        sketch=question.sketch.name,
-        before=beginning.case,
-        after=search.best,
-        finding=finding,
-        renderers=beginning.renderers,
-        environments=({}, question.environment),
-        tries=search.tries,
-        seconds=search.state.seconds,
-        finished=search.finished,
-        reproduce=to_reproduce(question, folder, search.best, beginning.probe.failure),
-    )
 
 
 def _summary(before: int, search: Search) -> str:

@@ -57,7 +57,6 @@ class Image:
     pixels: NDArray[np.uint8] | NDArray[np.float32]  # (rows, cols, 4), top row first; uint8 0..255
     # from 8-bit files, float32 0..1 from 16-bit ones; alpha is full where the file has none
     name: str  # the file's name, for messages
-    transparent: bool  # whether any pixel is not opaque
     has_alpha: bool  # whether the file holds an alpha channel at all, be it full everywhere
 
     @property
@@ -86,13 +85,12 @@ def read_image(path: str | Path) -> Image:
             samples = _png_samples(handle, path)
             pixels: NDArray[np.uint8] | NDArray[np.float32]
             pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
-            opaque, has_alpha = bool((pixels[..., 3] == 1.0).all()), samples.shape[-1] in (2, 4)
+            has_alpha = samples.shape[-1] in (2, 4)
         else:
             picture = _open(handle, path)
             has_alpha = picture.mode in _WITH_ALPHA or "transparency" in picture.info
             pixels = _eight_bit(picture)
-            opaque = bool((pixels[..., 3] == 255).all())
-    return Image(pixels, path.name, not opaque, has_alpha)
+    return Image(pixels, path.name, has_alpha)
 
 
 def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
@@ -422,6 +420,24 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
 def chunk(kind: bytes, data: bytes) -> bytes:
     """Return a chunk of a PNG."""
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+@contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Let a ``DataError`` that the block raises name a file."""
+    try:
+        yield
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from error
+
+
+def make_folder(path: Path) -> Path:
+    """Make a folder, with its parents, where there is none; raise ``DataError`` where it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DataError(f"no folder can be made: {reason(error)}", file=path) from error
+    return path
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.extensions import PICTURE_ENDINGS
-from playground.images.files import encode_png, replacing
+from playground.images.files import encode_png, naming, replacing
 
 _LONGEST = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
 JPEG_QUALITY = 95  # of 100: above it files grow and nothing is seen
@@ -78,10 +78,8 @@ def write_picture(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[s
         DataError: what `picture_ending` and `encode_as` refuse, a missing folder, no permission, a full disk.
     """
     ending = picture_ending(path)
-    try:
+    with naming(path):
         data = encode_as(ending, array, text)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=path) from error
     with replacing(path) as handle:
         handle.write(data)
     lost = ending in (".jpg", ".jpeg") and array.shape[2] == 4 and bool((array[..., 3] < 255).any())

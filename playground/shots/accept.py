@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, ParameterError, nearest
-from playground.images.files import read_png, replacing, write_png
+from playground.images.files import make_folder, read_png, replacing, write_png
 from playground.paths import shown
 from playground.shots.references import FOLDER, accepted_in
 from playground.shots.results import NEVER_ACCEPTED, Record, digest_of, digests_of
@@ -79,10 +79,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
         raise DataError(f"{record.name}: {_changed(record, there)} since it was checked; run the tests again")
     before = {path: path.read_bytes() for path in there}
     written = _further(place, record.shot, there) if also and there else place / f"{record.shot}.png"
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
+    make_folder(place)
     write_png(written, pixels, text=record.texts)
     removed = () if also else tuple(path for path in there if path != written)
     for path in removed:

@@ -54,7 +54,7 @@ class Recorder:
 
         Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
         """
-        found, perceived, reference = outcome.comparison, outcome.judgement.perceived, outcome.reference
+        found, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
         record = replace(
@@ -199,7 +199,7 @@ def _home(case: ShotCase, root: Path) -> str:
 
 
 def _numbers(outcome: Outcome) -> dict[str, float]:
-    found, judgement = outcome.comparison, outcome.judgement
+    found = outcome.comparison
     if found.verdict in ("blank", "missing", "size"):
         return {}
     numbers: dict[str, float] = {
@@ -207,10 +207,10 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
         f"pixels over {found.tolerance}": found.over,
         f"pixels over {found.tolerance}, %": 100.0 * found.over / (found.size[0] * found.size[1]),
     }
-    if judgement.crowd is not None:
-        numbers["pixels in the most crowded window"] = judgement.crowd.count
-    if judgement.perceived is not None:
-        numbers |= {"FLIP, mean": judgement.perceived.mean, "FLIP, worst tile": judgement.perceived.tile}
+    if outcome.crowd is not None:
+        numbers["pixels in the most crowded window"] = outcome.crowd.count
+    if outcome.perceived is not None:
+        numbers |= {"FLIP, mean": outcome.perceived.mean, "FLIP, worst tile": outcome.perceived.tile}
     return numbers
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from playground import paths
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.images.files import read_png, write_png
+from playground.images.files import make_folder, read_png, write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.plugin_constants import SCREENSHOTS
 from playground.sketch.model import Sketch
@@ -43,16 +43,6 @@ class Reference:
     def fingerprint(self) -> Fingerprint:
         """What it comes from, as far as the file says."""
         return read_fingerprint(self.text)
-
-    @property
-    def drawn_by(self) -> str:
-        """Renderer and OpenGL version that drew it; "" where the file does not say."""
-        return ", ".join(self.text[key] for key in ("renderer", "version") if key in self.text)
-
-
-def drawn_by(renderer: ContextInfo) -> str:
-    """Name a renderer and its OpenGL version, for comparing with a reference's."""
-    return f"{renderer.renderer}, {renderer.version}"
 
 
 def home_of(sketch: Sketch) -> Path:
@@ -115,11 +105,7 @@ def write_reference_in(
     Those would otherwise let the old picture pass for ever. Returns what was written and
     what was removed. Raises ``DataError`` where the folder cannot be written to.
     """
-    path = folder / f"{shot}.png"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    path = make_folder(folder) / f"{shot}.png"
     write_png(path, pixels, text=reference_texts(fingerprint, sketch, shot))
     further = [other for other in accepted_in(folder, shot) if other != path]
     for other in further:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.images.files import replacing
-from playground.shots.results import PICTURES, Record, make_folder, read_result
+from playground.shots.results import PICTURES, Record, make_results_folder, read_result
 
 _CLAIM = ".home"
 
@@ -26,7 +26,7 @@ def place_of(folder: Path, sketch: str, home: Path) -> str:
     ``home`` is the folder of its references. Makes the folder of the sketch's name if it is
     not there; raises ``DataError`` or ``OSError`` where it cannot.
     """
-    make_folder(folder)
+    make_results_folder(folder)
     try:
         key = Path(os.path.relpath(home, folder)).as_posix()
     except ValueError:  # on Windows, another drive

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,15 +20,14 @@ from playground.engine.error_place import located_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.shots.compare import Comparison, difference_picture
-from playground.shots.fingerprint import Fingerprint, fingerprint_of
+from playground.shots.compare import difference_picture
+from playground.shots.fingerprint import fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
 from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
     accepted,
-    drawn_by,
     read_reference,
     reference_path,
 )
@@ -56,61 +56,19 @@ class RenderedShot(Frame):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outcome:
-    """What came of one shot."""
+class Outcome(Judgement):
+    """What came of one shot: its judgement, and what was judged."""
 
     case: ShotCase
     frame: Frame
-    judgement: Judgement
     path: Path  # of the reference that it was judged by, or where that would be
     renderer: ContextInfo  # that drew the frame
     reference: Reference | None = None  # that it was judged by; None: missing or unreadable
 
     @property
-    def ok(self) -> bool:
-        """Whether the picture passes."""
-        return self.judgement.ok
-
-    @property
-    def word(self) -> str:
-        """What came of it, in one of `playground.shots.judge.WORDS`."""
-        return self.judgement.word
-
-    @property
-    def sentence(self) -> str:
-        """What there is to say of it, beginning with the word."""
-        return self.judgement.sentence
-
-    @property
-    def tier(self) -> str:
-        """How strictly it was compared: "same build", "another build", "another renderer"; "": it was not."""
-        return self.judgement.tier
-
-    @property
-    def comparison(self) -> Comparison:
-        """The pixels' comparison, with the reference that is nearest."""
-        return self.judgement.comparison
-
-    @property
-    def fingerprint(self) -> Fingerprint:
-        """What the picture comes from."""
-        return self.judgement.fingerprint
-
-    @property
-    def differences(self) -> tuple[str, ...]:
-        """How what it comes from differs from what the reference comes from, in words, one to a line."""
-        return self.judgement.differences
-
-    @property
     def own_path(self) -> Path:
         """Where its renderer's reference is, or would be: what accepting it writes."""
         return reference_path(self.case.sketch, self.case.shot.name, self.renderer.slug)
-
-    @property
-    def other_build(self) -> str:
-        """Say what drew the reference, if that was another build of the renderer; else ""."""
-        before = self.reference.drawn_by if self.reference else ""
-        return before if before != drawn_by(self.renderer) else ""
 
 
 def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
@@ -164,18 +122,13 @@ def check(
     own = bool(files)
     if not own and renderer.slug != reference_renderer:
         files = accepted(case.sketch, name, reference_renderer)
+    origin: dict[str, Any] = {"case": case, "frame": frame, "renderer": renderer}
     references = []
     for file in files:
         try:
             references.append(read_reference(file))
         except DataError as error:
-            return Outcome(
-                case=case,
-                frame=frame,
-                judgement=unreadable(frame.array, fingerprint, str(error)),
-                path=file,
-                renderer=renderer,
-            )
+            return Outcome(**vars(unreadable(frame.array, fingerprint, str(error))), **origin, path=file)
     judgement, reference = judge(
         frame.array,
         fingerprint,
@@ -185,12 +138,7 @@ def check(
         gl_error=gl_error,
     )
     return Outcome(
-        case=case,
-        frame=frame,
-        judgement=judgement,
-        path=reference.path if reference else path,
-        renderer=renderer,
-        reference=reference,
+        **vars(judgement), **origin, path=reference.path if reference else path, reference=reference
     )
 
 

@@ -106,7 +106,7 @@ def test_every_kind_of_png_is_read_to_the_last_bit(tmp_path, channels, dtype):
     np.testing.assert_allclose(scaled[..., :3], colour, atol=0.01)
     alpha = array[..., -1] if channels in (2, 4) else np.full((11, 6), np.iinfo(dtype).max)
     np.testing.assert_allclose(scaled[..., 3], alpha, atol=0.01)
-    assert image.transparent == image.has_alpha == (channels in (2, 4))
+    assert image.has_alpha == (channels in (2, 4))
 
 
 @pytest.mark.parametrize("ending", ["jpg", "webp"])
@@ -115,7 +115,7 @@ def test_jpeg_and_webp_have_their_top_row_first(tmp_path, ending):
     array[:16] = (250, 20, 20)
     PillowImage.fromarray(array).save(tmp_path / f"a.{ending}", quality=95)
     image = read_image(tmp_path / f"a.{ending}")
-    assert image.pixels.shape == (32, 48, 4) and not image.transparent and not image.has_alpha
+    assert image.pixels.shape == (32, 48, 4) and not image.has_alpha
     assert abs(image.pixels[4, 20].astype(int) - (250, 20, 20, 255)).max() < 12
     assert image.pixels[28, 20, :3].max() < 12
 
@@ -126,7 +126,7 @@ def test_palettes_keep_their_transparency(tmp_path):
     picture.putpixel((0, 0), 0)
     picture.save(tmp_path / "p.png", transparency=0)
     image = read_image(tmp_path / "p.png")
-    assert image.transparent and image.has_alpha
+    assert image.has_alpha
     assert image.pixels[0, 0, 3] == 0 and image.pixels[2, 3].tolist() == [10, 200, 30, 255]
     assert read_samples(tmp_path / "p.png").shape == (3, 4, 4)
 

@@ -12,9 +12,9 @@ import pytest
 from playground import paths
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
+from playground.shots.fingerprint import fingerprint_of
 from playground.shots.references import (
     accepted,
-    drawn_by,
     home_of,
     read_reference,
     reference_path,
@@ -77,7 +77,7 @@ def test_a_reference_comes_back_as_written_and_says_who_drew_it(tmp_path: Path) 
     assert removed == []
     reference = read_reference(path)
     np.testing.assert_array_equal(reference.pixels, PICTURE)
-    assert reference.drawn_by == drawn_by(LLVMPIPE)
+    assert reference.fingerprint == fingerprint_of(LLVMPIPE, (6, 4))
     assert reference.text["sketch"] == "hills"
     assert reference.text["shot"] == "dawn"
     assert reference.text["tool"].startswith("terrain-shader-playground ")
@@ -93,7 +93,7 @@ def test_another_build_of_the_renderer_says_so(tmp_path: Path) -> None:
     other = replace(LLVMPIPE, version="4.5 Mesa 25.0.7")
     path, _ = write_reference(sketch_in(tmp_path), "dawn", other, PICTURE)
     assert path.parent.name == "llvmpipe"
-    assert read_reference(path).drawn_by != drawn_by(LLVMPIPE)
+    assert not read_reference(path).fingerprint.same_build(fingerprint_of(LLVMPIPE, (6, 4)))
 
 
 def test_further_ones_are_accepted_in_the_order_of_their_numbers(tmp_path: Path) -> None:

@@ -5,5 +5,5 @@ shot.py       what the page says of one failed shot
 document.py   the whole page
 report.html   its frame; report.css, its looks
 png.js        the exact values of a picture; viewer.js, the panes; report.js, the list and the keys
-review.js     accepting, only in ``review``
+review.html, review.js    accepting, only in ``review``
 """

@@ -83,17 +83,6 @@ MEANINGS = {
     ),
 }
 
-TIERS = {
-    "same build": "The reference is of this very build of the renderer, so one level in a channel is allowed,"
-    " alpha included: whatever is more than rounding fails.",
-    "another build": "The reference is of another build of this renderer, which rounds differently, so single"
-    " pixels may differ by three levels. A change that is small and even all over, under three levels,"
-    " cannot be told from that.",
-    "another renderer": "The reference is of another renderer, so only what an eye would see is looked for:"
-    " this catches structural defects (something missing, moved or of another colour), not small ones.",
-}
-"""What a tier allows and catches."""
-
 
 def meaning(word: str) -> Meaning:
     """Return what a word means; of one that is not known, itself."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from urllib.parse import quote
 
 from playground.markup import Markup, tag
-from playground.shots.page.labels import TIERS, meaning
+from playground.shots.page.labels import meaning
 from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
 
 CAPTIONS = {"expected": "Expected", "actual": "Actual", "difference": "Difference ×16", "flip": "FLIP map"}
@@ -72,7 +72,7 @@ def accept_command(record: Record, folder: str) -> str:
 def failure(record: Record, setting: Setting) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
-    explained = (meaning(record.word).sentence, record.catches or TIERS.get(record.tier, ""))
+    explained = (meaning(record.word).sentence, record.catches)
     return tag(
         "article",
         tag(
