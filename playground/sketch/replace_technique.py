@@ -13,7 +13,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.allowed_files import TECHNIQUES
-from playground.sketch.assign import resolve
+from playground.sketch.assign import current_path, resolve
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
@@ -124,7 +124,8 @@ def _kept(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tu
     found = []
     for path, value in values:
         try:
-            found.append((path, coerce(resolve(technique, path)[0].parameter, value, path)))
+            value = coerce(resolve(technique, path)[0].parameter, value, path)
+            found.append((current_path(technique, path), value))
         except ParameterError:
             continue
     return tuple(found)

@@ -24,7 +24,13 @@ from playground.sketch.allowed_files import leads_outside
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
-from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
+from playground.sketch.save_values import (
+    said_so_far,
+    with_current_names,
+    written_land,
+    written_number,
+    written_value,
+)
 from playground.sketch.toml_edit import append, drop, put, text_of
 from playground.sketch.toml_places import Place
 from playground.sketch.values import shortest
@@ -216,7 +222,7 @@ def write_over(
     if not _same_text(load(path), file):
         raise SketchError("the file has changed meanwhile: save again once it shows", file=shown(path))
     mark = "\ufeff" if text.startswith("\ufeff") else ""
-    new = mark + change(text.removeprefix(mark))
+    new = mark + change(with_current_names(text.removeprefix(mark), file))
     if new == text:
         return
     beside = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(6)}.toml")

@@ -12,7 +12,14 @@ from playground.paths import shown
 from playground.sketch import wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
-from playground.sketch.assign import TERRAIN_KEYS, check_value, flat_values, resolve
+from playground.sketch.assign import (
+    TERRAIN_KEYS,
+    check_value,
+    current_paths,
+    flat_values,
+    renamed,
+    resolve,
+)
 from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
@@ -47,6 +54,7 @@ def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
         file.take(file.table, "title", str, ""),
         agrees,
         line=file.line("outputs"),
+        warnings=tuple(file.warnings),
     )
     for key, names in (
         ("parameters", [e.name for e in graph.parameters]),
@@ -128,7 +136,7 @@ def read_pass(
         feedback=feedback,
         file=shown(file.path),
         line=file.line(*place),
-        set_lines=tuple((p, file.line(*_place_of_value(place, given, p))) for p, _ in values),
+        set_lines=_set_lines(file, place, given, technique),
     )
 
 
@@ -147,6 +155,7 @@ def read_values(
     given = file.take(table, "set", dict, {}, *place)
     try:
         flat = flat_values(technique, given)
+        names = current_paths(technique, flat)
     except ParameterError as error:
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
@@ -160,8 +169,18 @@ def read_values(
             if leads_outside(str(value), file.root, parameter.file):
                 message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
                 raise file.error(message, *at)
-        found.append((path, value))
+        if sentence := renamed(technique, path, raw):
+            file.warn(f"{who}: {sentence}", *at)
+        found.append((names[path], value))
     return tuple(found)
+
+
+def _set_lines(
+    file: TomlFile, place: Place, given: Mapping[str, Any], technique: Technique
+) -> tuple[tuple[str, int], ...]:
+    """Return the line of each path that a pass's ``set`` has."""
+    paths = current_paths(technique, flat_values(technique, given))
+    return tuple((name, file.line(*_place_of_value(place, given, path))) for path, name in paths.items())
 
 
 def _place_of_value(place: Place, given: Mapping[str, Any], path: str) -> Place:
