@@ -54,7 +54,7 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
         vec2 tile = share * detail_repeats * vec2(1.0, extent.y / extent.x);
         vec3 fine = texture(detail_image, tile, SHARPER).rgb;
         vec3 mean = textureLod(detail_image, vec2(0.5), 99.0).rgb;
-        float nearness = detail_nearness(distance(eye, position), detail_reach);
+        float nearness = detail_nearness(distance(eye, position), detail_max_distance);
         shown = with_detail(shown, fine, mean, detail_strength * nearness);
     }
     shown *= facets ? vec3(light_of_face(position, facet_sun, facet_ambient))

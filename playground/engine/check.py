@@ -49,7 +49,7 @@ from playground.sketch.variants import (
     why_not,
     without_variants,
 )
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.warnings import former_names_used, warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
@@ -203,6 +203,7 @@ class _Check:
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
         self.notes = left_out(sketch)
+        self.warnings |= dict.fromkeys(former_names_used(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
             self.attempt(request)

@@ -10,7 +10,7 @@ from playground.engine.plan import Plan
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
 from playground.sketch.model import Graph, Kernel, kernels_of
-from playground.sketch.warnings import unheeded, warnings_of_kernel
+from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
 
 
@@ -26,7 +26,7 @@ class PlanWarnings:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        found = list(source_warnings(plan))
+        found = [*former_names_used(plan.sketch), *source_warnings(plan)]
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
             found += kernel_warnings(plan.sketch.graph, unheeded)

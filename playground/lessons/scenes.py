@@ -69,7 +69,7 @@ def read_scene(
     begun = sketch.for_shot(shot)
     try:
         made = begun.with_preset(preset) if preset else begun
-        made = made.with_values(dict(values))
+        made = replace(made.with_values(dict(values)), warnings=(*made.warnings, *file.warnings))
     except PlaygroundError as error:
         raise file.error(error.diagnostics[0].message, *place, "preset" if preset else "set") from None
     if "camera" in whole:

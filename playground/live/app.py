@@ -45,6 +45,7 @@ from playground.live.window import Window, wake
 from playground.live.window_place import Place
 from playground.paths import DEFAULT_SKETCH
 from playground.sketch.allowed_files import TEXTS
+from playground.sketch.assign import current_paths
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
@@ -157,8 +158,11 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
         sketch = load(path) if values else None
     except PlaygroundError:
         sketch = None
-    taken = dict(sketch.with_values(values).overrides) if sketch is not None else {}
-    return {name: taken.get(name, cast(Value, value)) for name, value in values.items()}
+    if sketch is None:
+        return cast(dict[str, Value], dict(values))
+    taken = dict(sketch.with_values(values).overrides)
+    names = current_paths(sketch.graph, values)
+    return {name: taken.get(name, cast(Value, values[path])) for path, name in names.items()}
 
 
 class Live:

@@ -6,11 +6,11 @@ Its parts are in ``parameter``, ``technique`` and ``keyframes``; all of them can
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from playground.errors import ParameterError, SketchError, nearest
-from playground.sketch.assign import TERRAIN_KEYS, check_value
+from playground.errors import Diagnostic, ParameterError, SketchError, nearest
+from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.technique import (
@@ -121,6 +121,7 @@ class Sketch:
     keyframes: tuple[Keyframe, ...] = ()  # by time; user edits override them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of former names that are used
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -139,18 +140,22 @@ class Sketch:
     def with_values(self, values: Mapping[str, object]) -> Sketch:
         """Return the sketch with parameters set, by path; text is read as on the command line.
 
-        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well.
-        Raises ``ParameterError`` naming the nearest path or the range.
+        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well; a former name of a
+        parameter sets it under its present one. Raises ``ParameterError`` naming the nearest path or the
+        range, or a parameter that is set by both its names.
         """
-        overrides, terrain = dict(self.overrides), dict[str, Any]()
+        overrides, changes = dict(self.overrides), dict[str, Any]()
+        names = current_paths(self.graph, values)
         for path, given in values.items():
             found = check_value(self, path, given)
             if path in TERRAIN_KEYS:
-                terrain[path] = found
+                changes[path] = found
             else:
-                overrides.pop(path, None)  # what is set last comes last, and wins
-                overrides[path] = found
-        return replace(self, overrides=tuple(overrides.items()), **terrain)
+                overrides.pop(names[path], None)  # what is set last comes last, and wins
+                overrides[names[path]] = found
+        if former := [sentence for p, v in values.items() if (sentence := renamed(self.graph, p, v))]:
+            changes["warnings"] = (*self.warnings, *(Diagnostic(one, severity="warning") for one in former))
+        return replace(self, overrides=tuple(overrides.items()), **changes)
 
     def with_camera(self, camera: Camera) -> Sketch:
         """Return the sketch seen by another camera, without the camera of its keyframes."""

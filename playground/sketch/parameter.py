@@ -19,6 +19,7 @@ class Widget:
     low: float | None = None  # None: unbounded
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu
+    renamed: tuple[tuple[str, str], ...] = ()  # former choice → choice; a former one is still read
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,7 @@ class Parameter:
     painted: bool = False  # a file that may be painted on in the window
     follows: Follows | None = None  # where its value comes from while it is not set
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
+    former: tuple[str, ...] = ()  # names that it had, which are still read
     file: str = ""
     line: int = 0
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.allowed_files import TECHNIQUES
-from playground.sketch.assign import find_targets, resolve
+from playground.sketch.assign import current_path, find_targets, resolve
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
@@ -115,5 +115,6 @@ def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> 
     found = []
     for path, value in values:
         with suppress(ParameterError):
-            found.append((path, coerce(resolve(technique, path)[0].parameter, value, path)))
+            coerced = coerce(resolve(technique, path)[0].parameter, value, path)
+            found.append((current_path(technique, path), coerced))
     return tuple(found)

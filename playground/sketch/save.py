@@ -24,6 +24,7 @@ from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Camera, PassSpec, Sketch, Value
 from playground.sketch.save_values import (
+    with_current_names,
     written_number,
     written_so_far,
     written_terrain_value,
@@ -218,7 +219,7 @@ def write_over(
     if not _same_text(load(path), file):
         raise SketchError(_CHANGED, file=shown(path))
     mark = "\ufeff" if text.startswith("\ufeff") else ""
-    new = mark + change(text.removeprefix(mark))
+    new = mark + change(with_current_names(text.removeprefix(mark), file))
     if new == text:
         return
     try:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from playground.sketch.assign import TERRAIN_KEYS, resolve
+from playground.sketch.assign import TERRAIN_KEYS, current_path, resolve
 from playground.sketch.colour import parse_hex, to_hex
-from playground.sketch.model import Parameter, Sketch, Value
+from playground.sketch.model import Parameter, Sketch, Technique, Value
 from playground.sketch.toml_edit import text_of
 from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import is_whole, shortest
@@ -52,6 +52,39 @@ def written_terrain_value(value: Value) -> str:
     if isinstance(value, tuple) and len(set(value)) == 1:
         value = value[0]
     return str(value) if isinstance(value, str) else written_number(value)
+
+
+def with_current_names(text: str, sketch: Sketch) -> str:
+    """Return a sketch's text with the present name of each parameter that it sets by a former one."""
+    while (span := _former_name(text, sketch)) is not None:
+        start, end, name = span
+        text = text[:start] + name + text[end:]
+    return text
+
+
+def _former_name(text: str, sketch: Sketch) -> tuple[int, int, str] | None:
+    """Return where the text has a former name, and the present one; None where it has none."""
+    places = TomlPlaces(text)
+    for place, pair in places.pairs.items():
+        at = next((n for n, part in enumerate(place) if part == "set"), 0)
+        path = ".".join(map(str, place[at + 1 :]))
+        technique = _set_at(sketch, place[:at])
+        if technique is None or current_path(technique, path) == path:
+            continue
+        former, name = (some.rpartition(".")[2] for some in (path, current_path(technique, path)))
+        start = text.rindex(former, pair.key, pair.value)
+        return start, start + len(former), name
+    return None
+
+
+def _set_at(sketch: Sketch, table: Place) -> Technique | None:
+    """Return the technique, or the sketch's graph, whose parameters a table sets; None for other tables."""
+    if table == ("view",):
+        view = sketch.graph.find("view")
+        return view.technique if view else None
+    if len(table) == 2 and table[0] == "pass":
+        return sketch.graph.passes[int(table[1])].technique
+    return sketch.graph if len(table) == 2 and table[0] in ("preset", "shot", "keyframe") else None
 
 
 def written_so_far(text: str, table: Place, key: str) -> str:

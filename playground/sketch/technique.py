@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
-from playground.errors import ShaderError, SketchError
+from playground.errors import Diagnostic, ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
 from playground.sketch.reserved_names import GIVEN
@@ -119,6 +119,11 @@ class Kernel:
         return self._parameters_by_name.get(name)
 
     @cached_property
+    def former_names(self) -> dict[str, str]:
+        """Former name → name of its parameters that were renamed."""
+        return {former: parameter.name for parameter in self.parameters for former in parameter.former}
+
+    @cached_property
     def _parameters_by_name(self) -> dict[str, Parameter]:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
@@ -176,6 +181,7 @@ class Graph:
     agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique that it replaces
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # former names that its file uses
 
     @property
     def files(self) -> tuple[str, ...]:

@@ -13,7 +13,14 @@ from playground.paths import shown
 from playground.sketch import wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
-from playground.sketch.assign import check_value, find_targets, flat_values, resolve
+from playground.sketch.assign import (
+    check_value,
+    current_paths,
+    find_targets,
+    flat_values,
+    renamed,
+    resolve,
+)
 from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
@@ -48,6 +55,7 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         file.take(file.table, "title", str, ""),
         agrees,
         line=file.line("outputs"),
+        warnings=tuple(file.warnings),
     )
     names = [("parameters", export.name) for export in graph.parameters]
     names += [("inputs", export.name) for export in graph.inputs]
@@ -127,7 +135,7 @@ def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str,
         feedback=feedback,
         file=shown(file.path),
         line=file.line(*place),
-        set_lines=tuple((path, file.line(*place, "set", path)) for path, _ in values),
+        set_lines=_set_lines(file, place, table.get("set", {}), technique),
     )
 
 
@@ -142,6 +150,7 @@ def _read_values(
     """Return what ``set`` says, checked: each value by ``read_value``, and that no file lies outside."""
     try:
         given = flat_values(technique, file.take(table, "set", dict, {}, *place))
+        names = current_paths(technique, given)
     except ParameterError as error:
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
@@ -155,8 +164,18 @@ def _read_values(
         if value and any(leads_outside(str(value), file.root, declared_in) for declared_in in files):
             message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
             raise file.error(message, *place, "set", path)
-        found.append((path, value))
+        if sentence := renamed(technique, path, raw):
+            file.warn(f"{who}: {sentence}", *place, "set", path)
+        found.append((names[path], value))
     return tuple(found)
+
+
+def _set_lines(
+    file: TomlFile, place: Place, given: Mapping[str, Any], technique: Technique
+) -> tuple[tuple[str, int], ...]:
+    """Return the line of each path that a pass's ``set`` has."""
+    paths = current_paths(technique, flat_values(technique, given))
+    return tuple((name, file.line(*place, "set", path)) for path, name in paths.items())
 
 
 def read_set(

@@ -8,7 +8,7 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
+from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed, resolve
 from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.model import LARGEST_SIDE, Camera, Graph, PassSpec, Preset, Shot, Sketch
@@ -55,7 +55,8 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     sketch = replace(sketch, main=_main(file, sketch))
     sketch = replace(sketch, presets=_presets(file, sketch))
     sketch = replace(sketch, shots=_shots(file, sketch))
-    return replace(sketch, keyframes=read_keyframes(file, sketch))
+    sketch = replace(sketch, keyframes=read_keyframes(file, sketch))
+    return replace(sketch, warnings=tuple(file.warnings))
 
 
 def _terrain_value(file: TomlFile, key: str) -> Any:
@@ -94,7 +95,12 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
             raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
         if paths.count(path) > 1:
             raise file.error(f"main: '{path}' appears twice", "main")
-    return tuple(paths)
+        if sentence := renamed(sketch.graph, path, None):
+            file.warn(f"main: {sentence}", "main")
+    try:
+        return tuple(current_paths(sketch.graph, paths).values())
+    except ParameterError as error:
+        raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
 
 
 def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from playground.errors import SketchError, nearest
+from playground.errors import Diagnostic, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.source import read_text
 from playground.sketch.toml_places import Place, TomlPlaces
@@ -38,6 +38,7 @@ class TomlFile:
         """
         self.path = path.resolve()
         self.root = root
+        self.warnings: dict[Diagnostic, None] = {}  # of what it says, though it can be read
         self._before = before
         if text is None:
             text = read_text(self.path)
@@ -78,6 +79,11 @@ class TomlFile:
     def error(self, message: str, *place: str | int) -> SketchError:
         """Return an error that points at a place."""
         return SketchError(message, file=shown(self.path), line=self.line(*place))
+
+    def warn(self, message: str, *place: str | int) -> None:
+        """Add a warning that points at a place."""
+        line = self.line(*place)
+        self.warnings[Diagnostic(message, shown(self.path), line, severity="warning")] = None
 
     def version(self, *, required: bool) -> None:
         """Raise ``SketchError`` if the format is one that cannot be read."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -48,7 +48,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows", "was"})
 
 Calls = dict[str, list[str]]
 
@@ -107,6 +107,7 @@ def read_uniforms(
     for number, words, line in following:
         found = read_follows(parameters[number], words, parameters, line)
         parameters[number] = replace(parameters[number], follows=found)
+    _check_former_names(parameters, seen)
     return tuple(parameters), tuple(inputs)
 
 
@@ -212,6 +213,7 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         sampling=sampling,
         painted="paint" in words,
         **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
     )
 
 
@@ -231,15 +233,17 @@ def _parameter(
     step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
+    widget = _widget(name, kind, calls.get(kind, []), line)
     parameter = Parameter(
         name,
         glsl_type,
         0,
-        _widget(name, kind, calls.get(kind, []), line),
+        replace(widget, renamed=_renamed_choices(name, widget, calls, line)),
         step,
         _text(calls, "unit", line),
         parts=_parts(name, glsl_type, kind, calls, line),
         **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
     )
     default = _literal(name, glsl_type, initial, line)
     try:
@@ -261,6 +265,39 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
         wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
     return found
+
+
+def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
+    """Return the names that ``was("stride")`` gives; ``was("mended: repaired")`` is of a menu's choices."""
+    found = tuple(word for word in calls.get("was", ()) if ":" not in word)
+    wrong = next((word for word in found if not word.isidentifier()), None)
+    if wrong is not None or ("was" in calls and not calls["was"]):
+        example = 'as was("stride"), or of a choice was("former: present")'
+        raise line.error(f"was of '{name}': expected its former name, {example}")
+    return found
+
+
+def _renamed_choices(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[tuple[str, str], ...]:
+    """Return former choices of a menu with what each is called now."""
+    pairs = [word.partition(":") for word in calls.get("was", ()) if ":" in word]
+    found = tuple((former.strip(), present.strip()) for former, _, present in pairs)
+    for former, present in found:
+        if present not in widget.choices:
+            raise line.error(f"was of '{name}': no choice '{present}'{nearest(present, widget.choices)}")
+        if former in widget.choices:
+            raise line.error(f"was of '{name}': '{former}' is one of its choices still")
+    return found
+
+
+def _check_former_names(parameters: Sequence[Parameter], seen: Mapping[str, Line]) -> None:
+    """Raise ``ShaderError`` for a former name that something else of the file has, or had."""
+    owners: dict[str, str] = {}
+    for parameter in parameters:
+        for former in parameter.former:
+            other = former if former in seen else owners.setdefault(former, parameter.name)
+            if other != parameter.name or former in seen:
+                message = f"was of '{parameter.name}': '{former}' is the name of '{other}'"
+                raise seen[parameter.name].error(message)
 
 
 def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:

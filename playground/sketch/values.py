@@ -160,6 +160,7 @@ def _digits(value: float | int | bool) -> str:
 def _menu(parameter: Parameter, given: object, name: str) -> int:
     choices = parameter.widget.choices
     if isinstance(given, str):
+        given = dict(parameter.widget.renamed).get(given, given)
         if given in choices:
             return choices.index(given)
         raise ParameterError(

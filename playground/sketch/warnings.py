@@ -1,11 +1,14 @@
-"""Warn of what in a kernel's text has no effect, or another one than its author can see."""
+"""Warn of what in a sketch's texts has no effect, another one than its author can see, or a former name."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from pathlib import Path
 
 from playground.errors import Diagnostic
-from playground.sketch.model import Kernel, kernels_of
+from playground.paths import GLSL
+from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.uniforms import unfed_samplers
 
 
@@ -50,3 +53,16 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
                 )
                 break
     return tuple(found)
+
+
+def former_names_used(sketch: Sketch) -> tuple[Diagnostic, ...]:
+    """Return a warning for each former name in a sketch, in its own techniques or in what is set over it."""
+    return tuple(dict.fromkeys([*sketch.warnings, *_of_graph(sketch.graph)]))
+
+
+def _of_graph(graph: Graph) -> Iterator[Diagnostic]:
+    if not Path(graph.path).is_relative_to(GLSL):
+        yield from graph.warnings
+    for spec in graph.passes:
+        if isinstance(spec.technique, Graph):
+            yield from _of_graph(spec.technique)

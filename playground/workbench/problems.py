@@ -16,7 +16,7 @@ from playground.paths import GLSL
 from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import read_kernel
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.warnings import former_names_used, warnings_of_kernel
 from playground.workbench.dependencies import path_named
 
 AROUND = 2
@@ -172,7 +172,8 @@ class Warnings:
             self.waiting = [text for text in self._kernels if text not in self._found]
         if self._plan is not plan:
             self._plan, self._of_sources = plan, source_warnings(plan) if plan is not None else ()
-        return [*(d for text in self._kernels for d in self._found.get(text, ())), *self._of_sources]
+        of_kernels = (d for text in self._kernels for d in self._found.get(text, ()))
+        return [*former_names_used(sketch), *of_kernels, *self._of_sources]
 
     def look(self) -> None:
         """Look at one kernel that has not been looked at yet."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
+from playground.sketch.assign import current_path
 from playground.sketch.model import Camera, Sketch, Value
 from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
 from playground.workbench.edits import Draft, Edits, with_camera_of
@@ -48,7 +49,7 @@ def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
     for path, value in edits.values:
         newer = newer_value(path, start.in_file, now, edits.locked)
         if newer is None:
-            values.append((path, value))
+            values.append((current_path(draft.base.graph, path), value))
         else:
             notes += filter(None, [notice(draft.base, path, value, newer)])
     return draft.with_edits(replace(draft.edits, values=tuple(values))), notes

@@ -197,10 +197,10 @@ def test_every_pass_is_told_the_height_s_apron(small_engine, land_of):
 
 
 def test_shadows_that_reach_beyond_the_apron_are_refused(small_engine, land_of):
-    sketch = land_of(intervals=16, apron=8).with_values({"light.reach": 9})
-    with pytest.raises(SketchError, match=r"shadows reach 9 texels .* only 8 .* set light.reach=8"):
+    sketch = land_of(intervals=16, apron=8).with_values({"light.max_distance": 9})
+    with pytest.raises(SketchError, match=r"shadows reach 9 texels .* only 8 .* set light.max_distance=8"):
         plot_of(sketch, small_engine)
-    assert plot_of(sketch.with_values({"light.reach": 8}), small_engine).apron == 8
+    assert plot_of(sketch.with_values({"light.max_distance": 8}), small_engine).apron == 8
 
 
 def test_parts_that_would_fill_the_memory_are_refused_before_any_is_made(small_engine, land_of):

@@ -509,11 +509,11 @@ def test_two_rays_one_lit(any_engine, diagram, assert_written):
 @pytest.mark.parametrize("azimuth", [62.0, 180.0, 301.0])
 @pytest.mark.parametrize("place", [(20, 4), (64, 4), (0, 0)], ids=str)
 def test_the_share_that_is_written_is_the_method_s(any_engine, diagram, assert_written, azimuth, place):
-    setting = f"sun = [{azimuth}, 25.0], softness = 0.05, reach = 2.0"
+    setting = f"sun = [{azimuth}, 25.0], softness = 0.05, step_length = 2.0"
     extra = f'[[pass]]\nname = "light"\nuse = "lighting/height_difference"\nset = {{ {setting} }}\n'
     sketch = diagram(
-        "grid", extra=extra, column=place[0], row=place[1], sun=(azimuth, 25.0), softness=0.05, reach=2.0,
-        text=True, texels=11,
+        "grid", extra=extra, column=place[0], row=place[1], sun=(azimuth, 25.0), softness=0.05,
+        step_length=2.0, text=True, texels=11,
     )  # fmt: skip
     share = any_engine.read(sketch, "light")[place[1], place[0], 3]
     picture = any_engine.read(sketch, "diagram")[..., :3]
@@ -555,7 +555,10 @@ def test_beyond_the_land_there_is_no_height(any_engine, diagram, assert_written)
 def test_tiny_lands_and_wild_places_are_drawn(any_engine, diagram, use, size):
     wild = [{"text": True}]
     if use == "grid":
-        wild += [{"column": 4096, "row": 4096, "reach": 0.0, "text": True}, {"texels": 40.0, "steps": 64}]
+        wild += [
+            {"column": 4096, "row": 4096, "step_length": 0.0, "text": True},
+            {"texels": 40.0, "steps": 64},
+        ]
     else:
         shows = {"shows": "visibility of the sun"} if use == "horizon" else {"beam": "cone", "second": 4096}
         wild += [{"row": 4096, "viewpoint": 4096, "first": 4096, "last": 1, **shows}]

@@ -203,12 +203,12 @@ def test_with_a_reach_of_the_apron_light_is_the_same_from_any_part_however_low_t
     any_engine, part_of, elevation
 ):
     """Every texel then sees as far, whichever part it is lit with: no border shows."""
-    given = {"light.sun": (120.0, elevation), "light.reach": 24}
+    given = {"light.sun": (120.0, elevation), "light.max_distance": 24}
     small = inside(any_engine.read(part_of((2, 5), 64, 24, **given), "light"), 24)
     large = inside(any_engine.read(part_of((2, 5), 64, 152, **given), "light"), 152)
     assert 0.02 < (large[..., 3] < 0.99).mean(), "there are shadows"
     np.testing.assert_allclose(small, large, atol=3e-3)
-    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.reach": 0}), "light")
+    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.max_distance": 0}), "light")
     assert (inside(endless, 152) <= large + 3e-3).all(), "a reach only takes shadows away"
 
 

@@ -31,11 +31,13 @@ def lit(make_sketch):
     return make
 
 
-def slow(heights: np.ndarray, azimuth: float, spacing: tuple[float, float], softness: float, reach: float):
+def slow(
+    heights: np.ndarray, azimuth: float, spacing: tuple[float, float], softness: float, step_length: float
+):
     """Go over the texels one by one, reading between the four around the place towards the sun."""
     ny, nx = heights.shape
     way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / spacing
-    way *= reach / np.abs(way).max()
+    way *= step_length / np.abs(way).max()
     share = np.ones((ny, nx))
     for y in range(ny):
         for x in range(nx):
@@ -52,11 +54,11 @@ def slow(heights: np.ndarray, azimuth: float, spacing: tuple[float, float], soft
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 45.0, 123.0, 270.0, 301.0])
-@pytest.mark.parametrize("reach", [1.0, 2.5])
-def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azimuth, reach):
-    sketch = lit(rough=0.1, sun=(azimuth, 30.0), softness=0.08, reach=reach)
+@pytest.mark.parametrize("step_length", [1.0, 2.5])
+def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azimuth, step_length):
+    sketch = lit(rough=0.1, sun=(azimuth, 30.0), softness=0.08, step_length=step_length)
     heights = engine.read(sketch, "height").astype(np.float64)
-    wanted = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, reach)
+    wanted = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, step_length)
     assert 0.05 < (wanted < 1).mean() < 0.95
     found = engine.read(sketch, "light")
     np.testing.assert_allclose(found[..., 3], wanted, atol=HALF)

@@ -126,7 +126,7 @@ def test_turned_and_mirrored_land_has_turned_and_mirrored_light(light, method, s
 
 @pytest.mark.parametrize(
     ("use", "values"),
-    [("l_dot_n", {"normal": "one triangle"}), ("ray_cast", {"reading": "cut down"})],
+    [("l_dot_n", {"normal": "one triangle"}), ("ray_cast", {"sampling": "cut down"})],
     ids=["one triangle", "cut down"],
 )
 def test_the_thesis_own_ways_are_exempt_because_they_lean_to_one_side(light, use, values):

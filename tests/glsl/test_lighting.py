@@ -64,14 +64,14 @@ def shade(heights, sun, spacing):
     return np.maximum((normal @ sun) / np.linalg.norm(normal, axis=-1), 0)
 
 
-def clearance(heights, sun, spacing, stride=1.0):
+def clearance(heights, sun, spacing, step_length=1.0):
     """Return how far above the land each ray passes at its nearest step [m]: no early end, float64."""
     ny, nx = heights.shape
     y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
     texels = sun[:2] / spacing  # a metre along the ray, in texels
-    length = stride / np.abs(texels).max()
+    length = step_length / np.abs(texels).max()
     least = np.full(heights.shape, np.inf)
-    for k in range(1, int((nx + ny) / stride) + 2):
+    for k in range(1, int((nx + ny) / step_length) + 2):
         px, py, ray = x + k * length * texels[0], y + k * length * texels[1], heights + k * length * sun[2]
         inside = (px >= -1e-6) & (px <= nx - 1 + 1e-6) & (py >= -1e-6) & (py <= ny - 1 + 1e-6)
         land = map_coordinates(heights, [np.clip(py, 0, ny - 1), np.clip(px, 0, nx - 1)], order=1)
@@ -292,14 +292,16 @@ def test_a_light_map_of_any_size_sees_the_same_slopes(engine, lit, method):
 # The ray cast
 
 
-@pytest.mark.parametrize("stride", [1.0, 0.5, 2.0, 0.75])
+@pytest.mark.parametrize("step_length", [1.0, 0.5, 2.0, 0.75])
 @pytest.mark.parametrize("sun", [(135, 25), (90, 15), (0, 5), (317, 40), (45, 10), (222.5, 60)], ids=str)
-def test_shadows_are_those_of_a_slow_march(engine, lit, sun, stride):
-    sketch = lit(HILLS, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, stride=stride)
+def test_shadows_are_those_of_a_slow_march(engine, lit, sun, step_length):
+    sketch = lit(
+        HILLS, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, step_length=step_length
+    )
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     visible = engine.read(sketch, "light")[..., 3]
     direction = sun_vector(*sun)
-    room = clearance(heights, direction, np.array([10.0, 20.0]), stride)
+    room = clearance(heights, direction, np.array([10.0, 20.0]), step_length)
     facing = shade(heights, direction, (10.0, 20.0))
     sure = (np.abs(room) > 0.01) & (np.abs(facing) > 1e-4)
     assert sure.mean() > 0.5
@@ -339,12 +341,12 @@ def test_a_wall_throws_its_shadow_in_metres_to_the_west_and_east(engine, lit, az
 def test_a_wall_throws_its_shadow_in_metres_to_the_north_and_south(engine, lit, azimuth):
     sun = (azimuth, 25.0)
     sketch = lit(
-        WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, stride=0.25
+        WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, step_length=0.25
     )
     column = engine.read(sketch, "light")[:, 64, 3]
     length = 100 / np.tan(np.radians(25)) * abs(np.cos(np.radians(azimuth)))
     away = (np.arange(65) - 32) * 20.0 * (-1 if np.cos(np.radians(azimuth)) > 0 else 1)
-    # A stride that is not whole may miss the crest itself, which is one texel sharp.
+    # A step_length that is not whole may miss the crest itself, which is one texel sharp.
     behind = (away > 20) & (np.abs(away - length) > 20)
     np.testing.assert_array_equal(column[behind] == 0, away[behind] < length)
     np.testing.assert_array_equal(column[away < -20], 1)
@@ -380,7 +382,7 @@ def test_a_lower_sun_never_takes_a_shadow_away(any_engine, lit):
 def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit):
     values = {"size": 65, "relief": 300.0, "extent": 640.0}
     ways = [
-        any_engine.read(lit(HILLS, "ray_cast", (30, 25), reading=r, **values), "light")
+        any_engine.read(lit(HILLS, "ray_cast", (30, 25), sampling=r, **values), "light")
         for r in ("interpolated", "cut down")
     ]
     assert 0 < (ways[0][..., 3] != ways[1][..., 3]).mean() < 0.2

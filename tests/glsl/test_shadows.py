@@ -104,17 +104,17 @@ def sun_vector(azimuth, elevation):
 class Views:
     """Every place's way to the sun, step by step: how far off land is, and how high over the place [m]."""
 
-    def __init__(self, heights, sun, spacing, stride=1.0, finer=1):
+    def __init__(self, heights, sun, spacing, step_length=1.0, finer=1):
         ny, nx = heights.shape
         places = np.mgrid[0 : (ny - 1) * finer + 1, 0 : (nx - 1) * finer + 1].astype(np.float64) / finer
         azimuth = np.radians(sun[0])
         ahead = np.array([np.cos(azimuth), np.sin(azimuth)])  # metres north and east
         texels = ahead / np.array(spacing)[::-1]
-        run = stride / np.abs(texels).max()  # metres on the level in a step
+        run = step_length / np.abs(texels).max()  # metres on the level in a step
         foot = map_coordinates(heights, places, order=1)
         self.foot, self.steps = foot, []
         last = np.array([ny - 1, nx - 1])[:, None, None]
-        for k in range(1, int(max(nx, ny) / stride) + 2):
+        for k in range(1, int(max(nx, ny) / step_length) + 2):
             at = places + (k * run * texels)[:, None, None]
             inside = ((at >= -1e-6) & (at <= last + 1e-6)).all(axis=0)
             if not inside.any():
@@ -195,7 +195,12 @@ float kernel(ivec2 texel) { return texel.x == size.x - 1 ? 1.0 : 0.0; }
 @pytest.mark.parametrize("method", ["ray_cast", "sun_disc"])
 def test_a_shadow_crosses_the_widest_terrain_in_the_shortest_steps(any_engine, lit, method):
     """A wall of 300 m hides all of a disc at 0.7 degrees as far as 17.8 km away: on 16384 texels of 1 m."""
-    values = {"size": [LARGEST_SIDE, 2], "extent": [LARGEST_SIDE - 1.0, 1.0], "relief": 300.0, "stride": 0.25}
+    values = {
+        "size": [LARGEST_SIDE, 2],
+        "extent": [LARGEST_SIDE - 1.0, 1.0],
+        "relief": 300.0,
+        "step_length": 0.25,
+    }
     found = visible(any_engine, lit(FAR_WALL, method, (90, 0.7), **values))
     assert found[:, :-1].max() < 1e-6
     assert found[:, -1].min() == 1
@@ -214,10 +219,10 @@ def heights_of(engine, sketch, relief=300.0):
 
 
 @pytest.mark.parametrize("sun", SUNS, ids=str)
-@pytest.mark.parametrize(("delta_r", "stride"), [(0.01, 1.0), (0.1, 0.5), (0.3, 2.0), (1.5, 1.0)])
-def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, stride):
-    sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, stride=stride, **GRID)
-    views = Views(heights_of(any_engine, sketch), sun, SPACING, stride)
+@pytest.mark.parametrize(("delta_r", "step_length"), [(0.01, 1.0), (0.1, 0.5), (0.3, 2.0), (1.5, 1.0)])
+def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, step_length):
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, step_length=step_length, **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING, step_length)
     grows = delta_r / np.cos(np.radians(sun[1]))
     wanted = views.free_of_beam(sun[1], lambda far: far * grows)
     found = visible(any_engine, sketch)
@@ -228,7 +233,7 @@ def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, stride)
 
 @pytest.mark.parametrize("sun", SUNS[:3], ids=str)
 def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engine, lit, sun):
-    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, stride=0.5, growth="per step", **GRID)
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, step_length=0.5, growth="per step", **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, 0.5)
     wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
     np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=5e-4)
@@ -513,7 +518,7 @@ def test_night_is_the_widest_cone_with_a_gain_of_1(any_engine, lit):
 LAMP = {
     "sun": (0, -10),
     "lamp_gain": 2.0,
-    "reach": 200.0,
+    "max_distance": 200.0,
     "lamp_height": 100.0,
     "lamp_colour": (1.0, 0.5, 0.25),
 }

@@ -76,7 +76,7 @@ def test_a_paraboloid_has_its_curvature_everywhere(cover, bend, expected):
     bowl = (
         f"dot(vec2(texel) - vec2(40.0, 52.0), vec2(texel) - vec2(40.0, 52.0)) * 25.0 * {bend / 1000 / 2 / 10}"
     )
-    given = "by_curvature = true, curvature_from = 2, curvature_fade = 2, reach = 40"
+    given = "by_curvature = true, curvature_from = 2, curvature_fade = 2, curvature_distance = 40"
     found = cover(given, bowl, size=81, extent=400.0, relief=10.0)
     # Where any of the four lines fits; in the corners, within the reach of two edges, none does.
     inside = np.ones((81, 81), bool)
@@ -87,7 +87,8 @@ def test_a_paraboloid_has_its_curvature_everywhere(cover, bend, expected):
 
 
 def test_a_saddle_and_a_plane_bend_neither_up_nor_down(cover):
-    given = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5, curvature_fade = 0.2, reach = 20"
+    given = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5"
+    given += ", curvature_fade = 0.2, curvature_distance = 20"
     saddle = "(float(texel.x) - 40.0) * (float(texel.y) - 40.0) * 0.0004"
     assert cover(given, saddle, size=81, extent=400.0)[6:-6, 6:-6].min() > 0.99
     assert cover(given, "float(texel.x) * 0.03 + float(texel.y) * 0.02", size=81, extent=400.0).min() > 0.99
@@ -95,7 +96,7 @@ def test_a_saddle_and_a_plane_bend_neither_up_nor_down(cover):
 
 def test_hollows_and_crests_part_a_wavy_land(cover):
     waves = "0.5 + 0.5 * sin(6.2831853 * float(texel.x) / 32.0)"
-    given = "by_curvature = true, curvature_fade = 0.5, reach = 20"
+    given = "by_curvature = true, curvature_fade = 0.5, curvature_distance = 20"
     more = {"size": [129, 9], "extent": [1280.0, 80.0], "relief": 50.0}
     hollows = cover(f"{given}, curvature_from = 1", waves, **more)[4]
     crests = cover(f"{given}, curvature_from = -20, curvature_to = -1", waves, **more)[4]

@@ -1,4 +1,4 @@
-"""One tile of details on every part of a land, its seams mended layer by layer, against NumPy.
+"""One tile of details on every part of a land, its seams removed layer by layer, against NumPy.
 
 The truth makes a tile that knows nothing of its neighbours, and mends it afterwards: the
 layer's last interval before a seam is drawn anew, from its first column to the neighbour's.
@@ -45,14 +45,14 @@ def drawn_anew(layer, intervals):
     side = layer.shape[1]
     start = (intervals - 1) * side // intervals
     part = curve((np.arange(start, side) - start) / (side - 1 - start))
-    mended = layer.copy()
-    mended[:, start:] = layer[:, [start]] * (1 - part) + layer[:, [0]] * part
-    return mended
+    removed = layer.copy()
+    removed[:, start:] = layer[:, [start]] * (1 - part) + layer[:, [0]] * part
+    return removed
 
 
 @pytest.fixture
 def tile_of(python_random):
-    def make(size, tiles, frequency, octaves, persistence, mended=True, left_out=0):
+    def make(size, tiles, frequency, octaves, persistence, removed=True, left_out=0):
         """Return the sum of the layers on one part, divided by their weights."""
         width, height = (-(-(side - 1) // tiles) + 1 for side in size)
         total, weights = 0.0, 0.0
@@ -65,7 +65,7 @@ def tile_of(python_random):
             layer = (
                 up @ python_random(*np.meshgrid(xs, ys), SEED + salt("generation/layered_noise")) @ across.T
             )
-            if mended and tiles > 1:
+            if removed and tiles > 1:
                 layer = drawn_anew(drawn_anew(layer, x_intervals).T, y_intervals).T
             total = total + persistence ** (k + 1) * layer
             weights += persistence ** (k + 1)
@@ -85,7 +85,7 @@ def laid(tile, size, tiles):
     return land
 
 
-@pytest.mark.parametrize("seams", ["mended", "left"])
+@pytest.mark.parametrize("seams", ["removed", "left"])
 @pytest.mark.parametrize(
     ("size", "tiles", "frequency", "octaves"),
     [(65, 2, 16, 1), (129, 4, 8, 2), (129, 8, 32, 1), (65, 4, 4, 3), (33, 8, 8, 1), (65, 1, 8, 2)],
@@ -96,7 +96,7 @@ def test_the_mixed_model_is_shape_and_tile(
 ):
     values = {"tiles": tiles, "frequency": frequency, "octaves": octaves, "persistence": 0.3}
     sketch = sketch_of("mixed_tiled", size, seams=seams, **values)
-    tile = tile_of((size, size), tiles, frequency, octaves, 0.3, seams == "mended")
+    tile = tile_of((size, size), tiles, frequency, octaves, 0.3, seams == "removed")
     weights = sum(0.3 ** (k + 1) for k in range(octaves))
     shape = engine.read(sketch, "land.shape").astype(np.float64)
     truth = (laid(tile, (size, size), tiles) * weights + shape) / (weights + 1)
@@ -105,7 +105,7 @@ def test_the_mixed_model_is_shape_and_tile(
     assert found.min() == 0 and found.max() == 1
 
 
-@pytest.mark.parametrize("seams", ["mended", "left"])
+@pytest.mark.parametrize("seams", ["removed", "left"])
 @pytest.mark.parametrize(
     ("size", "tiles", "frequency", "octaves"),
     [
@@ -123,7 +123,7 @@ def test_layered_noise_is_its_first_layer_and_tile(
 ):
     values = {"tiles": tiles, "frequency": frequency, "octaves": octaves, "persistence": 0.4}
     sketch = sketch_of("layered_noise_tiled", size, seams=seams, **values)
-    tile = tile_of(size, tiles, frequency, octaves, 0.4, seams == "mended", left_out=1)
+    tile = tile_of(size, tiles, frequency, octaves, 0.4, seams == "removed", left_out=1)
     weights = [0.4 ** (k + 1) for k in range(octaves)]
     shape = tile_of(size, 1, frequency, 1, 0.4)
     truth = (laid(tile, size, tiles) * sum(weights[1:]) + shape * weights[0]) / sum(weights)
@@ -176,9 +176,9 @@ def seam_breaks(engine, sketch_of, size, tiles, seams, **values):
 
 
 @pytest.mark.parametrize(("tiles", "frequency", "octaves"), [(2, 32, 1), (4, 32, 1), (8, 32, 1), (4, 8, 2)])
-def test_a_mended_seam_is_like_any_other_row_of_nodes(any_engine, sketch_of, tiles, frequency, octaves):
+def test_a_removed_seam_is_like_any_other_row_of_nodes(any_engine, sketch_of, tiles, frequency, octaves):
     values = {"frequency": frequency, "octaves": octaves, "persistence": 0.2}
-    ratios = seam_breaks(any_engine, sketch_of, 257, tiles, "mended", **values)
+    ratios = seam_breaks(any_engine, sketch_of, 257, tiles, "removed", **values)
     assert (ratios <= 1.1).all(), ratios
 
 

@@ -73,7 +73,7 @@ METHODS = [
     Method("cone 0.0046", "soft_cone", {**_ONE, "delta_r": 0.0046}, diameter=_wide(0.0046)),
     Method("cone 0.0046, sweep", "soft_cone", {**_SWEPT, "delta_r": 0.0046}, diameter=_wide(0.0046)),
     Method("sun disc", "sun_disc", _ONE, diameter=0.53),
-    Method("sun disc, stride 0.25", "sun_disc", {**_ONE, "stride": 0.25}, diameter=0.53),
+    Method("sun disc, step length 0.25", "sun_disc", {**_ONE, "step_length": 0.25}, diameter=0.53),
     Method("sun disc, sweep", "sun_disc", _SWEPT, diameter=0.53),
     Method("night", "night", _ONE, shadows=False, measured=False),
     Method("horizon sun, on its arc", "horizon_sun", _ON_ARC, arc="arc", diameter=0.53),
