@@ -1,7 +1,7 @@
 """Build the meshes that draws may ask for, by name.
 
 A closed registry: a sketch is data and cannot bring Python. A builder takes the draw's
-parameters that it declares, and nothing else, so that a mesh is kept while they stay.
+parameters that it declares, and nothing else, so that a mesh stays valid while they do not change.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def triangles(values: Mapping[str, int]) -> Mesh:
     return Mesh({"corner": corner.reshape(-1, 3)}, np.arange(3 * n, dtype=np.uint32))
 
 
-def land(values: Mapping[str, int]) -> Mesh:
+def terrain(values: Mapping[str, int]) -> Mesh:
     """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``tiles``.
 
     Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on top or 1 at the skirt's foot.
@@ -78,7 +78,7 @@ MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int
     "grid": (grid, {"grid": (2, 4097)}),
     "sheet": (sheet, {}),
     "triangles": (triangles, {"count": (1, 2**20)}),
-    "land": (land, {"detail": (0, len(lod.DETAILS) - 1), "grid": (2, 4097)}),
+    "land": (terrain, {"detail": (0, len(lod.DETAILS) - 1), "grid": (2, 4097)}),
 }
 """Name → (builder, the draw's parameters that it reads with their least and greatest).
 

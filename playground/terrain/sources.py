@@ -105,12 +105,12 @@ def _span(elevation: Elevation) -> tuple[float, float]:
 def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     elevation = _elevation(values)
     low, high = _span(elevation)
-    asked = _range(values, elevation)
+    metres = _range(values, elevation)
     relief = base = None
-    if asked is not None:
+    if metres is not None:
         codes = elevation.code_range or (low, high)
-        scale = (asked[1] - asked[0]) / ((codes[1] - codes[0]) or 1.0)
-        base, relief = asked[0] + (low - codes[0]) * scale, (high - low) * scale
+        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
     elif elevation.in_metres:
         base, relief = low, high - low
     return Terrain(elevation.size, elevation.extent, relief, base)

@@ -137,14 +137,21 @@ def test_there_are_commands_and_each_reason_is_still_needed():
     assert not unused
 
 
+@pytest.fixture(scope="module")
+def mesa_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a folder for Mesa's compiled shaders, which would else be in each test's own cache."""
+    return tmp_path_factory.mktemp("mesa")
+
+
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, mesa_cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Give a folder that is the present one, with caches and memories of its own."""
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("MESA_SHADER_CACHE_DIR", str(mesa_cache))
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
     return here
@@ -187,9 +194,9 @@ def furnish(folder: Path, command: str) -> None:
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
-    for land in ("land.png", "land.r16"):
-        if f"height.elevation={land}" in words:
-            assert cli.main(["export", "jacksboro", "--to", land]) == 0
+    for heightmap in ("land.png", "land.r16"):
+        if f"height.elevation={heightmap}" in words:
+            assert cli.main(["export", "jacksboro", "--to", heightmap]) == 0
     if "--replay" in words:
         (folder / "evening.jsonl").write_text(
             "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"

@@ -142,7 +142,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
             stored = np.asarray(image.convert("RGB")).astype(float)
         drawn = draw(engine, larger(picture.scene)).array[..., :3]
         assert stored.shape == drawn.shape
-        # Diagrams are stored as they are, lands nearly so.
+        # Diagrams are stored as they are, terrains nearly so.
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
@@ -285,8 +285,12 @@ def test_french_is_set_as_french_is():
 # ── the thesis's figures ─────────────────────────────────────────────────────
 
 
-def test_every_figure_of_the_thesis_has_its_pictures():
-    figures = thesis_figures()
+@pytest.fixture(scope="module")
+def figures():
+    return thesis_figures()
+
+
+def test_every_figure_of_the_thesis_has_its_pictures(figures):
     numbers = [figure.number for figure in figures]
     chapters = {"1": 36, "2": 9, "3": 11, "4": 8, "5": 15}
     assert numbers == [f"{c}.{n}" for c, most in chapters.items() for n in range(1, most + 1)]
@@ -295,8 +299,8 @@ def test_every_figure_of_the_thesis_has_its_pictures():
         assert figure.captions.keys() == {"en", "fr"}
 
 
-def test_a_figure_says_its_parameters_and_its_command():
-    figure = next(figure for figure in thesis_figures() if figure.number == "1.16")
+def test_a_figure_says_its_parameters_and_its_command(figures):
+    figure = next(figure for figure in figures if figure.number == "1.16")
     (drawn,) = figure.pictures
     assert drawn.command == "playground render diamond_square --shot figure-1-16"
     parameters = dict(drawn.parameters)

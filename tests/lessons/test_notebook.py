@@ -28,7 +28,8 @@ from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
 from playground.lessons.read import read_lesson
-from playground.lessons.scenes import Sketches
+
+from .conftest import SKETCHES
 
 NODE = shutil.which("node")
 WIDGET = Path(notebook_lesson.__file__).with_name("widget.js")
@@ -120,9 +121,8 @@ def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
 
 
 def test_every_slider_of_a_shipped_lesson_can_be_dragged():
-    sketches = Sketches()
     for name in lesson_files():
-        for block in read_lesson(name, "en", sketches).blocks:
+        for block in read_lesson(name, "en", SKETCHES).blocks:
             if isinstance(block, Figure):
                 keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_labels("en"))}
                 assert keys == set(block.sliders), (name, block.name)

@@ -90,8 +90,8 @@ class _Writer:
             yield "markdown", "\n\n".join(folded)
         elif isinstance(block, model.Question):
             choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
-            asked = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
-            yield "markdown", f"{asked}\n\n{self.folded('answer', block.answer)}"
+            question = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
+            yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
         elif isinstance(block, model.Exercise):
             yield "markdown", self.exercise(block)
         elif isinstance(block, model.Measure) and block.sentence:

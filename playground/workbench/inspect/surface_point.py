@@ -13,7 +13,7 @@ import numpy as np
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer, make_texture
 from playground.terrain.camera import Eye
-from playground.terrain.pick import walk_over
+from playground.terrain.pick import ray_over
 from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Ground:
         the answer in shares of the terrain's sides, east and north; the height as the texture has it.
         The context is the caller's to make current and to leave as it was.
         """
-        found = walk_over(eye, place, heights.size, extent)
+        found = ray_over(eye, place, heights.size, extent)
         if found is None:
             return None
         origin, way, entry, leave, steps = found
