@@ -28,7 +28,7 @@ PICTURES = {
 """Pictures that written pages show, and where they come from."""
 
 TECHNIQUES = "reference/techniques/"
-"""The folder of the catalogue; in the navigation it stands for all of its pages."""
+"""The folder of the catalogue; in the navigation it represents all of its pages."""
 
 _PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands.page,

@@ -29,9 +29,17 @@ def grid(values: Mapping[str, int]) -> Mesh:
 
     Attribute ``corner``: east and north, 0..1, and 0 on the terrain or 1 at the skirt's foot.
     """
-    n = values["grid"]
-    steps = np.linspace(0.0, 1.0, n, dtype=np.float32)
-    east, north = np.meshgrid(steps, steps)
+    corner, indices = skirted(np.linspace(0.0, 1.0, values["grid"], dtype=np.float32))
+    return Mesh({"corner": corner}, indices)
+
+
+def skirted(along: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Return a square grid with a skirt around it, its vertices at the places ``along`` each side.
+
+    Vertices (n, 3): east and north, and 0 on the terrain or 1 at the skirt's foot; indices, three a triangle.
+    """
+    n = len(along)
+    east, north = np.meshgrid(along, along)
     top = np.stack([east.ravel(), north.ravel(), np.zeros(n * n, np.float32)], axis=1)
     index = np.arange(n * n, dtype=np.uint32).reshape(n, n)
     a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
@@ -42,8 +50,7 @@ def grid(values: Mapping[str, int]) -> Mesh:
     low = np.arange(len(rim), dtype=np.uint32) + np.uint32(n * n)
     following = np.roll(np.arange(len(rim)), -1)
     wall = np.stack([rim, low, low[following], rim, low[following], rim[following]], axis=-1)
-    indices = np.concatenate([faces.ravel(), wall.ravel()]).astype(np.uint32)
-    return Mesh({"corner": np.concatenate([top, foot])}, indices)
+    return np.concatenate([top, foot]), np.concatenate([faces.ravel(), wall.ravel()]).astype(np.uint32)
 
 
 def sheet(values: Mapping[str, int]) -> Mesh:

@@ -89,25 +89,12 @@ def _elevation(values: Mapping[str, Value]) -> Elevation:
         return _read(str(path), content_hash(path), size, packing, voids, first_row)
 
 
-def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
-    """Return the metres that the file's lowest and highest codes stand for, if anything says."""
-    low, high = values["metres"] if isinstance(values["metres"], tuple) else (0.0, 0.0)
-    if low != high:
-        return float(low), float(high)
-    return None
-
-
-def _span(elevation: Elevation) -> tuple[float, float]:
-    """Return the numbers of the file that become heights 0 and 1."""
-    return elevation.lowest, elevation.highest
-
-
 def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     elevation = _elevation(values)
-    low, high = _span(elevation)
-    metres = _range(values, elevation)
+    low, high = elevation.lowest, elevation.highest
+    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
-    if metres is not None:
+    if isinstance(metres, tuple) and metres[0] != metres[1]:
         codes = elevation.code_range or (low, high)
         scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
         base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
@@ -118,8 +105,7 @@ def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
 
 def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
     elevation = _elevation(values)
-    low, high = _span(elevation)
-    span = high - low
+    low, span = elevation.lowest, elevation.highest - elevation.lowest
     with _memory_explained(Path(str(values["elevation"]))):
         heights = (
             (elevation.heights - np.float32(low)) / np.float32(span)

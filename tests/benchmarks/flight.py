@@ -1,4 +1,4 @@
-"""Fly over the shipped land for a while and print what it costs: ``python tests/benchmarks/flight.py``.
+"""Fly over the shipped terrain for a while and print what it costs: ``python tests/benchmarks/flight.py``.
 
 A picture is 640 x 360 (``--size W H``) at one sample, as in a window that the processor draws. Parts are made
 in stages beside the pictures, as there.

@@ -29,7 +29,7 @@ from playground.sketch.model import Camera, Sketch
 
 SIZE = (1280, 720)
 
-LAND = """format = 1
+TERRAIN = """format = 1
 size = {size}
 extent = 2560.0
 relief = 470.0
@@ -83,7 +83,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--land", type=int, default=1025, help="texels a side of the land (default 1025)")
+    parser.add_argument("--land", type=int, default=1025, help="texels a side of the terrain (default 1025)")
     parser.add_argument("--frames", type=int, default=9, help="frames to time (default 9)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
@@ -93,7 +93,7 @@ def main() -> None:
         software = engine.info.software
     kind = 1 if software else 0
     full = times["full"][kind]
-    table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, land of {options.land}²")
+    table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, terrain of {options.land}²")
     for heading in ("a frame of 1280 x 720", "median", "of all cores", "over the first", "limit"):
         table.add_column(heading)
     for name, (what, limit) in WHAT.items():
@@ -105,11 +105,11 @@ def main() -> None:
 
 WHAT = {
     "full": ("one pass over the screen, six textures a pixel", ""),
-    "splat land": ("view/splat, its draw of the land, mesh of 257²", ""),
-    "coarse land": ("the same, mesh of 65²: larger triangles", ""),
-    "tiled land": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
-    "multipass land": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
-    "baked land": ("view/terrain, its draw, the same layers baked to 1025²", ""),
+    "splat terrain": ("view/splat, its draw of the terrain, mesh of 257²", ""),
+    "coarse terrain": ("the same, mesh of 65²: larger triangles", ""),
+    "tiled terrain": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
+    "multipass terrain": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
+    "baked terrain": ("view/terrain, its draw, the same layers baked to 1025²", ""),
     "splat": ("view/splat, whole frame", ""),
     "tiled": ("view/splat, whole frame by geomipmap at 1 pixel", "2 x"),
     "multipass": ("view/splat_multipass, whole frame", "beside splat"),
@@ -121,7 +121,7 @@ WHAT = {
 def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
     """Write and load the sketch of every row, and say which of its passes is timed ("" for the frame)."""
     (folder / "screen.glsl").write_text(FULL)
-    head = LAND.format(size=size) + TILES
+    head = TERRAIN.format(size=size) + TILES
 
     def made(name: str, text: str) -> Sketch:
         path = folder / f"{name}.toml"
@@ -135,11 +135,11 @@ def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
     baked = made("baked", head + BAKED + VIEW.format("view/terrain", 257))
     return {
         "full": (made("full", head + FULL_PASS), "screen"),
-        "splat land": (splat, "view.land"),
-        "coarse land": (coarse, "view.land"),
-        "tiled land": (tiled, "view.land"),
-        "multipass land": (many, "view.fourth"),
-        "baked land": (baked, "view.land"),
+        "splat terrain": (splat, "view.land"),
+        "coarse terrain": (coarse, "view.land"),
+        "tiled terrain": (tiled, "view.land"),
+        "multipass terrain": (many, "view.fourth"),
+        "baked terrain": (baked, "view.land"),
         "splat": (splat, ""),
         "tiled": (tiled, ""),
         "multipass": (many, ""),
@@ -167,7 +167,7 @@ def measure(
             else:
                 engine.draw(moved, size=SIZE)
             engine.ctx.finish()
-            if turn >= 2:  # the first runs make the land and compile
+            if turn >= 2:  # the first runs make the terrain and compile
                 spent = time.perf_counter() - start, time.process_time() - busy
                 times[name].append((spent[0] * 1e3, spent[1] * 1e3))
     return {

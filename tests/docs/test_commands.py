@@ -194,9 +194,9 @@ def furnish(folder: Path, command: str) -> None:
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
-    for land in ("land.png", "land.r16"):
-        if f"height.elevation={land}" in words:
-            assert cli.main(["export", "jacksboro", "--to", land]) == 0
+    for heightmap in ("land.png", "land.r16"):
+        if f"height.elevation={heightmap}" in words:
+            assert cli.main(["export", "jacksboro", "--to", heightmap]) == 0
     if "--replay" in words:
         (folder / "evening.jsonl").write_text(
             "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"

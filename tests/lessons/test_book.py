@@ -142,7 +142,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
             stored = np.asarray(image.convert("RGB")).astype(float)
         drawn = draw(engine, larger(picture.scene)).array[..., :3]
         assert stored.shape == drawn.shape
-        # Diagrams are stored as they are, lands nearly so.
+        # Diagrams are stored as they are, terrains nearly so.
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 

@@ -145,7 +145,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
 
 @pytest.mark.parametrize("rules", WAYS, ids=["equal", "random", "wide"])
 @pytest.mark.parametrize("points", [0, 1, 60, 2000])
-def test_areas_sum_to_the_land_and_none_is_turned(rules, points):
+def test_areas_sum_to_the_terrain_and_none_is_turned(rules, points):
     made = triangulate(replace(rules, points=points))
     areas = twice_areas(made)
     assert len(areas) == 2 * points + 2

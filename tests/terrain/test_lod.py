@@ -82,7 +82,7 @@ def test_a_tile_s_quarters_are_its_finest_triangles():
 
 
 def mesh_edges(chosen: tiles.Chosen) -> Counter:
-    """Count the directed edges of everything chosen, by their ends' nodes in the whole land."""
+    """Count the directed edges of everything chosen, by their ends' nodes in the whole terrain."""
     edges: Counter = Counter()
     start = 0
     for piece, count in chosen.runs:
@@ -185,7 +185,7 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
     assert (at[visible] >= np.broadcast_to(depths, visible.shape)[visible] * (1 - 1e-6)).all()
 
 
-def test_looking_at_one_corner_leaves_most_of_the_land_out():
+def test_looking_at_one_corner_leaves_most_of_the_terrain_out():
     view = view_of(Camera(45.0, 50.0, 60.0, (20.0, 20.0, 100.0)))
     assert sight.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).seen(view).mean() < 0.2
 
@@ -229,7 +229,7 @@ def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
     assert lod.tiles_at(np.zeros((2, 2), int), around, view).runs
 
 
-def test_flat_land_takes_two_triangles_a_tile_at_no_tolerance_at_all():
+def test_flat_terrain_takes_two_triangles_a_tile_at_no_tolerance_at_all():
     view = far_view()
     tables = {"spans": np.zeros((3, 4, 2), np.float32), "errors": np.zeros((3, 4, 4), np.float32)}
     chosen = lod.geomipmap({"tolerance": 0.0}, tables, view)

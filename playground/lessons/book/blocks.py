@@ -204,11 +204,10 @@ def _question(block: model.Question, setting: Setting) -> Markup:
 
 
 def _exercise(block: model.Exercise, setting: Setting) -> Markup:
-    names = [each.name for each in setting.lesson.blocks if isinstance(each, model.Exercise)]
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
     return setting.titled(
         block,
-        f"{setting.label('exercise')} {names.index(block.name) + 1}",
+        f"{setting.label('exercise')} {setting.lesson.number_of(block)}",
         setting.prose(block.ask),
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
         setting.folded("solution", setting.prose(block.solution), *pictures),

@@ -100,8 +100,7 @@ class _Writer:
 
     def exercise(self, block: model.Exercise) -> str:
         """Return an exercise, its solution folded away."""
-        others = [one.name for one in self.lesson.blocks if isinstance(one, model.Exercise)]
-        parts = [f"### {self.label('exercise')} {others.index(block.name) + 1}", self.text(block.ask)]
+        parts = [f"### {self.label('exercise')} {self.lesson.number_of(block)}", self.text(block.ask)]
         if block.hint:
             parts.append(self.folded("hint", block.hint))
         parts.append(self.folded("solution", block.solution))
