@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
-from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.errors import ParameterError, PlaygroundError
 from playground.paths import shown as shown_path
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.assign import TERRAIN_KEYS
@@ -38,7 +38,7 @@ from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken
 from playground.workbench.history import applied, changes_between, edits_of, state_of
 from playground.workbench.pending import Change, Choice, choice_of
-from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error
+from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error, refusal
 from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
 
@@ -327,11 +327,11 @@ class Drafts:
         report = self._checks.sandbox.poll() if self._checks.sandbox is not None else None
         if report is None:
             return
-        # Without a context the sandbox can check nothing; this one may well have what it takes.
-        if report.ok or isinstance(report.error, ContextError):
+        error = refusal(report)
+        if error is None:
             self.stage, self.sandbox_seconds = ReloadStage.DRAW, report.seconds
         else:
-            self.failed(report.error or PlaygroundError("the sandbox failed without saying why"))
+            self.failed(error)
 
     def _submit(self, sandbox: Sandbox, sketch: Sketch) -> None:
         sandbox.submit(TrySketch(sketch, time=self._checks.sketch_time(), drivers=(self._checks.driver,)))
