@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
-from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.errors import ParameterError, PlaygroundError
 from playground.paths import shown as shown_path
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.assign import TERRAIN_KEYS
@@ -38,7 +38,7 @@ from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken
 from playground.workbench.history import applied, changes_between, edits_of, state_of
 from playground.workbench.pending import Change, Choice, choice_of
-from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error
+from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error, refusal
 from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
 
@@ -93,6 +93,7 @@ class Drafts:
         self.started = 0.0  # when what is coming began to be read
         self.sandbox_seconds = 0.0  # [s] that the sandbox took for it
         self.reads = 0  # how often what is shown was replaced by what its files say now
+        self.read_edits = Edits()  # those left when that was done last, without what was chosen meanwhile
         self.sandboxed = checks.sandbox is not None
         self._checks = checks
         self._drawn = drawn
@@ -249,6 +250,7 @@ class Drafts:
         assert self.coming is not None
         if self.shown is None or self.shown.file is not self.coming.file:
             self.reads += 1
+            self.read_edits = (self._saved or self.coming).edits
         self.shown, self.opening = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
@@ -256,9 +258,10 @@ class Drafts:
 
     def failed(self, error: Exception) -> None:
         """Report why what is coming cannot be shown; where it is more than one thing, check the rest."""
-        found = explained(error, self.path)
-        if self._choices and (self._saved is not None or len(self._choices) > 1):
-            self._leave_out(found.diagnostics[0].message, [self._choices.pop()])
+        found, checked = explained(error, self.path), [c for c in self._choices if c.chosen]
+        if checked and (self._saved is not None or len(checked) > 1):
+            self._choices.remove(checked[-1])
+            self._leave_out(found.diagnostics[0].message, checked[-1:])
             self._propose(self._coming_notes)
         else:
             self.stage, self._check_error = ReloadStage.FAILED, found
@@ -280,7 +283,7 @@ class Drafts:
                 self._choices.append(choice)
             except PlaygroundError as error:
                 self._leave_out(error.diagnostics[0].message, [choice])
-        if draft is None or not (self._saved or self._choices):
+        if draft is None or not (self._saved or any(choice.chosen for choice in self._choices)):
             self._drop_coming()
             return
         self.coming, self._coming_notes = draft, notes
@@ -324,11 +327,11 @@ class Drafts:
         report = self._checks.sandbox.poll() if self._checks.sandbox is not None else None
         if report is None:
             return
-        # Without a context the sandbox can check nothing; this one may well have what it takes.
-        if report.ok or isinstance(report.error, ContextError):
+        error = refusal(report)
+        if error is None:
             self.stage, self.sandbox_seconds = ReloadStage.DRAW, report.seconds
         else:
-            self.failed(report.error or PlaygroundError("the sandbox failed without saying why"))
+            self.failed(error)
 
     def _submit(self, sandbox: Sandbox, sketch: Sketch) -> None:
         sandbox.submit(TrySketch(sketch, time=self._checks.sketch_time(), drivers=(self._checks.driver,)))
@@ -458,13 +461,16 @@ class Drafts:
             self.shown = edited
             self._saved = saved or self._saved
         if is_new or (choice.chosen and coming is not None):
-            left = [other for other in self._choices if not other.keys <= choice.keys]
-            overlaps = any(other.chosen.keys() & choice.chosen.keys() for other in left)
-            self._choices = [*left, choice] if is_new or overlaps else left
+            if not is_new:  # it takes back what is being checked
+                self._choices = [other for other in self._choices if not other.keys <= choice.keys]
+            self._choices.append(choice)
             self._begin(choice.use or self.path.name)
             self._propose(self._coming_notes)
         elif self._is_checked:
             self.coming = changed
+            if any(other.keys & choice.keys for other in self._choices):  # it comes after them
+                left = [other for other in self._choices if other.chosen or not other.keys <= choice.keys]
+                self._choices = [*left, choice]
         return True
 
     def _is_new(self, shown: Draft, edited: Draft) -> bool:

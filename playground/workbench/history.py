@@ -98,11 +98,22 @@ class History:
         """Give the next change a name, for one that its parts would not explain."""
         self._name = name
 
-    def look(self, edits: Edits, steps: Mapping[str, int], of: int, *, held: bool, now: float) -> None:
+    def look(
+        self,
+        edits: Edits,
+        steps: Mapping[str, int],
+        of: int,
+        *,
+        held: bool,
+        now: float,
+        read: Edits | None = None,
+        rests: bool = False,
+    ) -> None:
         """Take in the state at the end of a frame.
 
-        ``of`` counts how often the files were read: another number is a reload. ``held``: a mouse
-        button is down. ``now``: seconds of any clock.
+        ``of`` counts how often the files were read: another number is a reload, which left the edits
+        ``read``. ``held``: a mouse button is down. ``now``: seconds of any clock. ``rests``: nothing
+        is being checked, so that an undo which has not come by now never will: it is no longer done.
         """
         if self._open and not held:
             self._close()
@@ -110,14 +121,22 @@ class History:
         before, self._state = self._state, self._state if seen == self._seen else state_of(edits, steps)
         assert self._state is not None
         self._seen = seen
-        if before is None or of != self._of:
-            self._of = of
+        if before is not None and of != self._of:
+            before = state_of(edits if read is None else read, steps)
+        self._of = of
+        if before is None:
             return
         changed = {key for key in {*before, *self._state} if before.get(key) != self._state.get(key)}
         for key in list(changed):
             if key in self._due and self._due[key] == self._state.get(key):
                 del self._due[key]
                 changed.discard(key)
+        if rests and self._due:
+            missed = {key: value for key, value in self._due.items() if self._state.get(key) != value}
+            self._due = {}
+            if any(kind == "technique" for kind, _ in missed):
+                before = {**before, **missed}
+                changed |= missed.keys()
         if changed:
             after = {key: self._state.get(key) for key in changed}
             self._add({key: before.get(key) for key in changed}, after, held=held, now=now)
@@ -144,7 +163,7 @@ class History:
         if not apply(wanted):
             return False
         self.done, self._open = self.done + by, False
-        self._due |= wanted
+        self._due |= {key: value for key, value in wanted.items() if key[0] not in (KEYFRAMES, "time")}
         return True
 
     def saved(self, before: State) -> None:

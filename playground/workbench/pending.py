@@ -15,7 +15,7 @@ Change = Callable[[Draft], Draft]
 
 @dataclass(frozen=True)
 class Choice:
-    """One choice that waits for its check, with what else the same action sets."""
+    """One change of the user, and what of it has to be checked."""
 
     change: Change
     keys: frozenset[Key]  # all that it sets
@@ -38,8 +38,6 @@ class Choice:
 
 def choice_of(change: Change, before: Edits, after: Edits) -> Choice:
     """Return a change with what it sets; ``chosen`` is empty where that needs no check."""
-    if before.techniques == after.techniques and not _texts(before) ^ _texts(after):
-        return Choice(change, frozenset(), {})
     old, new = changes_between(before, after)
     chosen = {
         key: value
@@ -47,8 +45,3 @@ def choice_of(change: Change, before: Edits, after: Edits) -> Choice:
         if key[0] == "technique" or isinstance(value, str) or isinstance(old[key], str)
     }
     return Choice(change, frozenset(new), chosen)
-
-
-def _texts(edits: Edits) -> set[tuple[str, object]]:
-    """Return the edited values that are text, as the name of a file is, with their paths."""
-    return {(path, value) for path, value in edits.values if isinstance(value, str)}

@@ -11,6 +11,7 @@ from playground.workbench.history import KEYFRAMES, History, State, applied, edi
 from playground.workbench.inspect.time_range import stepped, toggle_loop
 from playground.workbench.notices import Notices
 from playground.workbench.painting import Painting
+from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 from playground.workbench.sketch_file import SketchFile
 
@@ -51,8 +52,10 @@ class Undo:
         """Record what has changed since the last call; ``held``: a mouse button is down."""
         session, self.held = self.session, held
         if session.shown is not None:
-            edits, now = session.shown.edits, self.notices.now()
-            self.history.look(edits, session.view.steps, session.drafts.reads, held=held, now=now)
+            edits, drafts, now = session.shown.edits, session.drafts, self.notices.now()
+            steps, read = session.view.steps, drafts.read_edits
+            rests = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
+            self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, rests=rests)
 
     @contextmanager
     def step(self, name: str) -> Iterator[None]:

@@ -146,10 +146,7 @@ class Watcher:
             watch_filter=None,
         )
         for batch in batches:
-            if batch:
-                self._look({Path(path) for _, path in batch})
-            else:
-                self._look()
+            self._look({Path(path) for _, path in batch} or None)
             if self._stop.is_set() or _identities(folders) != identities:
                 return
 
@@ -198,16 +195,12 @@ def _identities(folders: Iterable[Path]) -> dict[Path, int]:
 
 def _hash(path: Path) -> bytes:
     """Return a hash of a file's contents; empty when it cannot be read."""
-    digest = hashlib.blake2b(digest_size=16)
     for _ in range(3):
         try:
             with path.open("rb") as handle:
-                while block := handle.read(1 << 20):
-                    digest.update(block)
-            return digest.digest()
+                return hashlib.file_digest(handle, "blake2b").digest()
         except FileNotFoundError:
             return b""
         except OSError:  # another program holds it just now (Windows)
             time.sleep(0.02)
-            digest = hashlib.blake2b(digest_size=16)
     return b""
