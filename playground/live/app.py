@@ -166,7 +166,7 @@ def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
 
 
 class Live:
-    """The window, the session and the watcher, frame by frame."""
+    """Runs the frames of a window: wait, read saved files, draw the interface, draw the sketch."""
 
     def __init__(
         self,
@@ -207,7 +207,7 @@ class Live:
         self.lessons = Lessons(self.bench, autosave, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
-        """Go on until the window is closed, or so many seconds have passed."""
+        """Run frames until the window is closed, or for a limited time [s]."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.guard.run("watching the files", self.follower.follow, None)
         while self._stays_open():
@@ -250,7 +250,7 @@ class Live:
         self.session.engine.release()
 
     def recover(self) -> None:
-        """Build everything anew in a new context, after the driver took the old one."""
+        """Rebuild everything in a new context, after the driver lost the old one."""
         driver = self.session.engine.driver
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
@@ -338,7 +338,7 @@ class Live:
         return picture
 
     def _take_in(self) -> None:
-        """Take in what the picture, or the error in its place, has brought."""
+        """Update the watches, the notices and the list of errors from the last frame."""
         bench, session = self.bench, self.session
         self.finite.update(session, held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         self.caching.update(bench.inspection, self.finite)
@@ -383,7 +383,7 @@ class Live:
             self.painter.paint(picture, window.screen, area)
 
     def _follow_up(self) -> None:
-        """Do what waits for a moment without anything else to do."""
+        """Do what may wait until the frame is shown: driver warnings, the status, the lessons."""
         rests = self._settling == 0 and not self.session.drafts.testing
         if rests:
             self.warnings.look()
@@ -403,7 +403,7 @@ class Live:
             return ()
 
     def _say_reload(self) -> None:
-        """Say so when a save has become a picture."""
+        """Show a notice when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
             if self._reloads is not None and self.lessons.reader.figure.before_lesson is None:

@@ -74,7 +74,7 @@ def ask_to_close(editing: Editing, files: OpenFiles) -> None:
 
 
 def stay(files: OpenFiles) -> None:
-    """Answer every question about what is not saved by leaving all as it is."""
+    """Dismiss every question about unsaved changes; nothing is saved or closed."""
     files.leaving = False
     for editing in files.editing:
         view = _view_of(editing)
@@ -181,7 +181,7 @@ def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
 
 
 def _mark(editing: Editing, view: _View, problems: Problems) -> None:
-    """Mark the lines that are wrong."""
+    """Mark the lines that have diagnostics."""
     mine = tuple(d for d in problems.all if d.file and d.line and path_named(d.file) == editing.text.path)
     if mine == view.marked:
         return
@@ -217,7 +217,7 @@ def _question(title: str, text: str, answers: Sequence[tuple[str, str]]) -> str:
 
 
 def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
-    """Ask what is to become of all that is not saved, when the whole window is to close."""
+    """Ask whether to save unsaved files before the window closes."""
     answers = [("Save and quit", ""), ("Quit", ""), ("Stay", "")]
     answer = _question(_LEAVING, f"Not saved: {', '.join(unsaved(files.editing))}", answers)
     if not answer:
@@ -231,7 +231,7 @@ def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
 
 
 def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
-    """Ask what is to become of changes that cannot just be saved; return False to close the file."""
+    """Ask about a clash, or about closing with unsaved changes; return False to close the file."""
     if view.clash:
         answer = _question(_CLASH, view.clash, _CLASH_ANSWERS)
         try:
@@ -271,6 +271,6 @@ def _reload(editing: Editing, view: _View) -> None:
 
 
 def _replace(editor: text_edit.TextEditor, text: str) -> None:
-    """Put another text in, so that it can be undone."""
+    """Replace the text as one step that can be undone."""
     editor.select_all()
     editor.replace_text_in_current_cursor(text)

@@ -20,7 +20,7 @@ _NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time bet
 
 
 class Clicks:
-    """The left button's. ``before_poll`` and ``after_poll`` are called around each wait for events."""
+    """Records presses of the left button; ``before_poll`` and ``after_poll`` surround each wait."""
 
     def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
         self._now = now
@@ -29,15 +29,15 @@ class Clicks:
         self._doubles: deque[bool] = deque()  # presses that imgui has not come to, oldest first
 
     def before_poll(self) -> None:
-        """Take note that GLFW is about to be polled for events."""
+        """Record when GLFW is about to be polled for events."""
         self._poll_start = self._now()
 
     def after_poll(self) -> None:
-        """Take note that it has reported all events."""
+        """Record when it has reported all events."""
         self._poll_end = self._now()
 
     def press(self) -> None:
-        """Take note that the button went down."""
+        """Record a press of the button."""
         now = self._now()
         waited_for = now - self._poll_start > _AT_ONCE
         earliest = now if waited_for else self._poll_end
@@ -45,12 +45,12 @@ class Clicks:
         self._pressed = now
 
     def double_click_time(self) -> float:
-        """Return what imgui is to take in its next frame for the longest time between two clicks [s]."""
+        """Return the longest time between two clicks [s] that imgui uses in its next frame."""
         if not self._doubles:
             return APART
         return _ALWAYS if self._doubles[0] else _NEVER
 
     def handled(self) -> None:
-        """Take note that imgui has come to the oldest press."""
+        """Forget the oldest press, which imgui has handled."""
         if self._doubles:
             self._doubles.popleft()

@@ -52,7 +52,7 @@ def _open(bench: Bench) -> Iterator[Layer]:
 
 
 def _close_popup(bench: Bench) -> None:
-    """Close the innermost popup; one that asks something is answered by leaving all as it is."""
+    """Close the innermost popup; a question in it is dismissed."""
     stay(bench.files)
     depth = len(imgui.get_current_context().open_popup_stack)
     imgui.internal.close_popup_to_level(max(depth - 1, 0), True)

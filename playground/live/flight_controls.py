@@ -24,7 +24,7 @@ def by_keys(held: Collection[str]) -> Controls:
 
 
 def by_mouse(across: float, down: float, height: float) -> Controls:
-    """Return what a mouse asks for that went so far [pixels] since its button went down; down is nose up."""
+    """Return the controls for a drag of the mouse [pixels] since its button went down; down is nose up."""
     if height <= 0:
         return Controls()
     full = FULL * height
@@ -32,19 +32,19 @@ def by_mouse(across: float, down: float, height: float) -> Controls:
 
 
 class Wheel:
-    """The mouse's wheel as a throttle: a notch is held for some steps, for it takes no time itself."""
+    """The mouse wheel as a throttle: a notch is held for ``NOTCH`` steps."""
 
     def __init__(self) -> None:
         self._owed = 0.0  # steps, with the sign of their way
 
     def scroll(self, notches: float) -> None:
-        """Take in so many notches; one the other way ends what is left."""
+        """Add notches; one in the other direction cancels what is left."""
         if notches * self._owed < 0:
             self._owed = 0.0
         self._owed += notches * NOTCH
 
     def next(self) -> Controls:
-        """Return what the next step is to do."""
+        """Return the controls of the next step."""
         if abs(self._owed) < 1:
             self._owed = 0.0
             return Controls()
@@ -54,7 +54,7 @@ class Wheel:
 
 
 def by_gamepad(axes: Sequence[float]) -> Controls:
-    """Return what a gamepad asks for.
+    """Return the controls of a gamepad.
 
     ``axes`` as GLFW's standard mapping has them: left stick across and down, right stick
     across and down, left and right trigger, all -1..1. The left stick back is nose up; the
@@ -69,7 +69,7 @@ def by_gamepad(axes: Sequence[float]) -> Controls:
 
 
 def together(*controls: Controls) -> Controls:
-    """Return what several ask for at once."""
+    """Return the sum of several controls, within their range."""
     sums = (sum(axis) for axis in zip(*(h.values for h in controls), strict=True))
     return Controls(*sums).within()
 

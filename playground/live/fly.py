@@ -143,7 +143,7 @@ class Fly:
         self._written = 0.0
 
     def run(self, time_limit: float | None = None) -> None:
-        """Go on until the window is closed, or so many seconds have passed."""
+        """Run frames until the window is closed, or for a limited time [s]."""
         end = math.inf if time_limit is None else time.perf_counter() + time_limit
         while self.window.open and time.perf_counter() < end:
             busy = self.flight.changing or (self.saves is not None and self.saves.waits)
@@ -182,7 +182,7 @@ class Fly:
         self._write_status()
 
     def _take_saves(self) -> None:
-        """Go on over what was saved, once its parts are made; until then time is paused."""
+        """Switch to what was saved, once its parts are made; until then time is paused."""
         saves, flight = self.saves, self.flight
         if saves is None:
             return
@@ -206,7 +206,7 @@ class Fly:
         return max(round(size[0] * share), 1), max(round(size[1] * share), 1)
 
     def _fly(self, passed: float) -> None:
-        """Fly as many steps as time has passed, or as many as a slow machine may."""
+        """Fly the steps of the time that has passed, at most ``MOST_STEPS``."""
         self._owed = min(self._owed + passed, MOST_STEPS * STEP)
         controls = self._controls() if self.replay is None else Controls()
         while self._owed >= STEP:
@@ -223,7 +223,7 @@ class Fly:
             self.flight.step(moment, 0)
 
     def _record(self, moment: Moment) -> None:
-        """Write a step down; where that fails, say so and fly on."""
+        """Record a step; where that fails, show so and fly on."""
         if self.recorder is None:
             return
         try:
@@ -254,7 +254,7 @@ class Fly:
         return None
 
     def _take_keys(self) -> None:
-        """Do what was pressed since the last frame; each once."""
+        """Act on each key pressed since the last frame, once."""
         pressed = _pressed()
         pad = self._gamepad()
         if pad is not None:
@@ -293,14 +293,14 @@ class Fly:
         self.window.zoom = self.size.size
 
     def _leave(self) -> None:
-        """Close the help; else pause. Nothing quits by a slip: in flight Ctrl and Q are controls."""
+        """Close the help; else pause. Esc never quits: in flight Ctrl and Q are controls."""
         if self.instruments.help:
             self.instruments.help = False
         else:
             self.paused = True
 
     def _write_status(self) -> None:
-        """Add a line for a test that follows, at most twenty a second."""
+        """Append a line of status, at most twenty a second."""
         now = time.perf_counter()
         if self._status is None or now - self._written < _WRITES:
             return

@@ -40,7 +40,7 @@ class Guard:
                 imgui.internal.error_recovery_try_to_recover_state(before)
 
     def run(self, part: str, act: Callable[[], Result], otherwise: Result) -> Result:
-        """Do a part that draws nothing; return ``otherwise`` where it fails."""
+        """Run a part that draws nothing; return ``otherwise`` where it fails."""
         try:
             return act()
         except Exception as error:
@@ -48,7 +48,7 @@ class Guard:
             return otherwise
 
     def _report(self, part: str, error: Exception) -> None:
-        """Put a failure on the screen, and once, with its traceback, on the terminal."""
+        """Show a failure on the screen, and log it once, with its traceback."""
         sentence = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
         self._say(sentence)
         if sentence not in self._reported:
@@ -58,7 +58,7 @@ class Guard:
 
 @contextmanager
 def _without_complaint() -> Iterator[None]:
-    """Have imgui end what is open without raising, printing or showing anything."""
+    """Let imgui end what is open without raising, printing or showing anything."""
     io = imgui.get_io()
     names = [f"config_error_recovery_enable_{way}" for way in ("assert", "debug_log", "tooltip")]
     before = {name: getattr(io, name) for name in names}

@@ -87,7 +87,7 @@ class Instruments:
         return "\n".join(lines)
 
     def _draw_error(self, error: PlaygroundError, theme: Theme, room: ImVec2) -> None:
-        """Write what is wrong in what was saved along the upper edge, its first lines."""
+        """Write the first lines of a save's error along the upper edge."""
         lines = str(error).split("\n")
         more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
         text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"

@@ -105,7 +105,7 @@ def _shift_held() -> bool:
 
 
 def act_on_keys(bench: Bench) -> None:
-    """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu.
+    """Act on the keys pressed since the last frame, unless they belong to a text field or a menu.
 
     Two belong to neither: Esc, unless it leaves the field itself, and what quits.
     """

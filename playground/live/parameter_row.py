@@ -100,7 +100,7 @@ class Rows:
         self.memory.entry_text = write(item.parameter, self.values.of[item.path])
 
     def _is_typing(self, item: Item) -> bool:
-        """Take in a click on a widget; return whether it opens a field to type in.
+        """Handle a click on a widget; return whether it opens a field to type in.
 
         The first click of a double click has moved the slider already: that is undone.
         """

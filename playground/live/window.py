@@ -137,7 +137,7 @@ class Window:
         glfw.set_window_should_close(self._handle, False)
 
     def wait(self, seconds: float) -> None:
-        """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
+        """Sleep until an event or a call of ``wake``, at most ``seconds``; then handle the events."""
         self._clicks.before_poll()
         if seconds <= 0:
             glfw.poll_events()

@@ -89,12 +89,15 @@ class Bare:
         self.clipboard = text
 
     def run_frames(
-        self, count: int = 1, around: Callable[[Callable[[], object]], object] | None = None
+        self,
+        count: int = 1,
+        around: Callable[[Callable[[], object]], object] | None = None,
+        step: float = 1 / 60,
     ) -> None:
-        """Draw frames; ``around`` is given the drawing of the panel, to measure it."""
+        """Draw frames, one every ``step`` [s]; ``around`` receives what draws the panel, to measure it."""
         for _ in range(count):
-            self.time += 1 / 60
-            imgui.get_io().delta_time = 1 / 60
+            self.time += step
+            imgui.get_io().delta_time = step
             self.picture = self.session.frame((48, 32))
             imgui.new_frame()
             if around is None:
@@ -127,7 +130,10 @@ class Bare:
             self.press(True, button)
             self.press(False, button)
         self.places.clear()
-        self.run_frames(2 if times > 1 else 25)  # the next click is no double one
+        if times > 1:
+            self.run_frames(2)
+        else:
+            self.run_frames(4, step=0.11)  # the next click is no double one
 
     def drag(self, label: str, start: float, end: float) -> None:
         """Drag from one share of a widget's width to another."""
@@ -139,7 +145,7 @@ class Bare:
             imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
             self.run_frames()
         self.press(False)
-        self.run_frames(60)
+        self.run_frames(4, step=0.25)
 
     def key(self, *keys: imgui.Key) -> None:
         """Press keys together, and let them go."""

@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.lessons import library
 from playground.lessons.document import read_document
+from playground.lessons.scenes import Sketches
 from playground.lessons.translate import write_hashes
 from playground.live.code_window import draw_code
 from playground.live.inspect.timeline import height_of_timeline
@@ -25,6 +26,8 @@ FILE = (GLSL / "generation/diamond_square/raw.glsl").resolve()
 """The shader that the lesson quotes and breaks."""
 OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 """The reader's own sketch."""
+SHIPPED = Sketches()
+"""The shipped sketches that lessons show; no test changes them, so each is loaded once."""
 ENGLISH = r"""+++
 number  = 1
 title   = "Halving"
@@ -258,6 +261,7 @@ class Desk(Bare):
             self._watch(imgui, name)
         self.autosave = Autosave(self.session, memory_of(self.session.path))
         self.lessons = Lessons(self.bench, self.autosave, lambda: self.autosave.look(size))
+        self.reader._catalogue._sketches = SHIPPED
         self.bench.interface.panel_shown = True
 
     @property

@@ -204,7 +204,7 @@ def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: C
         dict(engine.times),
     )
     again = Inspector(session)
-    assert again.at((30, 20), picture) == under and under is not None and under.spot is not None
+    assert again.at((30, 20), picture) == under and under is not None and under.ground is not None
     inspector.release()
     again.release()
 

@@ -33,7 +33,8 @@ def theme() -> Iterator[Theme]:
 def constants(path: Path) -> Iterator[str]:
     """Yield the texts in a module that are not documentation, unless all of them are ASCII."""
     source = path.read_text(encoding="utf-8")
-    if source.isascii() and not re.search(r"\\[uUxN]", source):
+    code = re.sub(r"^\s*#.*$", "", source, flags=re.MULTILINE)
+    if code.isascii() and not re.search(r"\\[uUxN]", code):
         return
     tree = ast.parse(source)
     docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}

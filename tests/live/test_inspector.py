@@ -113,25 +113,27 @@ def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
             assert found is not None and found.picture == tuple(colours[SIZE[1] - 1 - y, x, :3])
             place = (x + 0.5) / SIZE[0], (y + 0.5) / SIZE[1]
             truth = ground_under(session.plan.eye, place, heights, (1600.0, 1200.0), 300.0)
-            assert (truth is None) == (found.spot is None)
-            if truth is None or found.spot is None:
+            assert (truth is None) == (found.ground is None)
+            if truth is None or found.ground is None:
                 continue
             met += 1
-            assert math.dist((found.spot.east, found.spot.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
+            assert (
+                math.dist((found.ground.east, found.ground.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
+            )
             for sample in found.samples:
                 values = whole[sample.name]
                 if values is None:
                     continue
-                share = found.spot.east / 1600, found.spot.north / 1200
+                share = found.ground.east / 1600, found.ground.north / 1200
                 assert sample.texel == (round(share[0] * 64), round(share[1] * 48))
                 assert list(sample.values) == np.atleast_1d(values[sample.texel[::-1]]).tolist()
             i, j = found.samples[0].texel
             rise_y, rise_x = np.gradient(heights.astype(np.float64) * 300.0, 25.0)
             steep = math.hypot(rise_x[j, i], rise_y[j, i])
-            assert found.spot.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
+            assert found.ground.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
             normal = np.array([-rise_x[j, i], -rise_y[j, i], 1.0])
-            np.testing.assert_allclose(found.spot.normal, normal / np.linalg.norm(normal), atol=1e-12)
-            assert found.spot.above_sea == found.spot.height + 120.0
+            np.testing.assert_allclose(found.ground.normal, normal / np.linalg.norm(normal), atol=1e-12)
+            assert found.ground.above_sea == found.ground.height + 120.0
             assert found.samples[0].metres == found.samples[0].values[0] * 300.0
     assert met > 40
     assert dict(engine.runs) == runs and session.draws == draws  # nothing was drawn for it
@@ -169,9 +171,9 @@ def test_the_light_of_another_size_is_read_at_its_own_node(session: Session, ins
     picture = session.frame((32, 24))
     assert picture is not None
     found = inspector.at((8, 12), picture)
-    assert found is not None and found.shown is not None and found.spot is not None
+    assert found is not None and found.shown is not None and found.ground is not None
     assert found.shown.texel == (8, 12)
-    assert found.spot.east == pytest.approx(1600 * 8 / 31)
+    assert found.ground.east == pytest.approx(1600 * 8 / 31)
     high = next(r for r in found.samples if r.name == "height:height")
     assert high.texel == (round(64 * 8 / 31), round(48 * 12 / 23))
 

@@ -125,10 +125,10 @@ def _proves_good() -> bool:
 
 @contextmanager
 def _as_american() -> Iterator[None]:
-    """Let the C library find a locale en_US.UTF-8, which MicroTeX asks for by that name.
+    """Provide a locale en_US.UTF-8 to the C library, which MicroTeX requires by that name.
 
     On Linux it is only there where somebody has made it. The plain one of Unicode has the same
-    character classes; MicroTeX asks once, and keeps what it was given.
+    character classes; MicroTeX looks it up once.
     """
     locales = Path("/usr/lib/locale")
     plain = next((p for p in (locales / "C.utf8", locales / "C.UTF-8") if p.is_dir()), None)

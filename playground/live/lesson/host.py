@@ -13,7 +13,7 @@ from playground.workbench.lesson.reader import Reader
 
 
 class Lessons:
-    """One window's; ``remember`` takes in what is shown, for the next start."""
+    """The lessons of one window; ``remember`` stores what is shown, for the next start."""
 
     def __init__(self, bench: Bench, autosave: Autosave, remember: Callable[[], None]) -> None:
         file = progress_file()
@@ -39,7 +39,7 @@ class Lessons:
         return self._panel.draw(self.reader, look)
 
     def update(self, *, idle: bool) -> None:
-        """Take in what a frame has brought; ``idle``: there is time to compute."""
+        """Update the reader after a frame; ``idle``: there is time to compute."""
         if self.reader.figure.before_lesson is None:  # what a lesson sets is not the reader's
             self._remember()
         self.reader.update(idle=idle)

@@ -24,7 +24,7 @@ TEXT = theme.TEXT_SIZE + 1.0
 
 @dataclass
 class Page:
-    """One frame's."""
+    """What the blocks of a page are drawn with, in one frame."""
 
     reader: Reader
     lesson: Lesson
@@ -44,13 +44,13 @@ class Page:
             self.prose.draw(filled, self.look, size=size, ink=ink)
 
     def label(self, text: str, rgb: theme.Rgb = theme.ACCENT) -> None:
-        """Write what a block is."""
+        """Write a block's label."""
         with self.look.font(self.look.bold, theme.SMALL):
             imgui.text_colored(theme.colour(rgb), text)
 
     @contextmanager
     def frame(self, name: str, rgb: theme.Rgb = theme.LINE) -> Iterator[None]:
-        """Set off what is drawn inside by a bar on its left."""
+        """Draw the block inside with a bar on its left."""
         scale = self.look.scale
         with pushed_id(name):
             top = imgui.get_cursor_screen_pos()

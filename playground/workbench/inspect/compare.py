@@ -82,7 +82,7 @@ class Compare:
 
     @property
     def stored(self) -> Stored | None:
-        """A itself, to be taken up again later."""
+        """A itself, to be restored later by ``resume``."""
         return self._stored
 
     @property
@@ -93,38 +93,38 @@ class Compare:
     # ── storing, swapping ────────────────────────────────────────────────────
 
     def toggle(self) -> None:
-        """Keep what is shown as A, or let A go."""
+        """Store what is shown as A, or end the comparison."""
         if self.on:
             self.end()
         else:
             self.keep()
 
     def keep(self) -> None:
-        """Take what is shown for A."""
+        """Store what is shown as A."""
         self._set(self._now())
 
     def resume(self, stored: Stored) -> None:
-        """Compare with an A that was stored before; it is let go where another sketch is open by now."""
+        """Compare with an A that was stored before; it ends where another sketch is open by now."""
         self._set(stored)
 
     def keep_state(self, draft: Draft, steps: Mapping[str, int]) -> None:
-        """Take another state of the sketch that is shown for A; it is drawn as B is shown."""
+        """Store another state of the shown sketch as A; it is drawn as B is shown."""
         now = self._now()
         if now is not None:
             self._set(replace(now, draft=draft, steps=dict(steps)))
 
     def end(self) -> None:
-        """Let A go."""
+        """End the comparison."""
         self._stored = None
         self.release()
 
     def back(self) -> None:
-        """Go on from A, which stays."""
+        """Restore A as the current state; it stays stored."""
         if self._stored is not None:
             self._take(self._stored)
 
     def swap(self) -> None:
-        """Go on from A, and take what was shown for A."""
+        """Exchange A and the current state."""
         now, before = self._now(), self._stored
         if before is not None and now is not None:
             self._take(before)
@@ -190,7 +190,7 @@ class Compare:
     # ── A's picture ──────────────────────────────────────────────────────────
 
     def follow(self, picture: moderngl.Texture) -> None:
-        """Bring A's picture to the size, camera and time of B's, which the session has just drawn."""
+        """Draw A's picture at the size, camera and time of B's, which the session has just drawn."""
         stored, session = self._stored, self.session
         if stored is None or session.awaits_data:
             return

@@ -107,7 +107,7 @@ def count(texture: moderngl.Texture, piece: int = PIECE, most: int = MOST) -> It
 
 @dataclass
 class _Sums:
-    """What is known of a channel so far; means are joined as Chan, Golub and LeVeque 1983 do it."""
+    """Running statistics of a channel; means are combined as in Chan, Golub and LeVeque 1983."""
 
     count: int = 0
     nans: int = 0
@@ -173,7 +173,7 @@ class Counter:
         return self.latest is not None and self._counted == self._of
 
     def go_on(self) -> None:
-        """Do a piece of the work; begin anew where other numbers are shown."""
+        """Count one more piece; restart where another texture, or a new version of it, is shown."""
         found = self._shown()
         if found is None:
             self.stop()

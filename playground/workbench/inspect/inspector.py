@@ -28,7 +28,7 @@ Pixel = tuple[int, int]
 
 @dataclass(frozen=True)
 class Sample:
-    """What one texture has at a place."""
+    """The texel of one texture at a place."""
 
     name: str  # "pass" or "pass:output"
     texel: tuple[int, int]
@@ -37,8 +37,8 @@ class Sample:
 
 
 @dataclass(frozen=True)
-class Spot:
-    """A place of the terrain."""
+class GroundPoint:
+    """A point of the terrain."""
 
     east: float  # [m] from the terrain's south-west corner
     north: float
@@ -49,12 +49,12 @@ class Spot:
 
 
 @dataclass(frozen=True)
-class Found:
-    """All that is known of a pixel."""
+class PixelReport:
+    """The textures and the terrain under a pixel."""
 
     pixel: Pixel
     picture: tuple[int, ...]  # the picture's own colour, 0..255, display-encoded
-    spot: Spot | None  # None: sky, or no terrain in the picture
+    ground: GroundPoint | None  # None: sky, or no terrain in the picture
     samples: tuple[Sample, ...]
     shown: Sample | None = None  # in a map: the texture that it shows
     missing: tuple[str, ...] = ()  # passes that this picture was made without
@@ -62,7 +62,7 @@ class Found:
 
 @dataclass
 class Inspector:
-    """What lies under the mouse in one session."""
+    """Reads the textures under the mouse in one session."""
 
     session: Session
     on: bool = False
@@ -70,13 +70,13 @@ class Inspector:
     reads: int = 0  # how often anything was read
     _ground: Ground | None = None
     _key: object = None
-    _found: Found | None = field(default=None, repr=False)
+    _found: PixelReport | None = field(default=None, repr=False)
 
     def toggle(self) -> None:
-        """Look closely, or no longer."""
+        """Switch the inspector on or off."""
         self.on = not self.on
 
-    def at(self, pixel: Pixel, picture: moderngl.Texture) -> Found | None:
+    def at(self, pixel: Pixel, picture: moderngl.Texture) -> PixelReport | None:
         """Return what is under a pixel of the picture; None outside it, and while new data is checked.
 
         ``picture`` is what the session's last ``frame`` returned.
@@ -100,43 +100,45 @@ class Inspector:
             self._ground.release()
         self._ground = self._key = None
 
-    def _look(self, pixel: Pixel, picture: moderngl.Texture) -> Found:
+    def _look(self, pixel: Pixel, picture: moderngl.Texture) -> PixelReport:
         session, plan = self.session, self.session.plan
         colour = read_texels(picture, pixel, (1, 1))[0, 0]
         bytes_ = tuple(round(float(c) * 255) for c in colour[:3])
         if plan is None:
-            return Found(pixel, bytes_, None, ())
+            return PixelReport(pixel, bytes_, None, ())
         if session.view.map is not None:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
         ref = view_height(plan)
         heights = self._texture(ref)
         extent, relief = plan.terrain.extent, plan.terrain.relief
         if heights is None or extent is None or relief is None or not session.orbits:
-            return Found(pixel, bytes_, None, ())
+            return PixelReport(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:
             self._ground = Ground(session.engine.ctx)
         place = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
         hit = self._ground.under(plan.eye, place, heights, extent, relief)
         if hit is None:
-            return Found(pixel, bytes_, None, ())
+            return PixelReport(pixel, bytes_, None, ())
         samples, missing = self._samples(plan, hit[:2])
-        return Found(pixel, bytes_, spot_of(plan, heights, hit), samples, None, missing)
+        return PixelReport(pixel, bytes_, ground_point_of(plan, heights, hit), samples, None, missing)
 
-    def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
+    def _look_at_map(
+        self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]
+    ) -> PixelReport:
         assert self.session.view.map is not None
         ref = self.session.view.map.ref
         shown = self._texture(ref)
         texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
         if shown is None or texel is None:
-            return Found(pixel, colour, None, ())
+            return PixelReport(pixel, colour, None, ())
         share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
         heights = self._texture(view_height(plan))
-        spot = None
+        ground = None
         if heights is not None:
             high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
-            spot = spot_of(plan, heights, (*share, float(high)))
+            ground = ground_point_of(plan, heights, (*share, float(high)))
         samples, missing = self._samples(plan, share)
-        return Found(pixel, colour, spot, samples, self._sample(plan, ref, shown, texel), missing)
+        return PixelReport(pixel, colour, ground, samples, self._sample(plan, ref, shown, texel), missing)
 
     def _samples(self, plan: Plan, share: tuple[float, float]) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
@@ -183,7 +185,7 @@ def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) ->
     return int(place[0]), int(place[1])
 
 
-def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> Spot:
+def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> GroundPoint:
     """Return the terrain's place there; ``hit``: shares east and north, and the height between the texels.
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
@@ -203,7 +205,7 @@ def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, floa
     steep = math.hypot(*rise)
     long = math.hypot(steep, 1.0)
     high = hit[2] * terrain.relief
-    return Spot(
+    return GroundPoint(
         hit[0] * terrain.extent[0],
         hit[1] * terrain.extent[1],
         high,

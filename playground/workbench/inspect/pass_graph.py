@@ -23,7 +23,7 @@ _SWEEPS = 4
 
 @dataclass(frozen=True)
 class Wiring:
-    """A sketch's passes, and where they stand."""
+    """A sketch's passes as a graph with a layout."""
 
     refs: Mapping[str, str]  # each node's texture, "pass:output", by the node's path; in the order they run
     edges: tuple[Edge, ...]

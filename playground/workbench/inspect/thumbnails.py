@@ -25,7 +25,7 @@ _NO_NUMBER = (1.0, 0.0, 1.0)
 
 
 class Thumbnails:
-    """Those of one session's textures, by name."""
+    """The thumbnails of one session's textures, by name."""
 
     def __init__(self, session: Session) -> None:
         self.session = session

@@ -32,7 +32,7 @@ class Graph:
         self.thumbnails = Thumbnails(self.session)
 
     def toggle(self) -> None:
-        """Show the passes, or no longer."""
+        """Show or hide the passes."""
         self.on = not self.on
 
     def wiring(self, sketch: Sketch) -> Wiring:
@@ -58,7 +58,7 @@ class Graph:
 
 @dataclass
 class Inspection:
-    """What one session shows of itself."""
+    """The inspection tools of one session."""
 
     session: Session
     inspector: Inspector = field(init=False)
@@ -91,7 +91,7 @@ class Inspection:
         self.costs_shown = self.spread_shown = False
 
     def update(self) -> None:
-        """Take in the frame's picture; passes are timed only while their times are shown."""
+        """Record the costs of the last picture; passes are timed only while their times are shown."""
         session = self.session
         engine, before = session.engine, self._recorded
         if self.costs_shown and engine.profiling and session.draws != before and before >= 0:

@@ -37,7 +37,7 @@ WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
 
 @dataclass(kw_only=True)
 class Bugs:
-    """Those of one reader."""
+    """The bugs and edited copies of one reader."""
 
     session: Session
     notices: Notices

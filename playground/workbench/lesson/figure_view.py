@@ -44,7 +44,7 @@ class BeforeLesson:
 
 
 class FigureView:
-    """What one session shows for a lesson."""
+    """Shows the figures of a lesson in one session."""
 
     def __init__(self, undo: Undo, compare: Compare, begins: Callable[[], None] = lambda: None) -> None:
         self.session = undo.session
@@ -126,7 +126,7 @@ class FigureView:
             self._first = first
 
     def update(self) -> None:
-        """Take in what has become of the figure that was requested; once a frame."""
+        """Update the figure that was requested, once a frame."""
         session = self.session
         if self._compared is not None and not session.drafts.opening:
             self.compared_with.resume(self._compared)
@@ -184,7 +184,7 @@ class FigureView:
             self._histories[session.path] = self.undo.history, session.shown.edits
 
     def _compare(self) -> None:
-        """Have the picture that is shown parted by a line from the one it is compared with."""
+        """Compare the picture that is shown with the first of two, divided by a line."""
         first, self._first = self._first, None
         draft = self.session.shown
         if first is not None and draft is not None:
@@ -193,7 +193,7 @@ class FigureView:
             compare.keep_state(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
 
     def forget_figure(self) -> None:
-        """Give up the figure: what is shown is the reader's own from here on."""
+        """Forget the figure: what is shown is the reader's own from here on."""
         self.before_lesson = self.scene = self.key = self._first = None
         self._waits = False
         self.session.view.framed_for = DEFAULT_PICTURE

@@ -15,7 +15,7 @@ from playground.workbench.lesson.reader import Reader
 
 
 def follow(reader: Reader, address: str) -> None:
-    """Go where a link leads."""
+    """Open what a link names."""
     kind, _, name = address.partition(":")
     if kind == "lesson":
         reader.open(name)

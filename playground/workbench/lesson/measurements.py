@@ -15,7 +15,7 @@ Known = dict[str, Number]
 
 @dataclass
 class Numbers:
-    """What the measures of the lessons read so far came to."""
+    """The results of the measures of the lessons read so far."""
 
     session: Session
     known: dict[str, Known] = field(default_factory=dict)  # by lesson and measure
@@ -23,7 +23,7 @@ class Numbers:
     wanted: list[tuple[str, Measure]] = field(default_factory=list)
 
     def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
-        """Ask for all numbers that blocks of a lesson show."""
+        """Request all numbers that blocks of a lesson show."""
         names = {name for block in blocks for text in texts_of(block) for name in named_in(text)}
         names |= {block.name for block in blocks if isinstance(block, Measure)}
         found = self.known.setdefault(lesson.name, {})

@@ -16,13 +16,13 @@ from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, S
 from playground.lessons.read import Summary
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.bugs import Bugs
+from playground.workbench.lesson.catalogue import Catalogue
 from playground.workbench.lesson.figure_state import steps_of
 from playground.workbench.lesson.figure_view import FigureView, comparable
 from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.measurements import Numbers
 from playground.workbench.lesson.progress import Progress, progress_file, write_progress
 from playground.workbench.lesson.shader_copies import Copies
-from playground.workbench.lesson.shelf import Shelf
 from playground.workbench.text_file import unsaved
 
 _STEP, _VALUE = 0.8, 0.5
@@ -36,7 +36,7 @@ FigureBlock = Steps | Slider | Compare | Figure | Exercise
 
 @dataclass
 class Reader:
-    """One reader's."""
+    """The lesson, the page and the figure of one reader."""
 
     bench: Bench
     progress: Progress
@@ -61,7 +61,7 @@ class Reader:
             figure=self.figure,
             label=lambda key: labels_in(self.language)[key],
         )
-        self._shelf = Shelf(bench.notices.say)
+        self._catalogue = Catalogue(bench.notices.say)
         self._due = math.inf  # when what plays goes on
         self._hid = False  # the parameters' panel, to make room
 
@@ -88,7 +88,7 @@ class Reader:
     @property
     def summaries(self) -> list[Summary]:
         """All lessons, in their order."""
-        return self._shelf.listed(self.language)
+        return self._catalogue.listed(self.language)
 
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
         """Open a lesson, at the page where it was left; return whether that could be done.
@@ -100,7 +100,7 @@ class Reader:
         if language:
             self.progress.language = language
         try:
-            lesson = self._shelf.read(name, self.language, labels_in(self.language)["untranslated"])
+            lesson = self._catalogue.read(name, self.language, labels_in(self.language)["untranslated"])
         except PlaygroundError as error:
             self.bench.notices.say(str(error))
             return False
@@ -114,7 +114,7 @@ class Reader:
         return True
 
     def speak(self, language: str) -> None:
-        """Read on in another language."""
+        """Switch to another language."""
         if self.lesson is not None:
             self.open(self.lesson.name, language=language, show=False)
 
@@ -152,12 +152,12 @@ class Reader:
         return next((blocks[-1] for blocks in earlier if blocks), None)
 
     def turn_page(self, pages: int) -> None:
-        """Go so many pages on or back."""
+        """Go a number of pages forwards or backwards."""
         if self.lesson is not None and self.progress.shown:
             self.go(self.index + pages)
 
     def toggle(self) -> None:
-        """Show the panel, or no longer."""
+        """Show or hide the panel."""
         if self.lesson is None:
             self.open(show=False)
             return
@@ -176,7 +176,7 @@ class Reader:
         self._hid, self.bench.interface.panel_shown = self.bench.interface.panel_shown, False
 
     def remember(self) -> None:
-        """Write down where the reader is."""
+        """Store where the reader is."""
         complaint = write_progress(self.progress, self.file)
         if complaint:
             self.bench.notices.say(complaint)
@@ -252,7 +252,7 @@ class Reader:
     # ── frames ───────────────────────────────────────────────────────────────
 
     def update(self, *, idle: bool) -> None:
-        """Take in what a frame has brought; ``idle``: there is time to compute."""
+        """Update figures and series after a frame; ``idle``: there is time to compute."""
         self.figure.update()
         if self.lesson is None or not self.progress.shown:
             return

@@ -27,7 +27,7 @@ class Copy(OpenText):
 
     @property
     def kept(self) -> bool:
-        """Whether it is lost where it is not saved: a lesson has it again."""
+        """Whether unsaved changes must be saved: never, a lesson stores them."""
         return False
 
     def saved(self) -> str:
@@ -43,7 +43,7 @@ class Copy(OpenText):
         return False
 
     def save(self, text: str, *, over: bool = False) -> bool:
-        """Have the text drawn; the file stays as it is."""
+        """Draw the text; the file stays as it is."""
         self.base = text
         self.apply(text)
         return True

@@ -1,4 +1,4 @@
-"""The lessons that there are, as a reader finds them: by number, in a language, read when they are opened."""
+"""The catalogue of lessons: by number, in a language, read when they are opened."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from playground.lessons.scenes import Sketches
 
 
 @dataclass
-class Shelf:
-    """One window's; ``say`` reports what is wrong."""
+class Catalogue:
+    """The lessons of one window; ``say`` reports errors."""
 
     say: Callable[[str], None]
     _sketches: Sketches = field(default_factory=Sketches)
