@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.errors import DataError
-from playground.paths import GLSL, shown
+from playground.paths import GLSL
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Sketch, Technique
 from playground.sketch.source import read_source
@@ -59,7 +59,7 @@ class _Reread:
         root = self.folder if not path.is_relative_to(GLSL) else GLSL
         found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
         if found is None:
-            raise DataError("no kernel is left of this text", file=shown(path))
+            raise DataError("no kernel is left of this text", file=path)
         if kernel.kind == "compute":  # a compute variant has these of its technique
             return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
         return found
