@@ -121,18 +121,16 @@ def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | 
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
-    return _read(path, roots, instead or {})[0]
+    return read_source_and_origin(path, roots, instead)[0]
 
 
-def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceText, Origin]:
+def read_source_and_origin(
+    path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None
+) -> tuple[SourceText, Origin]:
     """Read a GLSL file as ``read_source`` does; return its files and texts as well."""
-    return _read(path, roots, {})
-
-
-def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tuple[SourceText, Origin]:
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve(), instead)
+    reader = _Reader(own, GLSL.resolve(), instead or {})
     reader.flatten(path, reader.read(path), (), (str(path),))
     codes = with_calls_joined([line.code for line in reader.lines])
     lines = tuple(
