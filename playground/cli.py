@@ -172,7 +172,7 @@ def _usage_message(error: Exception) -> str:
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)
     path = ctx.command_path if ctx is not None else "playground"
-    if text.startswith("No such command"):
+    if text.startswith("No such command") and ctx is not None:
         return _no_command(text.split("'")[1] if text.count("'") >= 2 else "", ctx)
     if not text:
         return f"something is missing; see {path} --help"
@@ -180,12 +180,13 @@ def _usage_message(error: Exception) -> str:
 
 
 def _no_command(name: str, ctx: Any) -> str:
-    if ctx is not None and ctx.parent is not None:
-        return f"no command '{name}' in {ctx.command_path}{nearest(name, ctx.command.list_commands(ctx))}"
+    hint = nearest(name, ctx.command.list_commands(ctx))
+    if ctx.parent is not None:
+        return f"no command '{name}' in {ctx.command_path}{hint}"
     if name in options.complete_sketch("") or Path(name).exists():
         shell = quoted(name)
         return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
-    return f"no command '{name}'{nearest(name, _COMMANDS)}"
+    return f"no command '{name}'{hint}"
 
 
 app.command("live", help=live.HELP)(live.live)
@@ -198,13 +199,8 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app, cache.app, variants.app)
-for _group in _GROUPS:
+for _group in (shots.app, lesson.app, cache.app, variants.app):
     app.add_typer(_group)
-_COMMANDS = (
-    *(str(command.name) for command in app.registered_commands),
-    *(str(group.info.name) for group in _GROUPS),
-)
 
 
 if __name__ == "__main__":

@@ -72,7 +72,7 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
         check_kernel_count(sketch.graph)
         return sketch
     except RecursionError:
-        raise SketchError("its tables or techniques nest too deeply", file=shown(path)) from None
+        raise SketchError("its tables or techniques nest too deeply", file=path) from None
 
 
 def is_technique(path: Path) -> bool:

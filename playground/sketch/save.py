@@ -18,7 +18,7 @@ from pathlib import Path
 
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.partial import partial_file
-from playground.paths import GLSL, shown
+from playground.paths import GLSL
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load, load_with
@@ -195,7 +195,7 @@ def _read(path: Path) -> str:
     try:
         return path.read_bytes().decode()
     except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"cannot be read: {error}", file=shown(path)) from None
+        raise DataError(f"cannot be read: {error}", file=path) from None
 
 
 def write_over(
@@ -210,14 +210,14 @@ def write_over(
     """
     path = path.resolve()  # a link stays a link: what it leads to is written
     if path.suffix != ".toml":
-        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=shown(path))
+        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=path)
     if path.is_relative_to(GLSL.resolve()):
-        raise ReadOnlySketch("this sketch belongs to the playground itself", file=shown(path))
+        raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
     if not os.access(path, os.W_OK) or not os.access(path.parent, os.W_OK):
-        raise ReadOnlySketch("this sketch cannot be written to", file=shown(path))
+        raise ReadOnlySketch("this sketch cannot be written to", file=path)
     text = _read(path)
     if not _same_text(load(path), file):
-        raise SketchError(_CHANGED, file=shown(path))
+        raise SketchError(_CHANGED, file=path)
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     new = mark + change(with_current_names(text.removeprefix(mark), file))
     if new == text:
@@ -228,16 +228,16 @@ def write_over(
         right = False
     if not right:
         message = "what was set cannot be written into this file; copy it as --set words instead"
-        raise SketchError(message, file=shown(path))
+        raise SketchError(message, file=path)
     try:
         with partial_file(path) as partial:
             partial.handle.write(new.encode())
             partial.path.chmod(stat.S_IMODE(path.stat().st_mode))
             if _read(path) != text:
-                raise SketchError(_CHANGED, file=shown(path))
+                raise SketchError(_CHANGED, file=path)
             partial.rename(path)
     except OSError as error:
-        raise DataError(f"cannot be written: {error.strerror}", file=shown(path)) from None
+        raise DataError(f"cannot be written: {error.strerror}", file=path) from None
 
 
 def _same_text(a: Sketch, b: Sketch) -> bool:

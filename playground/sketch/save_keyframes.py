@@ -19,7 +19,7 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import says_same_as, write_over
 from playground.sketch.save_values import written_number, written_so_far, written_value
-from playground.sketch.toml_edit import drop, newline_of, put, text_of
+from playground.sketch.toml_edit import append, drop, newline_of, put, text_of
 from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import shortest
 
@@ -61,13 +61,14 @@ def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
     blocks = [text[start:end] for start, end in spans]
     newline = newline_of(text)
     made = [
-        blocks[index] if index is not None else newline.join(_lines(file, keyframe)) + newline
+        blocks[index] if index is not None else _new_block(file, keyframe, newline)
         for keyframe, index in zip(wanted, before, strict=True)
     ]
-    if not spans:
-        head = text if text.endswith("\n") or not text else text + newline
-        return head + "".join(newline + block for block in made)
-    return _placed(text, spans, made, newline)
+    if spans:
+        return _placed(text, spans, made, newline)
+    for block in made:
+        text = append(text, block.splitlines())
+    return text
 
 
 def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
@@ -98,15 +99,10 @@ def _blocks(text: str) -> list[tuple[int, int]]:
             continue
         following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
         end = next((_above(text, s) for s in following), len(text))
-        body = text[start:end]
-        found.append((_above(text, start), start + len(body.rstrip()) + _line_end(body)))
+        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
+        line_end = text.find("\n", last, end)
+        found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
     return found
-
-
-def _line_end(body: str) -> int:
-    """Return how long the end of the last line that is not empty is."""
-    rest = body[len(body.rstrip()) :]
-    return rest.find("\n") + 1 if "\n" in rest else len(rest)
 
 
 def _above(text: str, start: int) -> int:
@@ -147,10 +143,9 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
     """Return the text with what differs between two keyframes written over in the first one's table."""
     if now.time != was.time:
         text = put(text, place, "time", repr(float(now.time)))
-    if now.ease != was.ease:
-        text = put(text, place, "ease", text_of(now.ease))
     cameras, values = dict(was.camera), dict(was.values)
-    for name, number in now.camera:
+    order = [part.name for part in fields(Camera)]
+    for name, number in sorted(now.camera, key=lambda pair: order.index(pair[0])):
         if name not in cameras or cameras[name] != number:
             text = put(text, (*place, "camera"), name, written_number(number))
     for name, value in now.values:
@@ -161,20 +156,10 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
         text = drop(text, (*place, "camera"), name)
     for name in values.keys() - dict(now.values).keys():
         text = drop(text, (*place, "set"), name)
-    return text
+    return text if now.ease == was.ease else put(text, place, "ease", text_of(now.ease))
 
 
-def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
+def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
     """Return a new keyframe as TOML writes it."""
-    lines = ["[[keyframe]]", f"time = {float(keyframe.time)!r}"]
-    given = dict(keyframe.camera)
-    if given:
-        order = [part.name for part in fields(Camera) if part.name in given]
-        pairs = ", ".join(f"{name} = {written_number(given[name])}" for name in order)
-        lines.append(f"camera = {{ {pairs} }}")
-    if keyframe.values:
-        pairs = ", ".join(f"{text_of(p)} = {written_value(file, p, v, '')}" for p, v in keyframe.values)
-        lines.append(f"set = {{ {pairs} }}")
-    if keyframe.ease != EASES[0]:
-        lines.append(f"ease = {text_of(keyframe.ease)}")
-    return lines
+    empty = Keyframe(-1.0, ease=EASES[0])
+    return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)

@@ -121,18 +121,16 @@ def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | 
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
-    return _read(path, roots, instead or {})[0]
+    return read_source_and_origin(path, roots, instead)[0]
 
 
-def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceText, Origin]:
+def read_source_and_origin(
+    path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None
+) -> tuple[SourceText, Origin]:
     """Read a GLSL file as ``read_source`` does; return its files and texts as well."""
-    return _read(path, roots, {})
-
-
-def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tuple[SourceText, Origin]:
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve(), instead)
+    reader = _Reader(own, GLSL.resolve(), instead or {})
     reader.flatten(path, reader.read(path), (), (str(path),))
     codes = with_calls_joined([line.code for line in reader.lines])
     lines = tuple(
@@ -150,23 +148,22 @@ def read_text(path: Path) -> str:
     try:
         state = path.stat()
         if not (stat.S_ISREG(state.st_mode) or stat.S_ISDIR(state.st_mode)):  # reading it may never end
-            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
+            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
         if state.st_size > _MAX_BYTES:
-            raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
+            raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=path)
         data = path.read_bytes()
         return normalised(data.decode())
     except FileNotFoundError:
-        raise SketchError("there is no such file", file=shown(path)) from None
+        raise SketchError("there is no such file", file=path) from None
     except IsADirectoryError:
-        raise SketchError("this is a folder; a file was expected", file=shown(path)) from None
+        raise SketchError("this is a folder; a file was expected", file=path) from None
     except UnicodeDecodeError as error:
         before = normalised(data[: error.start].decode()).split("\n")
         message = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-        file, line, column = shown(path), len(before), len(before[-1]) + 1
-        raise SketchError(message, file=file, line=line, column=column) from None
+        raise SketchError(message, file=path, line=len(before), column=len(before[-1]) + 1) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise SketchError(f"cannot be read: {reason}", file=shown(path)) from None
+        raise SketchError(f"cannot be read: {reason}", file=path) from None
 
 
 def normalised(text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError
 from playground.sketch.agreement import Bound
@@ -206,6 +207,10 @@ class Graph:
     @cached_property
     def _passes_by_name(self) -> dict[str, PassSpec]:
         return {spec.name: spec for spec in reversed(self.passes)}
+
+    def error(self, message: str, line: int = 0) -> SketchError:
+        """Return an error that points at a line of its TOML."""
+        return SketchError(message, file=Path(self.path), line=line)
 
     def find(self, name: str) -> PassSpec | None:
         """Return the pass of that name, if there is one."""

@@ -54,11 +54,11 @@ def nothing_to_run(path: Path) -> SketchError:
     """Return the error of a shader file that is opened alone and has nothing to run."""
     if path.suffix == ".glsl":
         message = "a library file: it has no #pragma kernel, source or draw to run"
-        return SketchError(message, file=shown(path))
+        return SketchError(message, file=path)
     message = "has neither a #version and main of its own nor a #pragma kernel"
     if "mainImage" in read_text(path):
         message += "; ShaderToy's mainImage needs a #version before it and a main that calls it"
-    return SketchError(message, file=shown(path))
+    return SketchError(message, file=path)
 
 
 def technique_beside(path: Path) -> Path | None:
@@ -76,7 +76,7 @@ def lonely_variant(path: Path) -> SketchError:
     """Return the error of a fast variant whose technique is missing."""
     name = path.name.removesuffix(".comp").removesuffix(".fast.toml")
     return SketchError(
-        f"a fast variant runs in place of {name}.glsl or {name}.toml, which is missing", file=shown(path)
+        f"a fast variant runs in place of {name}.glsl or {name}.toml, which is missing", file=path
     )
 
 
@@ -167,7 +167,7 @@ class Techniques:
 
     def _variant(self, path: Path, of: Technique, root: Path) -> Variant:
         if not is_inside(path, (root, GLSL)):
-            raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
+            raise SketchError("lies outside the sketch's own folder and glsl/", file=path)
         found: Technique
         if path.suffix == ".comp":
             found = _compute_variant(path, root, of)
@@ -201,9 +201,7 @@ def check_kernel_count(graph: Graph) -> None:
     """Raise ``SketchError`` for more kernels than any terrain needs: a few lines can nest millions."""
     count = _count(graph, {})
     if count > _MAX_KERNELS:
-        raise SketchError(
-            f"{count} passes with those inside; {_MAX_KERNELS} is the most", file=shown(graph.path)
-        )
+        raise graph.error(f"{count} passes with those inside; {_MAX_KERNELS} is the most")
 
 
 def _count(technique: Technique, known: dict[int, int]) -> int:
@@ -239,7 +237,7 @@ def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
     found = parsed_kernel(path.stem, path, (folder,))
     if found is None or found.kind != "compute":
         message = 'a .comp beside a kernel begins with #pragma compute(groups = "…", agrees = "…")'
-        raise SketchError(message, file=shown(path))
+        raise SketchError(message, file=path)
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
     return replaced(found, outputs=outputs, accepts=_accepts(of))
 

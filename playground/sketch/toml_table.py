@@ -48,9 +48,9 @@ class TomlFile:
         except tomllib.TOMLDecodeError as error:
             raise self._syntax(error, text) from None
         except RecursionError:
-            raise SketchError("not TOML: nested too deeply", file=shown(self.path)) from None
+            raise SketchError("not TOML: nested too deeply", file=self.path) from None
         except ValueError as error:  # a number of thousands of digits, a date that is none
-            raise SketchError(f"not TOML: {error}", file=shown(self.path)) from None
+            raise SketchError(f"not TOML: {error}", file=self.path) from None
 
     def _syntax(self, error: tomllib.TOMLDecodeError, text: str) -> SketchError:
         message = str(error)
@@ -58,11 +58,11 @@ class TomlFile:
         if place is None:
             last = text.count("\n") + 1
             message = f"not TOML: {message.split(' (at')[0]}"
-            return SketchError(message, file=shown(self.path), line=self._before + last)
+            return SketchError(message, file=self.path, line=self._before + last)
         line, column = map(int, place.groups())
         return SketchError(
             f"not TOML: {message[: place.start()]}",
-            file=shown(self.path),
+            file=self.path,
             line=self._before + line,
             column=column,
             excerpt=text.split("\n")[line - 1],
@@ -78,7 +78,7 @@ class TomlFile:
 
     def error(self, message: str, *place: str | int) -> SketchError:
         """Return an error that points at a place."""
-        return SketchError(message, file=shown(self.path), line=self.line(*place))
+        return SketchError(message, file=self.path, line=self.line(*place))
 
     def warn(self, message: str, *place: str | int) -> None:
         """Add a warning that points at a place."""

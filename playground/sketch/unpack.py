@@ -106,10 +106,12 @@ def read_pack(path: Path) -> Pack:
     try:
         with zipfile.ZipFile(path) as archive:
             entries = [e for e in archive.infolist() if not e.is_dir() and not _is_left_out(e.filename)]
-            _check(path, entries)
+            _check(entries, path.stat().st_size)
             files = {entry.filename: entry for entry in entries}
-            manifest = _manifest(path, archive, files)
+            manifest = _manifest(archive, files)
         digest = _digest(path)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from None
     except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error, EOFError) as error:
         raise DataError(f"is no zip that can be read: {_reason(error)}", file=path) from None
     missing = [name for name in manifest.shipped if not (GLSL / name).is_file()]
@@ -122,32 +124,32 @@ def read_pack(path: Path) -> Pack:
     return Pack(path, digest, manifest, {name: files[name] for name in files if name != MANIFEST})
 
 
-def _check(path: Path, entries: list[zipfile.ZipInfo]) -> None:
+def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
+    """Raise ``DataError`` for what is not safe to unpack; ``size`` is the zip's own, in bytes."""
     if not entries:
-        raise DataError("holds no file; expected a packed sketch", file=path)
+        raise DataError("holds no file; expected a packed sketch")
     if len(entries) > MOST_FILES:
-        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked", file=path)
-    whole, size = sum(e.file_size for e in entries), path.stat().st_size
+        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked")
+    whole = sum(e.file_size for e in entries)
     if sum(e.compress_size for e in entries) > size:
-        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked", file=path)
+        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
     if whole > MOST_BYTES or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
         raise DataError(
-            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack",
-            file=path,
+            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack"
         )
     names = set()
     for entry in entries:
-        _check_entry(path, entry)
+        _check_entry(entry)
         folded = entry.filename.casefold()  # some systems tell no capitals
         if folded in names:
-            raise DataError(f"holds '{entry.filename}' twice", file=path)
+            raise DataError(f"holds '{entry.filename}' twice")
         names.add(folded)
     for name in names:
         if any(folder.as_posix() in names for folder in PurePosixPath(name).parents):
-            raise DataError(f"'{_plain(name)}' lies in what is a file", file=path)
+            raise DataError(f"'{_plain(name)}' lies in what is a file")
 
 
-def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
+def _check_entry(entry: zipfile.ZipInfo) -> None:
     name, wrong = entry.filename, ""
     if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
         wrong = "is a link or a device; only plain files are unpacked"
@@ -162,7 +164,7 @@ def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
     ):
         wrong = "is no name that a file of a sketch may have; nothing was unpacked"
     if wrong:
-        raise DataError(f"'{_plain(name)}' {wrong}", file=path)
+        raise DataError(f"'{_plain(name)}' {wrong}")
 
 
 def _is_bad_part(part: str) -> bool:
@@ -178,35 +180,28 @@ def _plain(name: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in name)[:80]
 
 
-def _manifest(path: Path, archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
+def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
     """Return what the zip says of itself; of one that was made by the user, where its sketch is."""
     if MANIFEST not in files:
-        found = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
-        if len(found) == 1:
-            return Manifest(found[0])
-        what = f"{len(found)} of them" if found else "none"
+        sketches = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
+        if len(sketches) == 1:
+            return Manifest(sketches[0])
+        what = f"{len(sketches)} of them" if sketches else "none"
         raise DataError(
-            f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}",
-            file=path,
+            f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}"
         )
     if files[MANIFEST].file_size > _MOST_MANIFEST:
-        raise DataError(f"its {MANIFEST} is too large", file=path)
+        raise DataError(f"its {MANIFEST} is too large")
     try:
         table = read_json(archive.read(MANIFEST))
         if table["format"] != FORMAT:
-            raise DataError(
-                f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}", file=path
-            )
-        found_manifest = Manifest(
-            str(table["sketch"]), str(table["version"]), tuple(map(str, table["shipped"]))
-        )
+            raise DataError(f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}")
+        found = Manifest(str(table["sketch"]), str(table["version"]), tuple(map(str, table["shipped"])))
     except (ValueError, KeyError, TypeError) as error:
-        raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}", file=path) from None
-    if found_manifest.sketch not in files or found_manifest.sketch == MANIFEST:
-        raise DataError(
-            f"says that it opens '{_plain(found_manifest.sketch)}', and does not hold it", file=path
-        )
-    return found_manifest
+        raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
+    if found.sketch not in files or found.sketch == MANIFEST:
+        raise DataError(f"says that it opens '{_plain(found.sketch)}', and does not hold it")
+    return found
 
 
 def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:

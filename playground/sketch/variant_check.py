@@ -29,6 +29,8 @@ def check_shape(variant: Technique, of: Technique) -> None:
         _check_passes(variant, of, outputs)
     else:
         _check_compute(variant, outputs)
+    if wrong := _unbound(variant.agrees, outputs):
+        raise variant.error(wrong)
 
 
 def _check_compute(variant: Kernel, outputs: tuple[Output, ...]) -> None:
@@ -40,20 +42,16 @@ def _check_compute(variant: Kernel, outputs: tuple[Output, ...]) -> None:
         held = next((b.type for b in variant.buffers if b.name == output.name), "")
         if held and not (output.format.endswith("32f") and held in _HELD[output.components]):
             raise variant.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
-    if wrong := _unbound(variant.agrees, outputs):
-        raise variant.error(wrong)
 
 
 def _check_passes(variant: Graph, of: Technique, wanted: tuple[Output, ...]) -> None:
     found = outputs_with_formats(variant)
     if {(o.name, o.format) for o in found} != {(o.name, o.format) for o in wanted}:
         one, other = (", ".join(f"{o.name}:{o.format}" for o in some) for some in (found, wanted))
-        raise SketchError(f"gives {one}; {of.name} gives {other}", file=shown(variant.path))
-    if wrong := _unbound(variant.agrees, wanted):
-        raise SketchError(wrong, file=shown(variant.path))
+        raise variant.error(f"gives {one}; {of.name} gives {other}")
     if isinstance(of, Graph) and of.find(INSIDE):
         message = f"beside a fast variant no pass is named '{INSIDE}': that is where the variant's passes are"
-        raise SketchError(message, file=shown(of.path))
+        raise of.error(message)
 
 
 def _unbound(agrees: tuple[Bound, ...], outputs: tuple[Output, ...]) -> str:

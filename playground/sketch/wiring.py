@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.errors import SketchError, nearest
-from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError
@@ -96,7 +95,7 @@ def check_graph(graph: Graph) -> None:
             if "." not in target or not takes_input(graph, target):
                 valid = [f"{s.name}.{i}" for s in graph.passes for i in input_names(s.technique)]
                 message = f"input '{export.name}': nothing inside takes '{target}'{nearest(target, valid)}"
-                raise SketchError(message, file=shown(graph.path), line=export.line)
+                raise graph.error(message, export.line)
     for name, _ in graph.outputs:
         _leaf_output(graph, name)
     for spec in graph.passes:
@@ -105,7 +104,7 @@ def check_graph(graph: Graph) -> None:
 
 def _check_parameter(graph: Graph, export: Export) -> None:
     def wrong(message: str) -> SketchError:
-        return SketchError(f"{export.name}: {message}", file=shown(graph.path), line=export.line)
+        return graph.error(f"{export.name}: {message}", export.line)
 
     types: dict[str, str] = {}
     for target in export.targets:
@@ -160,7 +159,7 @@ def _leaf_output(graph: Graph, name: str) -> Output:
     technique = inner(graph, path)
 
     def wrong(message: str) -> SketchError:
-        return SketchError(f"output '{name}': {message}", file=shown(graph.path), line=graph.line)
+        return graph.error(f"output '{name}': {message}", graph.line)
 
     if technique is None:
         raise wrong(f"no pass '{path}' inside{nearest(path, [s.name for s in graph.passes])}")
