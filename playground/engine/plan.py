@@ -127,13 +127,10 @@ def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     wanted = {ref.path}
     found: list[PlanNode] = []
     for node in reversed(nodes):
-        if isinstance(node, Step):
-            if node.path in wanted:
-                found.append(node)
-                wanted.update([source.path for _, source in node.inputs if isinstance(source, Ref)])
-        elif not wanted.isdisjoint([step.path for step in walk(node.body)]):
+        inside = [node] if isinstance(node, Step) else walk(node.body)
+        if not wanted.isdisjoint([step.path for step in inside]):
             found.append(node)
-            wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+            wanted.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
     return found[::-1]
 
 

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
-from playground.gpu.own_shaders import own_part
-from playground.gpu.triangle import TRIANGLE
+from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 from playground.sketch.source import Line, SourceText
