@@ -162,7 +162,8 @@ class _KeyComputation:
             return
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
-        files = [self.content(Path(str(node.values[p.name]))) for p in kernel.file_parameters]
+        named = kernel.file_parameters
+        files = [self.content(Path(str(node.values[p.name]))) for p in named] if named else []
         reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
         known, written = self.before.get(path), repr(reads)
         if known is None or known.step is not node or known.reads != written:

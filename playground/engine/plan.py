@@ -88,9 +88,8 @@ class Plan:
     @cached_property
     def continued(self) -> frozenset[str]:
         """The paths of the draws that a later draw goes on from, with their samples and depth."""
-        draws = [step for step in self.walk() if step.kernel.kind == "draw"]
-        starts = [dict(step.inputs).get("initial") for step in draws]
-        return frozenset(start.path for start in starts if isinstance(start, Ref))
+        inputs = [each for step in self.walk() if step.kernel.kind == "draw" for each in step.inputs]
+        return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
 
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""
