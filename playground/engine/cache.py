@@ -96,7 +96,8 @@ class Cache:
         self._cached[key] = cached
         self._in_use.add(key)
         self._may_grow.add(key)
-        self.grew(key)
+        self._weigh(key)
+        self.trim()
 
     def grew(self, key: str) -> None:
         """Weigh what has grown; what is over the bounds goes."""

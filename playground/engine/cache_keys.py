@@ -25,6 +25,9 @@ from playground.sketch.reserved_names import TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
+_HEADER = ("kind", "outputs", "registry", "blend", "depth", "samples", "local", "buffers", "overwrites",
+           "aligned", "stages")  # fmt: skip
+"""The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 
 
@@ -94,16 +97,7 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
-    header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
-    header += [
-        kernel.samples,
-        kernel.local,
-        kernel.buffers,
-        kernel.overwrites,
-        kernel.aligned,
-        kernel.stages,
-        counts,
-    ]
+    header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
     header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))
@@ -168,7 +162,8 @@ class _KeyComputation:
             return
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
-        files = [self.content(Path(str(node.values[p.name]))) for p in kernel.file_parameters]
+        named = kernel.file_parameters
+        files = [self.content(Path(str(node.values[p.name]))) for p in named] if named else []
         reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
         known, written = self.before.get(path), repr(reads)
         if known is None or known.step is not node or known.reads != written:

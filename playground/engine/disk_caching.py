@@ -22,12 +22,11 @@ from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, PlanNode, Step, needed
-from playground.engine.results import Result
-from playground.gpu.textures import bytes_of, make_framebuffer
+from playground.gpu.textures import bytes_of, read_block
 from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
-    import moderngl
+    pass
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
@@ -185,9 +184,9 @@ class DiskCaching:
                         self._is_new = True  # another frame was made, and the texture may be another's by now
                         return
                     north = min(south + rows, result.size[1])
-                    whole[south * row : north * row] = _read_rows(
-                        source.runner.ctx, result, output.name, south, north
-                    )
+                    rows_here = (result.size[0], north - south)
+                    part = read_block(result.textures[output.name], (0, south), rows_here)
+                    whole[south * row : north * row] = part
                     yield
                 parts.append(memoryview(whole).toreadonly())
             outputs = tuple((o.name, o.format) for o in result.outputs)
@@ -195,14 +194,3 @@ class DiskCaching:
             self.store.write(
                 worth.key, CachedTextures(result.size, outputs, worth.cost, made_for, tuple(parts))
             )
-
-
-def _read_rows(ctx: moderngl.Context, result: Result, output: str, south: int, north: int) -> bytes:
-    """Return rows of a texture in its own kind of number."""
-    texture = result.textures[output]
-    framebuffer = make_framebuffer(ctx, [texture])
-    try:
-        viewport = (0, south, result.size[0], north - south)
-        return framebuffer.read(viewport, texture.components, alignment=1, dtype=texture.dtype)
-    finally:
-        framebuffer.release()

@@ -169,8 +169,8 @@ class Draws:
         kernel, given = job.step.kernel, job.given
         chooser = CHOOSERS[kernel.registry]
         wanted = ("clip_from_world", "eye", "extent", "relief")
-        missing = [name for name in wanted if name not in given]
-        missing += [name for name in chooser.parameters if name not in job.step.values]
+        known = {*given, *job.step.values}
+        missing = [name for name in (*wanted, *chooser.parameters) if name not in known]
         if missing:
             raise kernel.error(f"mesh '{kernel.registry}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T

@@ -98,8 +98,8 @@ class Kernels:
             for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         ]
-        for name in [i.name for i in kernel.inputs]:
-            texture = job.inputs.get(name, NOT_WIRED).texture
+        for declared in kernel.inputs:
+            name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
             if kernel.reads(f"{WIRED}{name}"):
                 choices.append((f"{WIRED}{name}", int(texture is not None)))
             if kernel.reads(f"{MATCHES}{name}"):

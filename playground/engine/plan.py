@@ -88,9 +88,8 @@ class Plan:
     @cached_property
     def continued(self) -> frozenset[str]:
         """The paths of the draws that a later draw goes on from, with their samples and depth."""
-        draws = [step for step in self.walk() if step.kernel.kind == "draw"]
-        starts = [dict(step.inputs).get("initial") for step in draws]
-        return frozenset(start.path for start in starts if isinstance(start, Ref))
+        inputs = [each for step in self.walk() if step.kernel.kind == "draw" for each in step.inputs]
+        return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
 
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""
@@ -127,13 +126,10 @@ def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     wanted = {ref.path}
     found: list[PlanNode] = []
     for node in reversed(nodes):
-        if isinstance(node, Step):
-            if node.path in wanted:
-                found.append(node)
-                wanted.update([source.path for _, source in node.inputs if isinstance(source, Ref)])
-        elif not wanted.isdisjoint([step.path for step in walk(node.body)]):
+        inside = [node] if isinstance(node, Step) else walk(node.body)
+        if not wanted.isdisjoint([step.path for step in inside]):
             found.append(node)
-            wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+            wanted.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
     return found[::-1]
 
 

@@ -12,8 +12,8 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
-from playground.gpu.triangle import TRIANGLE
 from playground.gpu.wrap import CORNER, with_choices, wrap
 from playground.sketch.model import Kernel
 

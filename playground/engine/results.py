@@ -28,11 +28,6 @@ class Surface:
     format: str
     samples: int  # 1: without multisampling
 
-    @property
-    def bytes(self) -> int:
-        """Bytes held."""
-        return (bytes_of(self.size, self.format) + 4 * self.size[0] * self.size[1]) * self.samples
-
     def release(self) -> None:
         """Release its framebuffer and renderbuffers."""
         self.framebuffer.release()
@@ -60,7 +55,10 @@ class Result:
         for output in self.outputs:
             each = bytes_of(self.size, output.format)
             total += each + (each // 3 if output.name in self.mipmapped else 0)
-        return total + (self.surface.bytes if self.surface else 0)
+        if (surface := self.surface) is not None:
+            width, height = surface.size
+            total += (bytes_of(surface.size, surface.format) + 4 * width * height) * surface.samples
+        return total
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
         """Return the framebuffer that draws to all of its textures."""

@@ -49,6 +49,13 @@ class Runner:
         self.painted = PaintedFiles() if painted is None else painted
         self.paint = PaintedTextures(ctx)
         self.before_step: Callable[[Step], None] | None = None  # called before each step runs
+        self._other_kinds: dict[str, Callable[[Job], Result]] = {  # than kernels
+            "source": self._source,
+            "draw": self.draws.run,
+            "compute": self.compute_variants.run,
+            "plain_fragment": self._plain,
+            "plain_compute": self._plain,
+        }
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
 
@@ -124,26 +131,17 @@ class Runner:
         given, samples = self.given_for(step), self._samples_for(step.kernel)
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
+        other = self._other_kinds.get(step.kernel.kind)
         try:
-            return self._run(job, driver)
+            return other(job) if other else self.kernels.run(job, driver)
         except DataError as error:
             raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
 
-    def _run(self, job: Job, driver: str) -> Result:
-        step = job.step
-        kind = step.kernel.kind
-        if kind == "source":
-            return self._source(step)
-        if kind == "draw":
-            return self.draws.run(job)
-        if kind == "compute":
-            return self.compute_variants.run(job)
-        if kind.startswith("plain"):
-            return self.kernels.plain(job, self._usual(step))
-        return self.kernels.run(job, driver)
+    def _plain(self, job: Job) -> Result:
+        return self.kernels.plain(job, self._usual(job.step))
 
-    def _source(self, step: Step) -> Result:
-        kind = source_kind(step.kernel.registry)
+    def _source(self, job: Job) -> Result:
+        step, kind = job.step, source_kind(job.step.kernel.registry)
         result = self.pool.take(step.size, step.kernel.outputs)
         painted = self._painted_for(step, kind)
         if painted is not None:

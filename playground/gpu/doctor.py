@@ -54,21 +54,10 @@ class Health:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        context = None
+        found = {"ok": self.ok, **asdict(self), "playground": __version__}
         if self.context is not None:
-            context = asdict(self.context)
-            context |= {"compute": self.context.compute, "software": self.context.software}
-        return {
-            "ok": self.ok,
-            "trouble": self.trouble,
-            "context": context,
-            "limits": self.limits,
-            "display": self.display,
-            "system": self.system,
-            "python": self.python,
-            "playground": __version__,
-            "packages": self.packages,
-        }
+            found["context"] |= {"compute": self.context.compute, "software": self.context.software}
+        return found
 
 
 def examine(*, software: bool = False, device: int | None = None) -> Health:

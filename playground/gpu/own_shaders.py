@@ -22,3 +22,7 @@ def own_shader(name: str) -> str:
 def own_part(part: str, **names: str) -> str:
     """Return the text of a part with its names filled in, without its last line's end."""
     return Template(own_shader(part)).substitute(names).rstrip("\n")
+
+
+TRIANGLE = own_shader("triangle.vert")
+"""The vertex shader of one triangle that covers a whole target: draw three vertices without a buffer."""

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
-from playground.gpu.own_shaders import own_part
-from playground.gpu.triangle import TRIANGLE
+from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
 from playground.sketch.source import Line, SourceText
@@ -66,9 +65,10 @@ def wrap(kernel: Kernel, driver: str) -> Wrapped:
     if kernel.kind == "compute":
         return _wrap_variant(kernel)
     if kernel.kind == "plain_fragment":
-        return Wrapped(
-            kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": _whole(kernel)}
-        )
+        version = version_line(kernel.source)
+        assert version is not None  # or it would be no plain shader
+        stages = {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
+        return Wrapped(kernel, FRAGMENT, stages)
     if kernel.kind == "plain_compute":
         return Wrapped(kernel, COMPUTE, {"compute": _whole(kernel)})
     _check_signature(kernel)
@@ -142,12 +142,6 @@ def _whole(kernel: Kernel) -> ShaderStage:
 def version_line(source: SourceText) -> Line | None:
     """Return the line of a plain shader that says its version; None for what has none."""
     return next((line for line in source.lines if _VERSION.match(line.code)), None)
-
-
-def _version(kernel: Kernel) -> str:
-    line = version_line(kernel.source)
-    assert line is not None  # or it would be no plain shader
-    return line.code.strip()
 
 
 def reads_unwired(kernel: Kernel) -> bool:

@@ -25,8 +25,8 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
     store = DiskCache(place())
     data = memoryview(bytes(256 * 256 * 4))
-    store.keep("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
-    store.keep("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
+    store.write("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
+    store.write("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
     store.close()
     os.utime(store._path("two"), (1e9, 1e9))
     (place() / "broken.land").write_bytes(b"x")
@@ -85,7 +85,7 @@ def test_the_bound_is_the_environments(
         monkeypatch.setenv("DISPLAY", ":0")
         assert cli.main(command) == 2
         assert capsys.readouterr().err == (
-            "error: PLAYGROUND_CACHE=plenty: expected a size, as 500M or 2G, or 0 to keep nothing\n"
+            "error: PLAYGROUND_CACHE=plenty: expected a size, as 500M or 2G, or 0 to cache nothing\n"
         )
 
 

@@ -123,7 +123,7 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def cached(tmp_path: Path) -> set[str]:
-    return {each.kept.made_for for each in listed(tmp_path / "land") if each.kept}
+    return {each.textures.made_for for each in listed(tmp_path / "land") if each.textures}
 
 
 def test_a_session_reopens_without_running_the_terrain(desk: Desk, tmp_path: Path) -> None:
@@ -224,7 +224,7 @@ def test_a_folder_that_cannot_be_written_is_reported_once(desk: Desk, tmp_path: 
     desk.storing.close()
     desk.run_frames()
     desk.run_frames()
-    notes = [note for note in desk.session.notes if note.startswith("land cannot be kept on disk")]
+    notes = [note for note in desk.session.notes if note.startswith("terrain cannot be cached on disk")]
     assert len(notes) == 1
 
 

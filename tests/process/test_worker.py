@@ -258,7 +258,7 @@ sys.stdin.read()
 @linux
 @pytest.mark.parametrize(
     ("request_name", "pipe", "limit"),
-    [("loop", True, 0.0), ("loop", False, 0.5), ("clean up", False, 0.0)],
+    [("loop", True, 0.0), ("loop", False, 0.1), ("clean up", False, 0.0)],
     ids=["by its pipe", "by its own clock", "by cancelling"],
 )
 def test_a_parent_that_is_killed_leaves_no_worker(
