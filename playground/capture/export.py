@@ -105,7 +105,7 @@ def prepare(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
 ) -> ExportJob:
-    """Find the textures that an export needs; raise ``PlaygroundError`` where there are none."""
+    """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none."""
     check(path, form)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:

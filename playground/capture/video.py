@@ -153,7 +153,7 @@ class Video:
                 self._container.mux(packet)
 
     def _finish(self) -> None:
-        """Give the video its name; one that holds another number of pictures gets another."""
+        """Rename the video; one that holds another number of pictures gets another."""
         if not self.added:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._close()
@@ -207,7 +207,7 @@ class Video:
 
 
 def has_alpha(picture: NDArray[np.uint8]) -> bool:
-    """Say whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
+    """Return whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
     return picture.shape[2] == 4 and bool((picture[..., 3] < 255).any())
 
 

@@ -424,7 +424,7 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 @contextmanager
 def writing(path: str | Path) -> Iterator[None]:
-    """Let an ``OSError`` in the block be a ``DataError`` that says that the file cannot be written."""
+    """Raise an ``OSError`` of the block as a ``DataError`` that says that the file cannot be written."""
     try:
         yield
     except OSError as error:
@@ -442,7 +442,7 @@ def make_folder(path: Path) -> Path:
 
 @contextmanager
 def new_name(path: str | Path) -> Iterator[Path]:
-    """Take the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
+    """Reserve the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
 
     An empty file holds the name from here on, so that no other program takes it; it is
     removed when the block fails.

@@ -26,7 +26,7 @@ _NO_TEXT: Mapping[str, str] = MappingProxyType({})
 
 @contextmanager
 def naming(path: str | Path) -> Iterator[None]:
-    """Let a ``DataError`` that the block raises name a file."""
+    """Raise a ``DataError`` of the block with the name of a file."""
     try:
         yield
     except DataError as error:

@@ -41,7 +41,7 @@ class Account:
 
 
 def claim(folder: Path) -> None:
-    """See that a folder can be written: it is not there, is empty, or an earlier one of ours."""
+    """Check that a folder can be written: it is not there, is empty, or an earlier one of ours."""
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
         raise DataError("is no folder; choose another name with -o", file=shown(folder))
     if folder.is_dir() and any(folder.iterdir()) and not (folder / RECORD).is_file():

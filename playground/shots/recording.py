@@ -1,4 +1,4 @@
-"""Leave a record of each checked shot in the results folder of this run of pytest."""
+"""Write a record of each checked shot into the results folder of this run of pytest."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Recorder:
         self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
     def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> str:
-        """Leave the record of a picture that was compared, with the pictures unless it passed.
+        """Write the record of a picture that was compared, with the pictures unless it passed.
 
         Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
         """
@@ -78,7 +78,7 @@ class Recorder:
         return self._write(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
-        """Leave the record of a shot of which there is no picture; returns what `record` does."""
+        """Write the record of a shot of which there is no picture; returns what `record` does."""
         first, _, rest = sentence.partition("\n")
         record = replace(self._begun(node, case, word, first, seconds), error=rest)
         return self._write(node, case, record, {})
@@ -217,7 +217,7 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
 
 
 def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:
-    """Leave a record that a test file has unused references; return the user properties of its report."""
+    """Write a record that a test file has unused references; return the user properties of its report."""
     recorder = Recorder(config)
     first, _, rest = message.partition("\n")
     try:
