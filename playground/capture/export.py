@@ -22,15 +22,15 @@ from playground.capture.export_options import Form, bits_for, check, sidecar_pat
 from playground.capture.export_textures import height_of, kind_of
 from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
 from playground.capture.gltf import encode_glb
-from playground.capture.lossy_images import encode_picture
 from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
-from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
+from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
-from playground.images.files import encode_samples, naming
+from playground.images.files import encode_samples
+from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
@@ -105,7 +105,7 @@ def prepare(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
 ) -> ExportJob:
-    """Find the textures that an export needs; raise ``PlaygroundError`` where there are none."""
+    """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none."""
     check(path, form)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:

@@ -1,4 +1,4 @@
-"""Say what is to be exported and how, and refuse what no sketch could give."""
+"""Define what is exported and how, and refuse what no sketch could give."""
 
 from __future__ import annotations
 

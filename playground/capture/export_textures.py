@@ -1,4 +1,4 @@
-"""Find the textures that an export is made of, and what they hold."""
+"""Resolve the textures that an export is made of, and what they hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Say what each kind of exported file holds, and in how many bits."""
+"""List what each kind of exported file holds, and in how many bits."""
 
 from __future__ import annotations
 
@@ -38,5 +38,5 @@ ENDINGS = (*VALUES, *MESHES)
 
 
 def whole_numbers(ending: str, bits: int) -> bool:
-    """Say whether numbers of so many bits are whole ones in a file of that ending."""
+    """Return whether numbers of so many bits are whole ones in a file of that ending."""
     return bits < 32 and ending != ".exr"

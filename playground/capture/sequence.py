@@ -94,7 +94,7 @@ def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) ->
 
 
 def _is_good(path: Path, size: tuple[int, int], made_of: str) -> bool:
-    """Say whether a file is there, whole to its last pixel, and the picture wanted."""
+    """Return whether a file is there, whole to its last pixel, and the picture wanted."""
     if not path.is_file():
         return False
     try:

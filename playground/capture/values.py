@@ -1,4 +1,4 @@
-"""Turn a texture into the bytes of a file of heights or of other numbers.
+"""Encode a texture as the bytes of a file: heights, colours or other numbers.
 
 What whole numbers stand for is written where the format has a place for it (PNG's texts,
 GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). TIFF carries
@@ -23,6 +23,7 @@ from playground.capture.exr import encode_exr
 from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
 from playground.errors import DataError
 from playground.images.files import encode_samples
+from playground.images.image_formats import JPEG_QUALITY, encode_as
 from playground.sketch.colour import linear_to_srgb
 
 SOFTWARE = f"terrain shader playground {__version__}"
@@ -106,6 +107,19 @@ def colour_samples(
     top = 2**bits - 1
     encoded = np.rint(linear_to_srgb(np.clip(values, 0.0, 1.0)) * top)
     return encoded.astype(np.uint8 if bits == 8 else np.uint16), warning
+
+
+def encode_picture(colours: NDArray[np.float32], ending: str) -> Encoded:
+    """Return the bytes of a WebP or a JPEG; ``colours`` is (rows, cols) or (rows, cols, 3), linear.
+
+    The north row comes first. WebP loses nothing; JPEG keeps its colours at full resolution.
+
+    Raises:
+        DataError: a picture larger than the format takes, or colours that are not finite.
+    """
+    samples, warning = colour_samples(colours)
+    lossless = "lossless" if ending == ".webp" else f"quality {JPEG_QUALITY}"
+    return Encoded(encode_as(ending, samples.astype(np.uint8)), (f"sRGB in 8 bits, {lossless}",), warning)
 
 
 def _quantised(

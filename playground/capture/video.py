@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.images.extensions import VIDEO_ENDINGS
-from playground.images.files import reason
+from playground.images.files import reason, writing
 from playground.partial import partial_file
 from playground.paths import shown
 
@@ -74,10 +74,8 @@ class Video:
         self._ending = check_video(self.path, size, fps, quality)
         self._av = _pyav()
         with ExitStack() as stack:
-            try:
+            with writing(self.path):
                 self._partial = stack.enter_context(partial_file(self.path))
-            except OSError as error:
-                raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
             self._open(quality)
             self._open_partial = stack.pop_all()
 
@@ -114,12 +112,11 @@ class Video:
             options |= {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
         moved = {"movflags": "+faststart"} if form == "mp4" else {}
         try:
-            self._container: av.container.OutputContainer = self._av.open(
-                str(self._partial.path), "w", format=form, options=moved
-            )
-            self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
+            with writing(self.path):
+                self._container: av.container.OutputContainer = self._av.open(
+                    str(self._partial.path), "w", format=form, options=moved
+                )
+                self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
         except ValueError as error:  # an encoder that this build has not
             raise ContextError(f"this PyAV cannot write {self._ending}: {reason(error)}") from None
         self._stream.width, self._stream.height = self.size
@@ -151,14 +148,12 @@ class Video:
         return self._av.VideoFrame.from_ndarray((np.array(found, np.uint8), colours), format="pal8")
 
     def _mux(self, frame: Any) -> None:
-        try:
+        with writing(self.path):
             for packet in self._stream.encode(frame):
                 self._container.mux(packet)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _finish(self) -> None:
-        """Give the video its name; one that holds another number of pictures gets another."""
+        """Rename the video; one that holds another number of pictures gets another."""
         if not self.added:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._close()
@@ -186,16 +181,12 @@ class Video:
     def _close(self) -> None:
         """Write what the encoder still holds, and the end of the file."""
         self._mux(None)
-        try:
+        with writing(self.path):
             self._container.close()
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _name(self, path: Path) -> None:
-        try:
+        with writing(path):
             self._partial.rename(path)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=path) from None
 
     def _first(self, count: int) -> Path:
         return self.path.with_name(f"{self.path.stem}-first-{count}{self.path.suffix}")
@@ -216,7 +207,7 @@ class Video:
 
 
 def has_alpha(picture: NDArray[np.uint8]) -> bool:
-    """Say whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
+    """Return whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
     return picture.shape[2] == 4 and bool((picture[..., 3] < 255).any())
 
 

@@ -239,12 +239,12 @@ def _note_not_finite(engine: Engine) -> None:
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    from playground.capture.large import count_tiles, pack_large, write_large
+    from playground.capture.large import count_tiles, encode_strips, strips, write_large
 
     with progress(f"rendering {moment.sketch.name} in parts", count_tiles(size)) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
         if target.name == "-":
-            pack_large(engine, moment.sketch, sys.stdout.buffer, size, **at)
+            encode_strips(sys.stdout.buffer, size, strips(engine, moment.sketch, size, **at))
         else:
             write_large(engine, moment.sketch, target, size, **at)
 

@@ -423,12 +423,12 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 
 @contextmanager
-def naming(path: str | Path) -> Iterator[None]:
-    """Let a ``DataError`` that the block raises name a file."""
+def writing(path: str | Path) -> Iterator[None]:
+    """Raise an ``OSError`` of the block as a ``DataError`` that says that the file cannot be written."""
     try:
         yield
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=path) from error
+    except OSError as error:
+        raise DataError(f"cannot be written: {reason(error)}", file=path) from error
 
 
 def make_folder(path: Path) -> Path:
@@ -442,7 +442,7 @@ def make_folder(path: Path) -> Path:
 
 @contextmanager
 def new_name(path: str | Path) -> Iterator[Path]:
-    """Take the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
+    """Reserve the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
 
     An empty file holds the name from here on, so that no other program takes it; it is
     removed when the block fails.
@@ -484,7 +484,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
     path = Path(path)
     if "\0" in str(path):
         raise DataError("a file's name cannot hold a zero character", file=repr(str(path)))
-    try:
+    with writing(path):
         if not path.parent.is_dir():
             raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
         if path.is_dir():
@@ -492,5 +492,3 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
         with partial_file(path) as partial:
             yield partial.handle
             partial.rename(path)
-    except OSError as error:
-        raise DataError(f"cannot be written: {reason(error)}", file=path) from error

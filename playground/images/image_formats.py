@@ -7,7 +7,8 @@ resolution. Files of numbers are `playground.images.files` and `playground.captu
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 
@@ -16,11 +17,20 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.extensions import PICTURE_ENDINGS
-from playground.images.files import encode_png, naming, replacing
+from playground.images.files import encode_png, replacing
 
 _LONGEST = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
 JPEG_QUALITY = 95  # of 100: above it files grow and nothing is seen
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
+
+
+@contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Raise a ``DataError`` of the block with the name of a file."""
+    try:
+        yield
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from error
 
 
 def picture_ending(path: str | Path) -> str:

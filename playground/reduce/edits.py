@@ -164,7 +164,7 @@ def _of_region(
 
 
 def _begins_primary(tokens: list[str], index: int) -> bool:
-    """Say whether a token begins an operand: not a declared name, a type, or what is assigned to."""
+    """Return whether a token begins an operand: not a declared name, a type, or what is assigned to."""
     token = tokens[index]
     before = tokens[index - 1] if index else ""
     if token == "(":
@@ -362,12 +362,12 @@ def undefined(text: str) -> frozenset[str]:
 
 
 def _is_outermost(tokens: list[str], index: int) -> bool:
-    """Say whether a closing brace ends what is at the text's outermost level."""
+    """Return whether a closing brace ends what is at the text's outermost level."""
     return tokens[: index + 1].count("{") == tokens[: index + 1].count("}")
 
 
 def _returns(body: list[str]) -> bool:
-    """Say whether a function's own level has a return that hangs on nothing."""
+    """Return whether a function's own level has a return that hangs on nothing."""
     depth = 0
     for index, token in enumerate(body):
         depth += (token == "{") - (token == "}")
@@ -377,7 +377,7 @@ def _returns(body: list[str]) -> bool:
 
 
 def _is_set(tokens: list[str], name: str, start: int, pairs: dict[int, int]) -> bool:
-    """Say whether a name is assigned to from a token on, within its function, or given to another."""
+    """Return whether a name is assigned to from a token on, within its function, or given to another."""
     brackets: list[int] = []
     for index in range(start, len(tokens)):
         token = tokens[index]

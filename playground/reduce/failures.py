@@ -52,7 +52,7 @@ class FailureKind(ABC):
         """Return what is wrong with a candidate; None where nothing of this kind is."""
 
     def same(self, before: Finding, after: Finding) -> bool:
-        """Say whether a candidate fails as the one before did, and at no texel that was good."""
+        """Return whether a candidate fails as the one before did, and at no texel that was good."""
         if before.kind != after.kind:
             return False
         if before.where is None or after.where is None or before.where.shape != after.where.shape:
@@ -76,7 +76,7 @@ class Refused(FailureKind):
         return None if hit is None else Finding(hit, results[0].details, messages=frozenset(short))
 
     def same(self, before: Finding, after: Finding) -> bool:
-        """Say whether it is the same message, and none that was not there before."""
+        """Return whether it is the same message, and none that was not there before."""
         return before.kind == after.kind and after.messages <= before.messages
 
 

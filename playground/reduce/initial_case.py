@@ -211,7 +211,7 @@ class CandidateBench:
 
 
 def _nothing(question: Question) -> str:
-    """Say that nothing fails, in the words of the question."""
+    """Return the message that nothing fails, in the words of the question."""
     name = question.sketch.name
     if question.kind == "shot":
         return (

@@ -146,7 +146,7 @@ def _lines(source: SourceText) -> list[str]:
 
 
 def _without_guards(lines: list[str]) -> list[str]:
-    """Leave out include guards, and what they keep from being there twice."""
+    """Remove include guards, and what they keep from being there twice."""
     found: list[str] = []
     guards: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"

@@ -12,7 +12,7 @@ from shlex import quote as quoted
 from playground._version import __version__
 from playground.errors import DataError, counted
 from playground.gpu.wrap import wrap
-from playground.images.files import replacing
+from playground.images.files import replacing, writing
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.candidate_process import CandidateProcess
@@ -41,7 +41,7 @@ class Account:
 
 
 def claim(folder: Path) -> None:
-    """See that a folder can be written: it is not there, is empty, or an earlier one of ours."""
+    """Check that a folder can be written: it is not there, is empty, or an earlier one of ours."""
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
         raise DataError("is no folder; choose another name with -o", file=shown(folder))
     if folder.is_dir() and any(folder.iterdir()) and not (folder / RECORD).is_file():
@@ -65,24 +65,18 @@ def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> lis
     data = copied(account.search.best.files, texts)
     texts |= {"README.txt": readme_text(account, folder), **more}
     names = sorted([*texts, *(name for name, _ in data), RECORD])
-    try:
+    with writing(shown(folder)):
         folder.mkdir(exist_ok=True)
         for name in set(_earlier(folder)) - set(names):
             (folder / name).unlink(missing_ok=True)
         record = {"playground": __version__, "sketch": account.question.sketch.name, "files": names}
         texts[RECORD] = json.dumps(record, indent=2) + "\n"
         for name, text in texts.items():
-            _write(folder / name, text)
+            with replacing(folder / name) as handle:
+                handle.write(text.encode())
         for name, source in data:
             shutil.copyfile(source, folder / name)
-    except OSError as error:
-        raise DataError(f"cannot be written: {error.strerror}", file=shown(folder)) from error
     return [folder / name for name in names]
-
-
-def _write(path: Path, text: str) -> None:
-    with replacing(path) as handle:
-        handle.write(text.encode())
 
 
 def _earlier(folder: Path) -> list[str]:

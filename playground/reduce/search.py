@@ -96,7 +96,7 @@ class Search:
             return False
 
     def holds(self, case: Case, *, resized: bool = False) -> bool:
-        """Say whether a case fails as the best one does, and let it be the best if so.
+        """Return whether a case fails as the best one does, and let it be the best if so.
 
         ``resized``: its texels are others, so what is wrong is known by its place anew.
         """
@@ -173,7 +173,7 @@ class Search:
                 self.holds(self.best.with_pass(replace(current, variant="")))
 
     def _settings(self) -> None:
-        """Take back what is set: all of it at once if that goes, then one after the other."""
+        """Remove what is set: all of it at once if that goes, then one after the other."""
         start = self.best
         terrain = [name for name, plain in _PLAIN.items() if getattr(start, name) != plain]
         given = [(one.name, name) for one in start.live for name, _ in one.live_values]

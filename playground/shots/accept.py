@@ -1,4 +1,4 @@
-"""Make references of pictures in a folder of results, and undo that.
+"""Accept pictures of a folder of results as references, and undo that.
 
 A picture becomes a reference as it was looked at: its pixels, and the fingerprint of what
 drew it. Nothing is drawn again. It is refused, in a sentence, where it would be wrong: a
@@ -45,7 +45,7 @@ class Change:
 
     @property
     def sentences(self) -> list[str]:
-        """Say what was done, a line for each file."""
+        """Return what was done, a line for each file."""
         if self.written is None:
             return [f"{self.name}: a reference is this picture already"]
         replaced = "a further one that may match" if self.further else "the first"
@@ -58,7 +58,7 @@ class Change:
 
 
 def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
-    """Make the picture of a record in ``folder`` its shot's reference.
+    """Write the picture of a record in ``folder`` as its shot's reference.
 
     It takes the place of all references that its renderer has for the shot; with ``also``
     they stay, and it becomes a further one that may match. Raises ``DataError`` where it
@@ -88,7 +88,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
 
 
 def undo(change: Change) -> list[str]:
-    """Put the references back as they were before a change, and say so, a line for each file.
+    """Restore the references as they were before a change, and return a line for each file.
 
     Raises ``DataError`` where one has been written since: that would be lost.
     """

@@ -144,7 +144,7 @@ class FailingItem(SketchItem):
 
 
 def _is_reference(path: Path, home: Path) -> bool:
-    """Say whether a picture is a reference of a sketch; other pictures may be in the same folder."""
+    """Return whether a picture is a reference of a sketch; other pictures may be in the same folder."""
     folder, *others = path.relative_to(home).parts
     if folder.endswith(".py"):  # of a test file
         return False

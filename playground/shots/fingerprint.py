@@ -1,4 +1,4 @@
-"""Say what a picture comes from: which build of which renderer, on what processor, drew what.
+"""Identify what a picture comes from: which build of which renderer, on what processor, drew what.
 
 A reference carries this in its PNG's texts, and a picture just drawn has one too. Comparing
 the two explains a failure, and chooses how strictly the pictures are compared. What each part
@@ -87,11 +87,11 @@ class Fingerprint:
         return tuple(found)
 
     def same_build(self, other: Fingerprint) -> bool:
-        """Say whether the same build of a renderer drew both, as far as both say."""
+        """Return whether the same build of a renderer drew both, as far as both say."""
         return not set(BUILD) & set(self.differs_in(other))
 
     def differences(self, reference: Fingerprint) -> tuple[str, ...]:
-        """Say in words, one to a line, how this picture's origin differs from a reference's."""
+        """Return, a sentence each, how this picture's origin differs from a reference's."""
         names = self.differs_in(reference)
         found = []
         for name in names:

@@ -108,7 +108,7 @@ def _seconds(text: str) -> float:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known, and add the sketches of the configuration to what is tested."""
+    """Register the marker, and add the sketches of the configuration to what is tested."""
     if config.getoption("--shots-plain") and config.getoption("--shots-update"):
         raise pytest.UsageError("--shots-plain compares with references; --shots-update would write others")
     config.addinivalue_line("markers", "shots: compares a picture with its reference")
@@ -172,7 +172,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let ``-m shots`` find the tests in Python that compare pictures, too."""
+    """Mark the tests in Python that compare pictures, for ``-m shots``."""
     for item in items:
         if "shot" in getattr(item, "fixturenames", ()):
             item.add_marker("shots")
@@ -205,7 +205,7 @@ class Results:
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Take note of a finished test, which may come from another process."""
+        """Record a finished test, which may come from another process."""
         if report.when != "call":
             return
         self.uses.add(report)
@@ -262,7 +262,7 @@ class Results:
         )
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Say what was written, what was left alone, and where there is something to look at."""
+        """Print what was written, what was left alone, and where the results are."""
         if self.lines:
             terminalreporter.section("shots")
             for line in self.lines:

@@ -1,4 +1,4 @@
-"""Keep reference pictures: where they live, what they say of themselves, which of them nothing uses.
+"""Store reference pictures: where they live, what they say of themselves, which of them nothing uses.
 
 ``screenshots/<sketch>/<renderer>/<shot>.png``, in the checkout for the sketches that ship,
 in the sketch's folder for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures

@@ -1,4 +1,4 @@
-"""Make one HTML file of a folder of results: what failed, to look at from all sides, with no network.
+"""Write one HTML file of a folder of results: what failed, to look at from all sides, with no network.
 
 Everything is inside, the pictures as data URLs, so that the file can be sent, or stored by a
 continuous integration. It can be read without its script, and printed; the script adds
@@ -95,7 +95,7 @@ class _Pictures:
         return self.urls.get(record.pictures[kind], "")
 
     def notes(self) -> list[str]:
-        """Say what is not inside."""
+        """Return what is not inside, a sentence each."""
         found = []
         if self.linked:
             found.append(

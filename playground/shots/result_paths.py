@@ -1,4 +1,4 @@
-"""Know where in the results folder a sketch's records are, and remove those that mean nothing any more.
+"""Resolve where in the results folder a sketch's records are, and remove those that mean nothing any more.
 
 Sketches of one name in several folders, and test files of one name, are several: the first to
 come has the folder of that name, each other one its own, ``hills-1a2b3c4d``. ``.home`` in the

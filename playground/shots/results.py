@@ -1,4 +1,4 @@
-"""Keep what came of each checked shot in a folder: one record a shot, as JSON, and its pictures.
+"""Store the result of each checked shot in a folder: one record a shot, as JSON, and its pictures.
 
     <folder>/<sketch>/<shot>.json             what came of it: always
     <folder>/<sketch>/<shot>.actual.png       unless it passed; with the texts of a reference
@@ -150,7 +150,7 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
 
 
 def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np.uint8]]) -> Record:
-    """Leave a shot's record and its pictures in ``folder``, and remove what a run before left of them.
+    """Write a shot's record and its pictures into ``folder``, and remove what a run before left of them.
 
     ``pictures`` has some of `PICTURES`, uint8 (height, width, 4), top row first; none for a
     shot that passed. The record goes last, and an old one is removed first: one that can be

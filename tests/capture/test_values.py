@@ -15,7 +15,7 @@ import tifffile
 import playground
 from playground import Sketch
 from playground.capture.export import Exported
-from playground.capture.lossy_images import encode_picture
+from playground.capture.values import encode_picture
 from playground.engine.engine import Engine
 from playground.images.files import read_samples
 from playground.terrain.elevation import read_elevation

@@ -15,7 +15,7 @@ import pytest
 from playground import cli
 from playground.images.files import read_png
 
-from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW, map_of_height
 
 ROOT = Path(__file__).resolve().parents[2]
 SKETCH = (
@@ -72,7 +72,9 @@ def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixtur
     out, err = capsys.readouterr()
     assert out.count("\n") == 3 and "2 pictures kept, 1 drawn" in err
     assert paths[0].stat().st_mtime_ns == before and paths[1].is_file()
-    assert [Path(p).name for p in run(capsys, "--frames", "0", "-o", "new")] == ["00000.png"]
+    assert [Path(p).name for p in run(capsys, "--frames", "0", "-o", "new", "--size", "64x36")] == [
+        "00000.png"
+    ]
 
 
 def test_a_sheet(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -219,8 +221,8 @@ def test_a_picture_with_nan_in_it_says_which_pass(tmp_path: Path, capfd: pytest.
     kernel = '// k\n#pragma kernel(output = "height:r32f")\nuniform float root = -1.0; //! slider(-1, 1)\n'
     kernel += "float kernel(ivec2 texel) { return texel == ivec2(3, 5) ? sqrt(root) : 0.5; }\n"
     (tmp_path / "k.glsl").write_text(kernel)
-    out = str(tmp_path / "x.png")
-    words = ["render", str(tmp_path / "k.glsl"), "-o", out, "--size", "16x16", "--set", "size=65"]
+    (tmp_path / "sketch.toml").write_text("format = 1\nsize = 65\n" + map_of_height("./k"))
+    words = ["render", str(tmp_path), "-o", str(tmp_path / "x.png"), "--size", "16x16"]
     assert cli.main(words) == 0
     assert "pass 'height', output 'height': NaN at texel (3, 5) from the south-west" in capfd.readouterr().err
     assert cli.main([*words, "--set", "height.root=1"]) == 0

