@@ -33,7 +33,7 @@ float share_at(ivec2 grid, vec2 place) {
     vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
     vec2 towards = place + step_length * way / max(abs(way.x), abs(way.y));
     vec2 last = vec2(grid - 1);
-    // A step that ends on the edge counts as inside, whatever the rounding.
+    // A step that ends on the edge counts as inside, despite rounding.
     bool off = any(lessThan(towards, vec2(-1e-3))) || any(greaterThan(towards, last + 1e-3));
     float rise = height_at(height, towards) - height_at(height, place);
     return off ? 1.0 : clamp(1.0 - rise / softness, 0.0, 1.0);

@@ -25,7 +25,7 @@ struct March {
     vec2 start;    // texels
     vec2 ahead;    // texels a step
     ivec2 across;  // one texel along the axis that the ray follows less
-    bool on_lines; // whether every place stands on a line of texels
+    bool on_lines; // whether every place is on a line of texels
     float relief;  // metres from height 0 to height 1
     float foot;    // the height where it begins   [m]
     float climb;   // of the ray, a step           [m]
@@ -50,7 +50,7 @@ float steps_inside(float place, float ahead, float last) {
     return (ahead > 0.0 ? last - place : place) / abs(ahead);
 }
 
-// Whole steps, of so many: one that ends on the edge counts, whatever the rounding. The limit is
+// Whole steps, of so many: one that ends on the edge counts, despite rounding. The limit is
 // over four times the texels that a texture may have a side, and far below the largest int.
 const float MOST_STEPS = 1e6;
 int whole_steps(float steps) {

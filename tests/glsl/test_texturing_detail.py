@@ -15,7 +15,7 @@ PLAIN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ 
 PASSES = """
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [[pass]]
 name = "colour"
 use = "./cover"
@@ -39,7 +39,7 @@ def terrain(make_sketch):
     def make(given="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
         common = "grid = 33" + given
         wires = 'inputs = { detail_image = "detail" }' if wired else ""
-        files = {"land": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
+        files = {"terrain": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
         files["flat"] = PLAIN.format("vec3(0.07)")
         return make_sketch(PASSES.format(fine, wires, common), size=33, **files).with_camera(CAMERA)
 
@@ -156,7 +156,7 @@ def test_without_strength_or_with_an_even_image_it_is_the_plain_view(any_engine,
         np.testing.assert_allclose(found, wanted, atol=1)
 
 
-def test_land_that_is_not_a_number_shows(any_engine, terrain):
+def test_terrain_that_is_not_a_number_shows(any_engine, terrain):
     sketch = terrain(cover="vec3(uintBitsToFloat(0x7fc00000u))")
     frame = linear_frame(any_engine, sketch)
     _, _, inside = on_the_ground(any_engine, frame.shape[:2])

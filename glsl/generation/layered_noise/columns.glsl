@@ -1,4 +1,4 @@
-// generation/layered_noise/columns.glsl -- where a column of texels stands in each layer.
+// generation/layered_noise/columns.glsl -- where a column of texels is in each layer.
 //
 //   gives    columns: which random numbers the node to the west and the one to the east read, the
 //            share between them after the curve, and the layer's intervals; a layer a row

@@ -11,7 +11,7 @@
 // that hills stay round.
 //
 // The thesis's layer of random numbers has as many as the terrain has texels, and a node reads
-// the one it stands on: so at each size the same seed is another terrain. Here the layer has
+// the one it is on: so at each size the same seed is another terrain. Here the layer has
 // 32768 numbers a side, whatever the size, and a node reads the one at its share of the side.
 #ifndef GENERATION_LAYERED_NOISE_LAYERS
 #define GENERATION_LAYERED_NOISE_LAYERS

@@ -1,4 +1,4 @@
-// generation/layered_noise/nodes.glsl -- where the first row of each band stands in each layer.
+// generation/layered_noise/nodes.glsl -- where the first row of each band is in each layer.
 //
 //   gives    nodes: which random numbers the node to the south and the one to the north read, the
 //            share between them before the curve, and how much of it a row is; a layer a row

@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
 //
 // The thesis's own method. Around the ray to the sun grows a cone, from radius 0 at the texel.
-// Where terrain stands at height H, the ray at HL and the cone's radius is r, the part
+// Where terrain is at height H, the ray at HL and the cone's radius is r, the part
 // ((HL + r) - H) / 2r of the cone is free; the least of all steps counts. Terrain over the whole
 // cone hides the sun.
 
@@ -81,7 +81,7 @@ float kernel(ivec2 texel) {
     float lower_side = march.climb - radius_a_step;
     march.count = steps_below(march, lower_side, texelFetch(range, ivec2(0), 0).g * relief);
     if (max_distance > 0) march.count = min(march.count, int(float(max_distance) / step_length));
-    // Under the zenith the cone stands over the texel itself, which only a very wide one notices.
+    // Under the zenith the cone is over the texel itself, which only a very wide one notices.
     float whole = level < 1e-6 ? free_part(light.z, delta_r) : 1.0;
     return marched(march, height, block_maxima, sampling, lower_side, whole);
 }

@@ -43,7 +43,7 @@ Lines lines_towards(ivec2 grid, vec3 light, vec2 metres) {
     return Lines(along_x, ahead > 0.0, turned.x, turned.y - 1, drift, length(row * metres));
 }
 
-// What stands for the sun: a point, a cone around its ray, or a disc.
+// What represents the sun: a point, a cone around its ray, or a disc.
 const int POINT = 0;
 const int CONE = 1;  // `spread`: its radius over the way along the ray
 const int DISC = 2;  // `spread`: its diameter in degrees
