@@ -70,10 +70,10 @@ def tiles_at(levels: Levels, boxes: Boxes, view: View) -> Chosen:
     j, i = np.indices((ny, nx))
     # Of the last level, four tiles in a square make a fan.
     sides = np.where(levels == LEVELS - 1, (i + j) % 2, coarser_of(levels))
-    places = [_gathered("fans", levels, sides, boxes.seen(view))]
-    seen = boxes.with_walls(view).seen(view)
+    places = [_gathered("fans", levels, sides, boxes.visible(view))]
+    visible = boxes.with_walls(view).visible(view)
     for side, rim in rims_of(ny, nx).items():
-        places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), seen & rim))
+        places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), visible & rim))
     runs = tuple(run for found, _ in places for run in found)
     return Chosen(runs, np.concatenate([each for _, each in places]))
 

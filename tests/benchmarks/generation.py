@@ -1,9 +1,9 @@
-"""Time the techniques that make terrain beside what one would take instead, in one run.
+"""Time the techniques that make terrain against their alternatives, in one run.
 
     pip install ".[bench]"
     python tests/benchmarks/generation.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
-Each figure is the median of several runs, with a new seed each, ours and theirs in turn,
+Each figure is the median of several runs, with a new seed each, ours and theirs alternately,
 so that a busy machine slows both; techniques with a fast variant are timed in their plain form
 as well. Nothing compiled is timed. Figures wander with the
 machine; ratios less so. The thesis's own methods are compiled from thesis.c with cc -O2.
@@ -50,8 +50,8 @@ class Generation(Bench):
 
         def run(form: str) -> None:
             engine = self.engines["auto" if form == "plain" else form]
-            asked = sketch.with_values({f"a.{seed}": next(SEEDS) % 9999})
-            engine.texture(asked.plainly() if form == "plain" else asked, wanted)
+            seeded = sketch.with_values({f"a.{seed}": next(SEEDS) % 9999})
+            engine.texture(seeded.plainly() if form == "plain" else seeded, wanted)
             engine.ctx.finish()
 
         there = [f for f in forms.split() if f != "plain" or any_variants(sketch.graph.passes[0].technique)]

@@ -3,7 +3,7 @@
     python tests/benchmarks/geometry.py [--sizes 1025 4097] [--samples 1 4] [--rounds 7]
 
 A frame is what a turned camera runs again. Its time is the median of the rounds, in each
-of which every mesh has its turn, so that a busy machine is so to all of them. The error
+in which every mesh is drawn once, so that a busy machine is so to all of them. The error
 is how far the mesh lies from the full grid in the picture: the most over the picture, and
 what 99 in 100 places stay below.
 """
@@ -134,15 +134,15 @@ def frame_times(
 ) -> dict[str, float]:
     """Return the milliseconds of a frame after the camera has turned, by mesh."""
     found: dict[str, list[float]] = {mesh: [] for mesh in meshes}
-    for turn in range(rounds + 1):
+    for number in range(rounds + 1):
         for mesh, given in meshes.items():
-            camera = replace(sketch.camera, azimuth=sketch.camera.azimuth + turn)
+            camera = replace(sketch.camera, azimuth=sketch.camera.azimuth + number)
             seen = sketch.with_camera(camera).with_values({f"view.{k}": v for k, v in given.items()})
             engine.ctx.finish()
             start = time.perf_counter()
             engine.draw(seen, size=SIZE)
             engine.ctx.finish()
-            if turn:
+            if number:
                 found[mesh].append((time.perf_counter() - start) * 1e3)
     return {mesh: statistics.median(times) for mesh, times in found.items()}
 

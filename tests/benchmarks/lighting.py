@@ -1,10 +1,10 @@
-"""Time the methods of light beside what one would take instead, in one run.
+"""Time the methods of light against their alternatives, in one run.
 
     pip install ".[bench]"
     python tests/benchmarks/lighting.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
 Each figure is the median of several runs, each under another sun (horizons: in slightly other
-directions; edits: on another terrain), ours and theirs in turn, so that a busy machine slows both.
+directions; edits: on another terrain), ours and theirs alternately, so that a busy machine slows both.
 Nothing compiled is timed, nor is terrain made, but where the table says so. Figures wander with the
 machine; ratios less so. The thesis's own methods are compiled from thesis_light.c with cc -O2.
 topocalc is not in the extra, for it must be built without isolation; it is left out where it is
@@ -38,7 +38,7 @@ DELTA_R = 0.01
 
 def azimuths() -> Iterator[float]:
     """Yield azimuths all around, the same for whoever asks: by the golden angle."""
-    return (20.0 + 137.508 * turn % 360.0 for turn in itertools.count())
+    return (20.0 + 137.508 * number % 360.0 for number in itertools.count())
 
 
 class Lighting(Bench):

@@ -1,4 +1,4 @@
-"""Measure what the panel costs a frame, and print it beside its limit.
+"""Measure what the panel costs a frame, and print it with its limit.
 
     python tests/benchmarks/panel.py [--frames 300] [--profile]
 

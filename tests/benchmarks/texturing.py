@@ -1,11 +1,11 @@
-"""Measure what texturing costs a frame, and print it beside its limit.
+"""Measure what texturing costs a frame, and print it with its limit.
 
     python tests/benchmarks/texturing.py [--land 1025] [--frames 9]
 
 Every figure is the median of frames of 1280 x 720 with the camera moved between them, one
-sample a pixel, each after the driver has finished. The rows are measured in turns, one frame
+sample a pixel, each after the driver has finished. The rows are measured alternately, one frame
 of each, so that a load on the machine falls on all of them alike: compare within one run. Where
-the processor draws, the times of all its cores are summed beside that, and the ratios are of
+the processor draws, the times of all its cores are summed as well, and the ratios are of
 those: they depend less on what else the machine does.
 """
 
@@ -108,14 +108,14 @@ WHAT = {
     "splat terrain": ("view/splat, its draw of the terrain, mesh of 257²", ""),
     "coarse terrain": ("the same, mesh of 65²: larger triangles", ""),
     "tiled terrain": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
-    "multipass terrain": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
+    "multipass terrain": ("view/splat_multipass, its four draws, mesh of 257²", "next to splat"),
     "baked terrain": ("view/terrain, its draw, the same layers baked to 1025²", ""),
     "splat": ("view/splat, whole frame", ""),
     "tiled": ("view/splat, whole frame by geomipmap at 1 pixel", "2 x"),
-    "multipass": ("view/splat_multipass, whole frame", "beside splat"),
+    "multipass": ("view/splat_multipass, whole frame", "next to splat"),
     "baked": ("view/terrain, whole frame", "40 ms"),
 }
-"""What each row is, and what is asked of it."""
+"""What each row is, and its limit."""
 
 
 def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
@@ -153,7 +153,7 @@ def measure(
     """Return the median milliseconds of a frame, or of a pass, of each row: on the clock, of all cores."""
     times: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
     azimuth = 70.0
-    for turn in range(frames + 2):
+    for number in range(frames + 2):
         for name, (sketch, path) in rows.items():
             azimuth += 0.1
             look = Camera(azimuth=azimuth, elevation=22.0, distance=2100.0, target=(1280.0, 1280.0, 150.0))
@@ -167,7 +167,7 @@ def measure(
             else:
                 engine.draw(moved, size=SIZE)
             engine.ctx.finish()
-            if turn >= 2:  # the first runs make the terrain and compile
+            if number >= 2:  # the first runs make the terrain and compile
                 spent = time.perf_counter() - start, time.process_time() - busy
                 times[name].append((spent[0] * 1e3, spent[1] * 1e3))
     return {

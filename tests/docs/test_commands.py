@@ -1,9 +1,9 @@
 """Every command that the documentation and the lessons quote runs.
 
-What is quoted is found in the texts: the lines of shell blocks, and what stands between backticks
+What is quoted is found in the texts: the lines of shell blocks, and what is between backticks
 and begins with a program's name. Each is run in a folder of its own that holds the files it speaks
 of, at a small size. A command that opens a window is run twice: without a display, where its
-arguments are read and the missing display is told, and, in the slow tests, in a window under Xvfb.
+arguments are read and the missing display is reported, and, in the slow tests, in a window under Xvfb.
 What is not run is in NOT_RUN, with its reason; a whole block says it in a comment (see pages.py).
 """
 
@@ -249,13 +249,13 @@ def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str])
 def test_without_a_display_only_the_display_is_missing(
     command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    """Its arguments are read before the display is asked for."""
+    """Its arguments are read before the display is needed."""
     for variable in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_SESSION_TYPE"):
         monkeypatch.delenv(variable, raising=False)
     furnish(folder, command)
     status = cli.main(arguments(command))
-    said = capsys.readouterr().err
-    assert "screen to open a window" in said or "no display" in said
+    message = capsys.readouterr().err
+    assert "screen to open a window" in message or "no display" in message
     assert status == (0 if command in ("./play", "playground") else 2)
 
 
@@ -305,11 +305,11 @@ def test_every_option_that_is_named_exists():
     assert named and not named - known - {"--no-install-recommends"}
 
 
-# Programs beside the playground
+# Programs other than the playground
 
 
 def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.CompletedProcess[str]:
-    """Run a program of this Python's; return what it said."""
+    """Run a program of this Python's; return its output."""
     words = [sys.executable if word == "python" else word for word in words]
     if words[0] == "pytest":
         words[:1] = [sys.executable, "-m", "pytest"]

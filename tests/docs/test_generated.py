@@ -50,19 +50,19 @@ def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itse
 
 
 def test_methods_name_their_source_and_their_checks():
-    told = [techniques.page(e) for names in techniques.entries().values() for e in names]
-    assert sum("| Source of the method |" in text for text in told) > 0.9 * len(told)
-    plain = " ".join(told).replace("\\_", "_").replace("&#95;", "_")
+    texts = [techniques.page(e) for names in techniques.entries().values() for e in names]
+    assert sum("| Source of the method |" in text for text in texts) > 0.9 * len(texts)
+    plain = " ".join(texts).replace("\\_", "_").replace("&#95;", "_")
     checks = set(re.findall(r"\btests/\w+/\w+\.py", plain))
     missing = [path for path in checks if not (ROOT / path).exists()]
     assert checks and not missing
 
 
 def test_every_fast_variant_is_on_a_page():
-    told = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
+    texts = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
     files = [path for ending in ("comp", "fast.toml") for path in GLSL.rglob(f"*.{ending}")]
     names = {path.relative_to(GLSL).as_posix().replace("_", "&#95;") for path in files}
-    assert names and not {name for name in names if name not in told}
+    assert names and not {name for name in names if name not in texts}
 
 
 def test_a_technique_that_says_nothing_of_itself_is_refused(tmp_path: Path):

@@ -52,10 +52,10 @@ def test_it_goes_on_from_the_same_place_once_all_that_is_near_is_made(
         flight.change(sketch_of(tmp_path, TERRAIN.replace("0.25", "0.5")))
         assert flight.changing
         np.testing.assert_array_equal(flight.picture(SIZE).array, before, "it stays until all is ready")
-        turns = 0
+        calls = 0
         while not flight.tend_change(0.0):
-            turns += 1
-        assert turns > 1 and not flight.changing and flight.parts.missing == 0
+            calls += 1
+        assert calls > 1 and not flight.changing and flight.parts.missing == 0
         assert (flight.craft.east, flight.craft.north, flight.craft.heading) == (
             craft.east,
             craft.north,
@@ -125,10 +125,10 @@ def test_nothing_is_left_on_the_graphics_card(ctx: Any, alive: Any, tmp_path: Pa
     held = []
     with Engine(ctx) as engine, Flight(engine, sketches[0], radius=1.5, samples=1) as flight:
         flight.make_all()
-        for turn in range(4):
-            flight.change(sketches[1 - turn % 2])
+        for count in range(4):
+            flight.change(sketches[1 - count % 2])
             flight.tend_change(0.0)
-            flight.change(sketches[1 - turn % 2])  # saved again before the first was ready
+            flight.change(sketches[1 - count % 2])  # saved again before the first was ready
             while not flight.tend_change(1.0):
                 pass
             held.append((flight.parts.bytes, len(flight.parts)))

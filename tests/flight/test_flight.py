@@ -85,7 +85,7 @@ GOOD = Header("flight").line()
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "is no flight: its first line"),
         ("hello\n", "is no flight"),
@@ -106,10 +106,10 @@ GOOD = Header("flight").line()
         (GOOD.replace('"values": {}', '"values": {"a": ' + "[" * 90 + "]" * 90 + "}"), "is no flight"),
     ],
 )
-def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, said):
+def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, message):
     path = tmp_path / "bad.jsonl"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(DataError, match=said) as caught:
+    with pytest.raises(DataError, match=message) as caught:
         read_record(path)
     assert str(caught.value).count("\n") == 0 and "bad.jsonl" in str(caught.value)
 
@@ -175,7 +175,7 @@ def test_reset_goes_back_to_the_start(small_engine, terrain_of):
 
 @pytest.mark.slow
 def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, terrain_of):
-    """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are kept."""
+    """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are cached."""
     sketch = terrain_of(intervals=8, apron=2, spacing=300.0)
     steps = 600 * 60
     hands = [(steps // 3, Moment(Controls(100))), (steps // 3, Moment(Controls(100, 0, 4)))]
@@ -256,9 +256,9 @@ def test_no_crack_shows_between_levels_and_without_skirts_some_would(
     cracks = 0
     with Flight(small_engine, terrain_of(**rough), radius=3.0) as flight:
         flight.make_all()
-        for turn in range(6):
-            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (turn % 3)
-            flight.craft = replace(flight.craft, up=up, heading=turn * 1.05, pitch=-0.25)
+        for view in range(6):
+            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (view % 3)
+            flight.craft = replace(flight.craft, up=up, heading=view * 1.05, pitch=-0.25)
             picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
             magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
             cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))
@@ -305,7 +305,7 @@ def test_nearer_terrain_has_more_triangles_and_none_behind_is_drawn(flight):
 OWN = """// mine.glsl -- waves without end, and a hole where nothing is a number.
 #include "terrain/parts.glsl"
 #pragma kernel(output = "height:r32f")
-uniform ivec2 part = ivec2(0);  //! Which part of the land
+uniform ivec2 part = ivec2(0);  //! Which part of the terrain
 float kernel(ivec2 texel) {
     ivec2 node = node_of(texel, part, 0, size);
     if (node == ivec2(21, 40)) return uintBitsToFloat(0x7fc00000u);

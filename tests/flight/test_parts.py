@@ -165,7 +165,7 @@ def test_the_ground_at_a_place_is_the_highest_node_around_it(parts):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (('name = "height"', 'name = "land"'), "no pass named 'height'"),
         (("generation/endless", "generation/white_noise"), "has no parameter 'part'"),
@@ -177,7 +177,7 @@ def test_the_ground_at_a_place_is_the_highest_node_around_it(parts):
         ),
     ],
 )
-def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, tmp_path, change, said):
+def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, tmp_path, change, message):
     text = Path(terrain_of().file).read_text("utf-8")
     path = tmp_path / "other.toml"
     text = text.replace(*change)
@@ -186,7 +186,7 @@ def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, t
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SketchError, match="cannot be flown over: ") as caught:
         plot_of(load(path), small_engine)
-    assert said in str(caught.value) and "\n" not in str(caught.value)
+    assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_every_pass_is_told_the_height_s_apron(small_engine, terrain_of):

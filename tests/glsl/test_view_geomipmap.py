@@ -235,7 +235,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         drawn = engine.runner.draws.triangles
         culled = engine.read(seen, "view.land", size=SIZE)
         with monkeypatch.context() as patch:
-            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn

@@ -100,7 +100,7 @@ def tables_of(engine, sketch):
 
 @pytest.fixture
 def all_seen(monkeypatch):
-    monkeypatch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+    monkeypatch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
 
 
 # ── the choice ───────────────────────────────────────────────────────────────
@@ -142,7 +142,7 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
         for tolerance in (0.5, 4.0):
             view = view_of(camera)
             squares = morph.pyramid(tables["spans"])
-            reach = morph.reaches(tables, squares, view, tolerance)
+            reach = morph.level_distances(tables, squares, view, tolerance)
             levels = level_map(morph.morph({"tolerance": tolerance}, tables, view), tuple(cells))
             seen |= set(levels.ravel().tolist())
             boxes = sight.boxes_of(tables["spans"], view)
@@ -214,9 +214,11 @@ def test_no_background_shows_through_on_a_flight(engine, shown, tolerance, size)
 
 
 def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkeypatch):
-    right = morph.reaches
+    right = morph.level_distances
     monkeypatch.setattr(
-        morph, "reaches", lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))]
+        morph,
+        "level_distances",
+        lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))],
     )
     sketch = shown(tolerance=8.0)
     assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 10
@@ -229,7 +231,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         culled = engine.read(seen, "view.land", size=SIZE)
         drawn = engine.runner.draws.triangles
         with monkeypatch.context() as patch:
-            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.land.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn

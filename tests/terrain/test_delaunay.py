@@ -29,7 +29,7 @@ WAYS = [Rules(), Rules(random_weights=True, seed=1), Rules(random_weights=True, 
 def sets(triangles):
     """Return triangles as a set of sets of points."""
     found = {frozenset(t) for t in np.asarray(triangles).tolist()}
-    assert len(found) == len(triangles), "no triangle stands twice"
+    assert len(found) == len(triangles), "no triangle occurs twice"
     return found
 
 
@@ -128,7 +128,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
     points, ties = 9, 0
     for seed in range(20):
         made = [
-            triangulate.__wrapped__(Rules(points=points, seed=seed, by_flips=by_flips))  # not kept
+            triangulate.__wrapped__(Rules(points=points, seed=seed, by_flips=by_flips))  # not cached
             for by_flips in (False, True)
         ]
         np.testing.assert_array_equal(made[0].triangles, made[1].triangles)

@@ -59,12 +59,12 @@ def test_a_png_that_says_what_its_numbers_stand_for_is_metres(tmp_path, dtype):
 
 
 @pytest.mark.parametrize(
-    "told", [("much", "0", "1 1"), ("0", "0", "1 1"), ("inf", "0", "1 1"), ("1", "", "1 1")]
+    "texts", [("much", "0", "1 1"), ("0", "0", "1 1"), ("inf", "0", "1 1"), ("1", "", "1 1")]
 )
-def test_what_a_png_says_and_nobody_understands_is_left(tmp_path, told):
+def test_texts_of_a_png_that_are_not_understood_are_ignored(tmp_path, texts):
     path = tmp_path / "a.png"
-    texts = dict(zip(("scale_m", "offset_m", "spacing_m"), told, strict=True))
-    path.write_bytes(encode_samples(HEIGHTMAP.astype(np.uint16), texts))
+    chunks = dict(zip(("scale_m", "offset_m", "spacing_m"), texts, strict=True))
+    path.write_bytes(encode_samples(HEIGHTMAP.astype(np.uint16), chunks))
     found = read_elevation(path)
     assert_heightmap(found, HEIGHTMAP)
     assert not found.in_metres and found.spacing is None and found.code_range == (0, 65535)

@@ -109,12 +109,12 @@ def test_what_cannot_be_resampled_is_a_sentence(heights, size, words):
 def test_a_cliff_overshoots_unless_it_is_kept_within(size):
     cliff = np.zeros((40, 65), np.float32)
     cliff[10:, 20:] = 1.0
-    free, kept = resample(cliff, size), resample(cliff, size, within=(0.0, 1.0))
+    free, limited = resample(cliff, size), resample(cliff, size, within=(0.0, 1.0))
     assert free.max() > 1.02 and free.min() < -0.02
-    assert (kept.min(), kept.max()) == (0.0, 1.0)
+    assert (limited.min(), limited.max()) == (0.0, 1.0)
     inside = (free >= 0) & (free <= 1)
-    np.testing.assert_array_equal(kept[inside], free[inside])
-    assert kept.dtype == np.float32 and kept.flags.c_contiguous
+    np.testing.assert_array_equal(limited[inside], free[inside])
+    assert limited.dtype == np.float32 and limited.flags.c_contiguous
 
 
 def test_tiles_kept_within_the_same_range_share_their_edge():
