@@ -245,7 +245,7 @@ def test_each_step_of_iterations_at_once_goes_on_from_the_one_before(engine, fol
 @pytest.mark.parametrize(
     ("header", "complaint"),
     [
-        ('at_once = "4"', "one turn only"),
+        ('at_once = "4"', "one step only"),
         ('repeat = "3", at_once = "4"', "never names until"),
         ('repeat = "3", visits = "1, 1", at_once = "4"', "one or the other"),
         ('repeat = "3", at_once = "four"', "at_once"),

@@ -15,7 +15,7 @@ from playground.sketch.warnings import former_names_used
 
 from .conftest import TAIL
 
-LAND = """\
+TERRAIN = """\
 #pragma kernel(output = "height:r32f")
 uniform float step_length = 1.0;  //! slider(0, 4) was("stride", "pace") How long a step is
 uniform int seams = 0;            //! menu("left", "repaired") was("mended: repaired") What is done
@@ -24,7 +24,7 @@ float kernel(ivec2 texel) { return step_length * float(seams); }
 TWO = """\
 [[pass]]
 name = "inner"
-use = "./land"
+use = "./terrain"
 set = { stride = 3.0 }
 [parameters]
 step_length = "inner.stride"
@@ -32,7 +32,7 @@ step_length = "inner.stride"
 BODY = """
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 set = { stride = 2.0, seams = "mended" }  # as it was
 """
 MORE = """
@@ -53,8 +53,8 @@ set = { "height.stride" = 1.0 }
 
 @pytest.fixture
 def renamed(folder):
-    """Give a folder whose land has renamed parameters."""
-    folder.write("land.glsl", LAND)
+    """Give a folder whose terrain has renamed parameters."""
+    folder.write("terrain.glsl", TERRAIN)
     return folder
 
 
@@ -145,9 +145,9 @@ def test_presets_and_keyframes_are_saved_by_the_present_name(renamed):
 
 
 def test_a_technique_that_was_chosen_takes_values_by_their_former_names(renamed):
-    renamed.write("other.glsl", LAND.replace('was("stride", "pace")', "").replace("step_length", "stride"))
-    sketch = renamed.sketch(body=BODY.replace("./land", "./other"))
-    assert dict(with_technique(sketch, "height", "./land").graph.passes[0].values)["step_length"] == 2.0
+    renamed.write("other.glsl", TERRAIN.replace('was("stride", "pace")', "").replace("step_length", "stride"))
+    sketch = renamed.sketch(body=BODY.replace("./terrain", "./other"))
+    assert dict(with_technique(sketch, "height", "./terrain").graph.passes[0].values)["step_length"] == 2.0
 
 
 @pytest.mark.parametrize(
@@ -156,17 +156,17 @@ def test_a_technique_that_was_chosen_takes_values_by_their_former_names(renamed)
         ("slider(0, 4) was()", "was of 'step_length': expected its former name, as was(\"stride\")"),
         ('slider(0, 4) was("a stride")', "expected its former name"),
         ('slider(0, 4) was("seams")', "was of 'step_length': 'seams' is the name of 'seams'"),
-        ('slider(0, 4) was("old") \n//! was("old")', "'was' stands twice"),
+        ('slider(0, 4) was("old") \n//! was("old")', "'was' appears twice"),
         ('slider(0, 4) was("a: b")', "was of 'step_length': no choice 'b'"),
     ],
 )
 def test_a_former_name_that_cannot_be_is_refused(renamed, annotation, words):
-    renamed.write("land.glsl", LAND.replace('slider(0, 4) was("stride", "pace")', annotation))
-    renamed.refused(words, file="land.glsl")
+    renamed.write("terrain.glsl", TERRAIN.replace('slider(0, 4) was("stride", "pace")', annotation))
+    renamed.refused(words, file="terrain.glsl")
 
 
 def test_two_parameters_have_not_the_same_former_name(renamed):
-    renamed.write("land.glsl", LAND.replace('"mended: repaired"', '"mended: repaired", "pace"'))
-    renamed.refused("was of 'seams': 'pace' is the name of 'step_length'", 3, "land.glsl")
-    renamed.write("land.glsl", LAND.replace('"mended: repaired"', '"left: repaired"'))
-    renamed.refused("was of 'seams': 'left' is one of its choices still", 3, "land.glsl")
+    renamed.write("terrain.glsl", TERRAIN.replace('"mended: repaired"', '"mended: repaired", "pace"'))
+    renamed.refused("was of 'seams': 'pace' is the name of 'step_length'", 3, "terrain.glsl")
+    renamed.write("terrain.glsl", TERRAIN.replace('"mended: repaired"', '"left: repaired"'))
+    renamed.refused("was of 'seams': 'left' is one of its choices still", 3, "terrain.glsl")
