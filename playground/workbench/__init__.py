@@ -2,6 +2,7 @@
 
     session.py          the sketch as it is shown: it has the four below
       drafts.py         what the files say, the user's edits, what is wrong
+      pending.py        techniques and data files that are checked before they are shown
       view.py           a map instead of the sketch's own view, repeats stopped early
       clock.py          the sketch's own time
       data_files.py     which data files have been drawn with

@@ -45,7 +45,7 @@ from playground.workbench.sun_drag import suns_of, turned
 _NAMED = 2  # files that are named of those saved at once
 
 
-class Drawn(Protocol):
+class DrawnState(Protocol):
     """What has been drawn already: it needs no sandbox."""
 
     def needs_drawing(self, sketch: Sketch) -> bool:
@@ -73,7 +73,7 @@ class Drafts:
         self,
         path: str | Path,
         checks: Checks,
-        drawn: Drawn,
+        drawn: DrawnState,
         *,
         start: StoredEdits | None = None,
         plain: bool = False,

@@ -77,7 +77,7 @@ class History:
         self.steps: list[Step] = []
         self.done = 0  # the first so many are; the others can be done again
         self._most = most
-        self._seen: object = None  # the edits that were looked at last, to know at once that nothing moved
+        self._latest: object = None  # edits and steps of the last ``look``, compared first
         self._state: dict[Key, object] | None = None
         self._of = 0  # how often the files had been read
         self._due: dict[Key, object] = {}  # what an undo has requested and is not there yet
@@ -117,10 +117,10 @@ class History:
         """
         if self._open and not held:
             self._close()
-        seen = edits, tuple(steps.items())
-        before, self._state = self._state, self._state if seen == self._seen else state_of(edits, steps)
+        latest = edits, tuple(steps.items())
+        before, self._state = self._state, self._state if latest == self._latest else state_of(edits, steps)
         assert self._state is not None
-        self._seen = seen
+        self._latest = latest
         if before is not None and of != self._of:
             before = state_of(edits if read is None else read, steps)
         self._of = of
@@ -174,8 +174,8 @@ class History:
         ]
 
     def settle(self, edits: Edits, steps: Mapping[str, int]) -> None:
-        """Take a state for granted: an undo has made it. What is still to come of it is no step either."""
-        self._seen, self._state = (edits, tuple(steps.items())), state_of(edits, steps)
+        """Take in a state that an undo has made: it is no step, nor is what is still to come of it."""
+        self._latest, self._state = (edits, tuple(steps.items())), state_of(edits, steps)
         there = self._state
         self._due = {key: value for key, value in self._due.items() if there.get(key) != value}
 

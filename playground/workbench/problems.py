@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.paths import GLSL
-from playground.sketch.allowed_files import root_of
+from playground.sketch.allowed_files import Signature, root_of, signature
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import read_kernel
 from playground.sketch.warnings import former_names_used, warnings_of_kernel
@@ -35,7 +36,6 @@ class Problems:
     moved: bool = False  # it was moved to another, which must come into view
     _error: PlaygroundError | None = None
     _also: tuple[Diagnostic, ...] = ()  # mistakes in files after the first wrong one
-    _texts: dict[Path, tuple[object, list[str]]] = field(default_factory=dict)
 
     @property
     def all(self) -> tuple[Diagnostic, ...]:
@@ -104,7 +104,7 @@ class Problems:
         """Return (number, text) of the lines around a mistake; its own alone where the file has gone on."""
         if not diagnostic.line:
             return []
-        lines = self._lines(diagnostic.file)
+        lines = _lines_of(diagnostic.file)
         here = diagnostic.line - 1
         own = diagnostic.excerpt or (lines[here] if here < len(lines) else "")
         if here >= len(lines) or lines[here].rstrip() != own.rstrip():
@@ -118,7 +118,7 @@ class Problems:
 
     def moved_with_its_line(self, diagnostic: Diagnostic) -> Diagnostic | None:
         """Return a warning at the number that its line has by now; None where that line is gone."""
-        lines = self._lines(diagnostic.file)
+        lines = _lines_of(diagnostic.file)
         own, here = diagnostic.excerpt.rstrip(), diagnostic.line - 1
         if not lines or not own or (here < len(lines) and lines[here].rstrip() == own):
             return diagnostic
@@ -127,21 +127,20 @@ class Problems:
             return None
         return replace(diagnostic, line=min(same, key=lambda number: abs(number - diagnostic.line)))
 
-    def _lines(self, name: str) -> list[str]:
-        path = path_named(name) if name else None
-        if path is None:
-            return []
-        try:
-            state = path.stat()
-            stamp = (state.st_mtime_ns, state.st_size)
-            if path not in self._texts or self._texts[path][0] != stamp:
-                text = path.read_bytes().decode("utf-8-sig", "replace")
-                lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-                self._texts = {k: v for k, v in list(self._texts.items())[-31:]}
-                self._texts[path] = (stamp, lines)
-        except OSError:
-            return []
-        return self._texts[path][1]
+
+def _lines_of(name: str) -> list[str]:
+    """Return the lines of a file as an error names it; none where it cannot be read."""
+    path = path_named(name) if name else None
+    try:
+        return _lines_at(path, signature(path)) if path is not None else []
+    except OSError:
+        return []
+
+
+@lru_cache(maxsize=32)
+def _lines_at(path: Path, _: Signature | None) -> list[str]:
+    text = path.read_bytes().decode("utf-8-sig", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 class Warnings:

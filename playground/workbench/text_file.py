@@ -131,14 +131,15 @@ class TextView(Protocol):
         """Return the text as it is in the editor."""
 
 
+@dataclass(eq=False)
 class Editing:
     """A file that is open in a window of our own, and where it is to be looked at."""
 
-    def __init__(self, text: OpenText) -> None:
-        self.text = text
-        self.line, self.column = 1, 1
-        self.focus = True  # it is to come to the front, at its line
-        self.view: TextView | None = None  # None until it is drawn for the first time
+    text: OpenText
+    line: int = 1
+    column: int = 1
+    focus: bool = True  # it is to come to the front, at its line
+    view: TextView | None = None  # None until it is drawn for the first time
 
 
 def unsaved(open_files: Iterable[Editing]) -> list[str]:

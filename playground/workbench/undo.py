@@ -107,7 +107,7 @@ class Undo:
             self.settle()
 
     def settle(self) -> None:
-        """Take the state of the session for granted: it is no step."""
+        """Take in the state of the session without a step."""
         if self.session.shown is not None:
             self.history.settle(self.session.shown.edits, self.session.view.steps)
 

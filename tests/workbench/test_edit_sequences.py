@@ -67,8 +67,20 @@ class Player:
         assert self.desk.drafts.stage is ReloadStage.NONE and self.desk.session.error is None, self.done
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(12))
 def test_what_was_chosen_last_is_shown_and_all_of_it_can_be_undone(desk: Desk, seed: int) -> None:
+    check(desk, seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12, 212))
+def test_what_was_chosen_last_is_shown_and_all_of_it_can_be_undone_again_and_again(
+    desk: Desk, seed: int
+) -> None:
+    check(desk, seed)
+
+
+def check(desk: Desk, seed: int) -> None:
     player, undo = Player(desk, seed), desk.bench.undo
     player.play(player.random.choice((3, 6, 12)))
     desk.drafts.reload()
