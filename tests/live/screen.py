@@ -16,13 +16,31 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ..sketch_texts import passes
+
 ROOT = Path(__file__).resolve().parents[2]
 LIMIT = 90.0  # [s] for anything to happen on a slow machine
+
+HILLS = (
+    'format = 1\ntitle = "Hills"\nsize = 65\nextent = 1000.0\nrelief = 200.0\n'
+    + passes(height="./terrain")
+    + '[view]\nuse = "view/terrain"\nsamples = 1\n'
+)
+"""A sketch whose terrain is the file next to it; keys of its view may follow."""
 
 ON_LINUX = [
     pytest.mark.live,
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Xvfb is for Linux"),
 ]
+
+
+def script(size: tuple[int, int], **options: object) -> str:
+    """Return a program that opens a window on the sketch in its first argument."""
+    given = "".join(f"{name}={value!r}, " for name, value in options.items())
+    return (
+        "import sys\nfrom playground.live.app import run\n"
+        f"sys.exit(run(sys.argv[1], size={size}, {given}time_limit=300))\n"
+    )
 
 
 def needed(program: str) -> str:

@@ -24,7 +24,7 @@ from playground.workbench.non_finite import REST, FiniteWatch
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes
-from .screen import ON_LINUX, Program, Screen
+from .screen import ON_LINUX, Program, Screen, script
 
 SLOW = """// slow.glsl -- takes far longer than to read it from a disk
 #pragma kernel(output = "height:r32f")
@@ -50,11 +50,7 @@ SKETCH = (
     + passes(low="./height", height=("./raised", 'inputs = { low = "low:height" }'))
     + map_of("height", channel="red")
 )
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(500, 400), keeps=2**28, time_limit=300))
-"""
+RUN = script((500, 400), cache_limit=2**28)
 
 
 class Desk:

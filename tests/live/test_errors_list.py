@@ -19,6 +19,7 @@ from playground.workbench.editors import Editor
 from playground.workbench.problems import Problems, Warnings, passes_of
 from playground.workbench.text_file import unsaved
 
+from ..sketch_texts import map_of_height
 from .desk import Bare, errors_of
 
 TERRAIN = """// terrain.glsl -- hills
@@ -29,16 +30,7 @@ uniform float spare = 0.5; //! slider(0, 1) Nothing
 float kernel(ivec2 texel) { return level * wave(vec2(texel)); }
 """
 WAVE = "// wave.glsl -- a wave\nfloat wave(vec2 p) {\n    return 0.5 + 0.1 * sin(p.x);\n}\n"
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/map"
-[view.inputs]
-shown = "height"
-"""
+SKETCH = "format = 1\nsize = 17\n" + map_of_height("./terrain")
 
 
 @pytest.fixture

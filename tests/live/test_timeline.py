@@ -13,6 +13,7 @@ from playground.sketch.load import load
 from playground.workbench.clock import Clock
 from playground.workbench.inspect.time_range import marks_of, span_of, stepped, toggle_loop
 
+from ..sketch_texts import passes
 from .desk import Bare
 
 TERRAIN = """// terrain.glsl -- hills
@@ -20,14 +21,7 @@ TERRAIN = """// terrain.glsl -- hills
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level; }
 """
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/terrain"
-"""
+SKETCH = "format = 1\nsize = 17\n" + passes(height="./terrain") + '[view]\nuse = "view/terrain"\n'
 KEYFRAMES = """
 [[keyframe]]
 time = 1.0

@@ -19,15 +19,11 @@ from numpy.typing import NDArray
 from playground.errors import ContextError
 from playground.live.app import run
 
-from .screen import ON_LINUX, Program, Screen
+from .screen import HILLS, ON_LINUX, Program, Screen, script
 
 WIDTH, HEIGHT = 800, 500
 PANEL = 330  # pixels at scale 1
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
-"""
+RUN = script((WIDTH, HEIGHT))
 
 TERRAIN = """// terrain.glsl -- hills
 #include "inc/wave.glsl"
@@ -36,20 +32,7 @@ uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * wave(vec2(texel) / vec2(size)); }
 """
 WAVE = "// wave.glsl -- a wave\nfloat wave(vec2 p) { return 0.5 + 0.5 * sin(9.0 * p.x) * cos(7.0 * p.y); }\n"
-SKETCH = """format = 1
-title = "Hills"
-size = 65
-extent = 1000.0
-relief = 200.0
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/terrain"
-samples = 1
-camera = { azimuth = 200, elevation = 50, distance = 900 }
-set = { grid = 65 }
-"""
+SKETCH = HILLS + "camera = { azimuth = 200, elevation = 50, distance = 900 }\nset = { grid = 65 }\n"
 
 pytestmark = ON_LINUX
 

@@ -7,29 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from .screen import ON_LINUX, Program, Screen
+from ..sketch_texts import map_of_height
+from .screen import ON_LINUX, Program, Screen, script
 
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(800, 600), time_limit=300))
-"""
+RUN = script((800, 600))
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) {
     return sin(0.3 * float(texel.x));
 }
 """
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/map"
-[view.inputs]
-shown = "height"
-"""
+SKETCH = "format = 1\nsize = 17\n" + map_of_height("./terrain")
 
 pytestmark = ON_LINUX
 

@@ -9,15 +9,11 @@ import numpy as np
 import pytest
 
 from ..sketch_texts import map_of_height
-from .screen import ON_LINUX, Program, Screen
+from .screen import ON_LINUX, Program, Screen, script
 
 WIDTH, HEIGHT = 800, 500
 SHOW_IT = 386, 52  # the button, at scale 1
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
-"""
+RUN = script((800, 500))
 TERRAIN = """// terrain.glsl -- hills with a hole
 #pragma kernel(output = "height:r32f")
 uniform float root = -1.0; //! slider(-1, 1)

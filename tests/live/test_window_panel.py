@@ -8,15 +8,10 @@ from pathlib import Path
 import pytest
 
 from ..sketch_texts import map_of, passes
-from .screen import ON_LINUX, Program, Screen
+from .screen import ON_LINUX, Program, Screen, script
 
 WIDTH, HEIGHT = 800, 500
 LEVEL = 200, 243  # the first parameter's slider, at scale 1
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=SIZE, time_limit=300))
-"""
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
@@ -41,7 +36,7 @@ FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
 
 
 def opened(screen: Screen, folder: Path, size: object) -> Program:
-    run = RUN.replace("SIZE", repr(size))
+    run = script(size)
     program = Program(screen, folder, [sys.executable, "-c", run, str(folder)], folder)
     program.wait(lambda now: now["draws"] > 0)
     return program

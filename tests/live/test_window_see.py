@@ -11,20 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 from ..sketch_texts import map_of, passes
-from .screen import ON_LINUX, Program, Screen
+from .screen import ON_LINUX, Program, Screen, script
+from .test_window_panel import TERRAIN
 
 WIDTH, HEIGHT = 900, 560
 PANEL = 330
-RUN = """
-import sys
-from playground.live.app import run
-sys.exit(run(sys.argv[1], size=SIZE, time_limit=300))
-"""
-TERRAIN = """// terrain.glsl -- hills
-#pragma kernel(output = "height:r32f")
-uniform float level = 0.5; //! slider(0, 1) How high
-float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
-"""
 SKETCH = (
     """format = 1
 title = "Hills"
@@ -53,7 +44,7 @@ SCREEN = WIDTH + 50, HEIGHT + 50  # [pixels]
 def program(screen: Screen, tmp_path: Path) -> Iterator[Program]:
     (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    run = RUN.replace("SIZE", repr((WIDTH, HEIGHT)))
+    run = script((WIDTH, HEIGHT))
     made = Program(screen, tmp_path, [sys.executable, "-c", run, str(tmp_path)], tmp_path)
     made.wait(lambda now: now["draws"] > 0)
     yield made

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from ..images.test_bounds import npz
-from .screen import ON_LINUX, Program, Screen
+from .screen import HILLS, ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 900, 600
 RUN = """
@@ -51,19 +51,7 @@ TERRAIN = """// terrain.glsl -- hills
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(0.3 * float(texel.x))); }
 """
-SKETCH = """format = 1
-title = "Hills"
-size = 65
-extent = 1000.0
-relief = 200.0
-[[pass]]
-name = "height"
-use = "./terrain"
-[view]
-use = "view/terrain"
-samples = 1
-set = { grid = 33 }
-"""
+SKETCH = HILLS + "set = { grid = 33 }\n"
 # llvmpipe cuts every loop at 65,535 iterations, so that it takes many to keep it busy.
 LOOP = " for (int i = 0; i < 60000; i++) s += sin(float(i) + s);"
 BUSY = TERRAIN.replace("{ return", f"{{ float s = 0.0;{LOOP * 20} if (s == 0.5) return s; return")

@@ -159,10 +159,9 @@ class Prose:
         *,
         size: float = theme.TEXT_SIZE,
         ink: int | None = None,
-        width: float = 0.0,
     ) -> None:
-        """Draw a text where the cursor is, over the width that is left or one of its own."""
-        wide = width or imgui.get_content_region_avail().x
+        """Draw a text where the cursor is, over the width that is left."""
+        wide = imgui.get_content_region_avail().x
         layout = self._layout_of(words, look, size, theme.packed(theme.INK) if ink is None else ink, wide)
         corner = imgui.get_cursor_screen_pos()
         imgui.dummy(ImVec2(min(layout.width, wide), max(layout.height, 1.0)))
@@ -177,10 +176,6 @@ class Prose:
             else:
                 for placed in piece.line.placed:
                     self._run(placed, x, y + piece.line.ascent, style, look)
-
-    def height(self, words: str, look: Theme, width: float, size: float = theme.TEXT_SIZE) -> float:
-        """Return how high a text is at a width, in the window's units."""
-        return self._layout_of(words, look, size, theme.packed(theme.INK), width).height
 
     # ── layout ───────────────────────────────────────────────────────────────
 

@@ -183,12 +183,9 @@ class Reader:
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
-    def is_on(self, block: FigureBlock, index: int | None = None) -> bool:
+    def is_on(self, block: FigureBlock) -> bool:
         """Return whether a figure of a block is shown."""
-        key = self.figure.key
-        return (
-            key is not None and key[0] == block.name and (index is None or self.at.get(block.name) == index)
-        )
+        return self.figure.key is not None and self.figure.key[0] == block.name
 
     def show(self, block: Block) -> None:
         """Show a block's figure; of a series the one it was left at."""
