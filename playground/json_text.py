@@ -1,4 +1,4 @@
-"""Read untrusted JSON: whatever is wrong with it raises one kind of error."""
+"""Read untrusted JSON: any defect raises one kind of error."""
 
 from __future__ import annotations
 
@@ -20,18 +20,10 @@ def read_json(text: str | bytes, *, constant: Callable[[str], Any] | None = None
         found = json.loads(text, parse_constant=constant)
     except RecursionError:
         raise ValueError(f"it is nested deeper than {DEEPEST} levels") from None
-    inner = [found]
+    inner = [found] if isinstance(found, list | dict) else []
     for _ in range(DEEPEST):
-        inner = [one for value in inner for one in _inside(value)]
+        values = (value.values() if isinstance(value, dict) else value for value in inner)
+        inner = [one for some in values for one in some if isinstance(one, list | dict)]
         if not inner:
             return found
     raise ValueError(f"it is nested deeper than {DEEPEST} levels")
-
-
-def _inside(value: Any) -> list[Any]:
-    """Return the lists and objects directly in a value."""
-    if isinstance(value, dict):
-        value = value.values()
-    elif not isinstance(value, list):
-        return []
-    return [one for one in value if isinstance(one, list | dict)]

@@ -59,7 +59,9 @@ def remove_left_over(folder: Path) -> None:
             if entry.name.startswith(".") and _NAMED.fullmatch(entry.name) and entry.is_file():
                 with suppress(OSError), Path(entry.path).open("r+b") as left:
                     if _locked(left, wait=False):
-                        _remove_open(left, Path(entry.path))
+                        if sys.platform == "win32":
+                            left.close()  # there an open file cannot be removed
+                        Path(entry.path).unlink(missing_ok=True)
 
 
 def _made(path: Path) -> Partial:
@@ -86,12 +88,6 @@ def _locked(file: BinaryIO, *, wait: bool) -> bool:
 
     try:
         fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:  # somebody else has, or this file system has no locks
+    except OSError:  # another process has, or this file system has no locks
         return False
     return True
-
-
-def _remove_open(file: BinaryIO, path: Path) -> None:
-    if sys.platform == "win32":
-        file.close()
-    path.unlink(missing_ok=True)

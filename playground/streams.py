@@ -68,7 +68,7 @@ def spelled(error: UnicodeError) -> tuple[str | bytes, int]:
 
 
 def let_go(stream: TextIO) -> None:
-    """Write what a stream still holds; where nobody reads it, send that and what follows to nowhere."""
+    """Write what a stream still holds; where its reader is gone, discard that and what follows."""
     try:
         stream.flush()
     except (OSError, ValueError):

@@ -44,7 +44,7 @@ def note(text: str) -> None:
     """Print a note on standard error."""
     try:
         print(text, file=sys.stderr)
-    except OSError:  # nobody reads it any more
+    except OSError:  # its reader is gone
         let_go(sys.stderr)
 
 

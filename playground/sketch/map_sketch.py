@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 
 from playground.paths import GLSL
@@ -24,7 +25,7 @@ class Map:
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch with this map for its view."""
         view = sketch.graph.find("view")
-        if _is_of_view(self.ref) and view is not None:
+        if re.match(r"view\b", self.ref) and view is not None:
             return _within(sketch, view, self)
         spec = PassSpec("view", USE, self.kernel, inputs=(("shown", self.ref),), values=self.values)
         passes = (*(p for p in sketch.graph.passes if p.name != "view"), spec)
@@ -47,10 +48,6 @@ class Map:
         known = dict(self.values)
         parameter = self.kernel.parameter(name)
         return known[name] if name in known or parameter is None else parameter.default
-
-
-def _is_of_view(ref: str) -> bool:
-    return ref.partition(":")[0].partition(".")[0] == "view"
 
 
 def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:

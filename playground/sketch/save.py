@@ -118,7 +118,9 @@ def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
         path = target / "sketch.toml"
         path.write_bytes(text.encode())
         copied = load(path)
-        inside = _with_files_inside(_over(copied, wanted))
+        graph = replace(wanted.graph, path=copied.graph.path, name=copied.graph.name)
+        moved = replace(wanted, file=copied.file, folder=copied.folder, name=copied.name, graph=graph)
+        inside = _with_files_inside(moved)
         write_over(path, copied, lambda t: saved_text(t, copied, inside), says_same_as(wanted))
     except (PlaygroundError, OSError) as error:
         shutil.rmtree(target, ignore_errors=True)
@@ -319,14 +321,3 @@ def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
         if path.is_file() and path.is_relative_to(folder) and str(path) != file.file:
             found[path.relative_to(folder).as_posix()] = None
     return list(found)
-
-
-def _over(copied: Sketch, wanted: Sketch) -> Sketch:
-    """Return the copy of a sketch with what is wanted over it."""
-    return replace(
-        wanted,
-        file=copied.file,
-        folder=copied.folder,
-        name=copied.name,
-        graph=replace(wanted.graph, path=copied.graph.path, name=copied.graph.name),
-    )

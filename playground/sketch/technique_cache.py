@@ -55,11 +55,9 @@ class TechniqueCache(Techniques):
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
         name = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
-        known = self._now.get(name)
-        if known is None:
-            known = self._cached.get(name)
-            if known is not None and not known.is_fresh():
-                known = None
+        known = self._now.get(name) or self._cached.get(name)
+        if known is not None and name not in self._now and not known.is_fresh():
+            known = None
         if known is None or not self.has_room_for(known.depth):
             known = self._read_again(name, use, folder, root)
         else:
