@@ -1,4 +1,4 @@
-"""The cache's bookkeeping: what it says it holds is what it holds, whatever came and went."""
+"""The cache's bookkeeping: its bytes are those of what it holds, after any changes."""
 
 from __future__ import annotations
 
@@ -34,4 +34,4 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
             engine.render(sketch.with_values({"height.seed": seed}), size=(16, 9))
             assert len(engine.cache) <= 24
         engine.render(sketch.with_values({"height.seed": 11}), size=(16, 9))
-        assert engine.ran == [], "the newest are kept"
+        assert engine.ran == [], "the newest are cached"

@@ -19,7 +19,7 @@ SUMS = """#pragma kernel(output = "sums:r32f", repeat = "log2(size.x)")
 uniform sampler2D values; //! input
 uniform float scale = 1.0; //! slider(0, 10)
 float kernel(ivec2 texel) {
-    // Sums of all to the west, in doubling steps: the first turn reads the values.
+    // Sums of all to the west, in doubling steps: the first iteration reads the values.
     int reach = 1 << iteration;
     float here = iteration == 0 ? texelFetch(values, texel, 0).r * scale : previous(texel);
     ivec2 west = texel - ivec2(reach, 0);

@@ -238,7 +238,7 @@ def test_a_draw_leaves_the_context_as_it_was(ctx, any_engine, plates):
 
 
 def test_a_frame_leaves_no_sampler_behind(ctx, any_engine, folder):
-    """A sampler stays on its unit whatever texture comes after it: others would read theirs by it."""
+    """A sampler stays on its unit for any texture bound after it: others would read theirs by it."""
     folder.write("back.glsl", BACK)
     folder.write(
         "blur.glsl",

@@ -60,7 +60,7 @@ def test_an_undefined_function(engine, folder):
     assert "nowhere" in error.diagnostics[0].message
 
 
-def test_several_mistakes_are_all_told(engine, folder):
+def test_several_mistakes_are_all_reported(engine, folder):
     error = mistake(
         engine, folder, GOOD.replace("return 1.0;", "float x = one_wrong;\n    return two_wrong;")
     )
@@ -194,7 +194,7 @@ def test_an_engine_says_which_drivers_there_are(ctx):
 
 
 def test_an_opengl_error_names_the_pass(any_engine, folder, monkeypatch):
-    """A fault that the driver reports when something new was made is told with the pass."""
+    """An error that the driver reports when something new was made names the pass."""
     sketch = folder.one(GOOD)
     run = any_engine.runner.run
 

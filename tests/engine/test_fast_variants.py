@@ -26,7 +26,7 @@ HILL = """\
 uniform float scale = 1.0; //! slider(0, 4) How high
 float kernel(ivec2 texel) { return previous(texel) + scale * rise_of(texel.x); }
 """
-RISE = "// rise.glsl -- how far the land rises.\nfloat rise_of(int x) { return 0.25 * float(x); }\n"
+RISE = "// rise.glsl -- how far the terrain rises.\nfloat rise_of(int x) { return 0.25 * float(x); }\n"
 COMPUTE = """\
 #pragma compute(groups = "size.x, size.y", local = "1, 1", agrees = "1e-5")
 uniform float scale = 1.0; //! slider(0, 4) How high
@@ -227,7 +227,7 @@ def test_plain_forces_the_plain_form(drawing, hill):
         assert ran_fast(engine) != plain
     (hill.path / NAME).unlink()
     engine.read(hill.sketch(BODY).plainly(), "h")
-    assert sentences == [], "who asks for the plain form need not be told of it"
+    assert sentences == [], "the plain form was requested, so nothing is reported"
 
 
 def test_steps_are_those_of_the_plain_form(drawing, hill):
@@ -320,7 +320,7 @@ WRONG = {
     "everywhere": ("scale * float(texel.x)", "1.01 * scale * float(texel.x)", "height differs by"),
     "at odd sizes": ("scale * float", "(size.x % 2 == 1 ? 2.0 : 1.0) * scale * float", "height differs by"),
     "at one end of a slider": ("scale * float", "min(scale, 3.0) * float", "with scale = 4.0"),
-    "where the land is not square": (
+    "where the terrain is not square": (
         "scale * float",
         "(spacing.x != spacing.y ? 2.0 : 1.0) * scale * float",
         "by",

@@ -41,7 +41,7 @@ def test_north_is_on_top_and_east_on_the_right(any_engine, corners):
     assert frame.array.flags["C_CONTIGUOUS"]
     assert frame.array[0, 0].tolist() == [255, 0, 64, 255]
     assert frame.array[-1, -1].tolist() == [0, 255, 64, 255]
-    assert frame.array[0, -1].tolist() == [255, 255, 64, 128], "alpha is kept"
+    assert frame.array[0, -1].tolist() == [255, 255, 64, 128], "alpha stays"
     assert (frame.sketch, frame.time) == ("test_north_is_on_top_and_east_o0", 2.0) or frame.sketch
 
 
@@ -81,7 +81,7 @@ def test_it_shows_itself_as_a_png(any_engine, corners):
 
 def test_it_saves_itself_with_words(tmp_path):
     frame = Frame(np.full((2, 3, 4), 200, np.uint8), "s", 1.0)
-    path = frame.save(tmp_path / "f.png", {"Title": "a land"})
+    path = frame.save(tmp_path / "f.png", {"Title": "a terrain"})
     with Image.open(path) as image:
-        assert image.text["Title"] == "a land"
+        assert image.text["Title"] == "a terrain"
         assert image.size == frame.size == (3, 2)

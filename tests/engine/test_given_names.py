@@ -7,7 +7,7 @@ import pytest
 
 from playground.errors import ShaderError
 
-ASKS = """#pragma kernel(output = "told:rgba32f")
+ASKS = """#pragma kernel(output = "given:rgba32f")
 uniform sampler2D wind;  //! input("black")
 uniform vec2 sun = vec2(30.0, 60.0);  //! direction
 vec4 kernel(ivec2 texel) { return vec4(towards_sun, wired_wind ? 1.0 : 0.0); }
@@ -16,7 +16,7 @@ WIND = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) { retur
 PASS = '[[pass]]\nname = "asked"\nuse = "./asks"\n'
 
 
-DRAWN = """#pragma draw(mesh = "sheet", output = "told:rgba32f")
+DRAWN = """#pragma draw(mesh = "sheet", output = "given:rgba32f")
 uniform sampler2D wind;  //! input("black")
 uniform vec2 sun = vec2(30.0, 60.0);  //! direction
 vec4 vertex(vec3 corner, out float blown) {
@@ -29,7 +29,7 @@ SWEPT = """#pragma compute(groups = "size.x, size.y", local = "1, 1")
 uniform sampler2D wind;  //! input("black")
 uniform vec2 sun = vec2(30.0, 60.0);  //! direction
 void main() {
-    imageStore(out_told, ivec2(gl_GlobalInvocationID.xy), vec4(towards_sun, wired_wind ? 1.0 : 0.0));
+    imageStore(out_given, ivec2(gl_GlobalInvocationID.xy), vec4(towards_sun, wired_wind ? 1.0 : 0.0));
 }
 """
 
@@ -93,7 +93,7 @@ def test_kernels_draws_and_compute_variants_get_them(each_engine, folder, form):
             assert (given[..., 3] == wired).all()
 
 
-SIZES = """#pragma kernel(output = "told:rg32f")
+SIZES = """#pragma kernel(output = "given:rg32f")
 uniform sampler2D wind;  //! input("black")
 vec2 kernel(ivec2 texel) { return vec2(matches_wind ? 1.0 : 0.0, wired_wind ? 1.0 : 0.0); }
 """

@@ -1,4 +1,4 @@
-"""The eye stays over the terrain: one that stands under it is raised, and it is said."""
+"""The eye stays over the terrain: one that stands under it is raised, with a warning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A loop over a technique gives what the same loop gives in NumPy, and runs no turn twice."""
+"""A loop over a technique gives what the same loop gives in NumPy, and runs no iteration twice."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def test_more_iterations_go_on_from_those_that_are_cached(engine, rain):
     np.testing.assert_allclose(found, expected(5)[0], rtol=1e-6)
     np.testing.assert_allclose(engine.read(rain("5"), "after"), expected(5)[0] * 0.5, rtol=1e-6)
     engine.texture(rain("2"), "rain:water")
-    assert engine.runs["rain.move"] == 7, "fewer turns begin again"
+    assert engine.runs["rain.move"] == 7, "fewer iterations begin again"
 
 
 @pytest.mark.parametrize("path", ["start.level", "rain.rough.grain", "rain.move.bias"])
@@ -291,7 +291,7 @@ def test_nested_loops(engine, folder):
     iterations = 5 + 1  # 2, then 3 more, then 1 anew
     assert engine.runs == {
         "o.round.still": 1,  # nothing changes it
-        "o.round.slow": iterations,  # once in a turn of the outer loop
+        "o.round.slow": iterations,  # once in an iteration of the outer loop
         "o.round.go": 3 * iterations,
     }
 
@@ -369,7 +369,7 @@ def test_five_hundred_iterations_need_no_more_memory_than_five(any_engine, rain)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     any_engine.texture(sketch, "rain:water", time=500.0)
     assert any_engine.runs["rain.move"] == 500
-    assert any_engine.pool.made == made, "every turn finds its textures in the pool"
+    assert any_engine.pool.made == made, "every iteration finds its textures in the pool"
     assert any_engine.cache.bytes == cached
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8 * 1024  # [KiB]
 
@@ -390,4 +390,4 @@ def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monk
         any_engine.texture(sketch, "rain:water", time=6.0)
     monkeypatch.undo()
     np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=6.0), expected(6)[0], rtol=1e-6)
-    assert any_engine.ran.count("rain.move") == 3, "three turns were good"
+    assert any_engine.ran.count("rain.move") == 3, "three iterations were good"

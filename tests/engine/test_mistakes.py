@@ -1,4 +1,4 @@
-"""Every pass that does not compile is told of at once, each mistake once."""
+"""Every pass that does not compile is reported at once, each mistake once."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def files(error: PlaygroundError) -> list[str]:
     return [Path(d.file).name for d in error.diagnostics if d.severity == "error"]
 
 
-def test_two_passes_that_fail_are_both_told_in_order(engine: Engine, tmp_path: Path) -> None:
+def test_two_passes_that_fail_are_both_reported_in_order(engine: Engine, tmp_path: Path) -> None:
     found = files(drawn(engine, sketch_in(tmp_path, "first_name", "second_name")))
     assert found[0] == "first.glsl" and set(found) == {"first.glsl", "second.glsl"}
 

@@ -1,4 +1,4 @@
-"""A plain shader, with its own #version and main, runs unchanged and is told the usual things."""
+"""A plain shader, with its own #version and main, runs unchanged and gets the usual uniforms."""
 
 from __future__ import annotations
 

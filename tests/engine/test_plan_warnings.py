@@ -1,4 +1,4 @@
-"""What is drawn though something is amiss is told once: to a program, at the terminal, in a check."""
+"""What is drawn though something is amiss is reported once: to a program, at the terminal, in a check."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import tifffile
 
 import playground
 from playground import cli
-from playground.engine import sandbox as trial
+from playground.engine import sandbox as sandbox_module
 from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
 from playground.sketch.load import load
@@ -43,7 +43,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.write("mine.glsl", KERNEL)
     path = folder.write("sketch.toml", SKETCH)
     monkeypatch.chdir(folder.path)
-    monkeypatch.setattr(trial, "Sandbox", partial(trial.Sandbox, limit_seconds=120.0))
+    monkeypatch.setattr(sandbox_module, "Sandbox", partial(sandbox_module.Sandbox, limit_seconds=120.0))
     return path
 
 
@@ -69,9 +69,9 @@ def test_render_and_export_print_each_once(sketch, capsys):
         warnings.simplefilter("error")
         for command in (["render", ".", "--size", "16x9", "-o", "a.png"], ["export", ".", "--to", "b.npy"]):
             assert cli.main(command) == 0
-            said = capsys.readouterr().err
-            assert said.count(TURNED) == 1, said
-            assert f"warning: sketch.toml:3: {TURNED}" in said
+            printed = capsys.readouterr().err
+            assert printed.count(TURNED) == 1, printed
+            assert f"warning: sketch.toml:3: {TURNED}" in printed
 
 
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
@@ -120,13 +120,13 @@ def test_a_hidden_default_is_reported_by_render_and_check(folder, monkeypatch, c
         KERNEL.replace("return 1.0", "return idle").replace("#line 7\n", ""), more="set = { idle = 2.0 }"
     )
     monkeypatch.chdir(folder.path)
-    said = "the default is 1; sketch.toml:6 sets 2"
+    printed = "the default is 1; sketch.toml:6 sets 2"
     assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png"]) == 0
-    assert capsys.readouterr().err.splitlines() == [f"a.idle: {said}"]
+    assert capsys.readouterr().err.splitlines() == [f"a.idle: {printed}"]
     assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png", "--set", "a.idle=0.5"]) == 0
     assert "default" not in capsys.readouterr().err
     assert cli.main(["check", "sketch.toml"]) == 0
-    assert f"warning: one.glsl:2: {said} in pass 'a'" in capsys.readouterr().out
+    assert f"warning: one.glsl:2: {printed} in pass 'a'" in capsys.readouterr().out
 
 
 def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
@@ -134,5 +134,5 @@ def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monk
     folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("#line 7\n", ""), more=more)
     monkeypatch.chdir(folder.path)
     assert cli.main(["render", ".", "--shot", "end", "-o", "a.png"]) == 2
-    said = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
-    assert capsys.readouterr().err == said
+    printed = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
+    assert capsys.readouterr().err == printed

@@ -15,8 +15,8 @@ from playground.sketch.model import Keyframe
 from ..loading import load
 from ..sketch_texts import passes
 
-COUNT = """#pragma kernel(output = "a:r32f", repeat = "turns")
-uniform int turns = 5; //! slider(0, 50)
+COUNT = """#pragma kernel(output = "a:r32f", repeat = "count")
+uniform int count = 5; //! slider(0, 50)
 float kernel(ivec2 texel) { return previous(texel) * 2.0 + float(iteration) + 0.25 * float(iterations); }
 """
 SPREAD = """#pragma kernel(output = "a:r32f", repeat = "4")
@@ -46,7 +46,7 @@ def counted(iterations: int, whole: int | None = None) -> float:
 
 @pytest.mark.parametrize("iterations", [1, 2, 5, 6])
 def test_previous_is_the_iteration_before_and_zero_on_the_first(engine, folder, iterations):
-    sketch = folder.one(COUNT).with_values({"a.turns": iterations})
+    sketch = folder.one(COUNT).with_values({"a.count": iterations})
     np.testing.assert_array_equal(
         engine.read(sketch, "a"), np.full((17, 17), counted(iterations), np.float32)
     )
@@ -55,12 +55,12 @@ def test_previous_is_the_iteration_before_and_zero_on_the_first(engine, folder, 
 
 
 def test_no_iteration_at_all_gives_zeros(engine, folder):
-    sketch = folder.one(COUNT).with_values({"a.turns": 0})
+    sketch = folder.one(COUNT).with_values({"a.count": 0})
     assert not engine.read(sketch, "a").any()
 
 
 def test_stopping_early_gives_the_state_on_the_way(engine, folder):
-    """``iterations`` stays the count of all turns: a picture on the way is one of the way."""
+    """``iterations`` stays the count of all iterations: a picture on the way is one of the way."""
     sketch = folder.one(COUNT)
     for iteration in (0, 1, 3, 5, 2):
         found = engine.read(sketch, "a", steps={"a": iteration})
@@ -73,7 +73,7 @@ def test_steps_go_on_from_iteration_to_iteration(engine, folder):
     for iteration, values in engine.steps(sketch, "a"):
         assert values[0, 0] == counted(iteration, whole=5)
         texels.append(engine.texels // (17 * 17))
-    assert texels == [1, 1, 1, 1, 1, 1], "each turn is run once; the first is the empty texture"
+    assert texels == [1, 1, 1, 1, 1, 1], "each iteration is run once; the first is the empty texture"
 
 
 def test_steps_of_what_does_not_repeat_have_a_sentence(engine, folder):
@@ -97,7 +97,7 @@ def test_neighbours_are_clamped_at_the_border(engine, folder, shape):
 def test_initial_is_what_the_first_iteration_reads(engine, folder):
     folder.write("numbers.glsl", NUMBERS)
     folder.write("one.glsl", COUNT)
-    sketch = folder.sketch(WITH_START).with_values({"a.turns": 2})
+    sketch = folder.sketch(WITH_START).with_values({"a.count": 2})
     expected = (numbers() * 2 + 0 + 0.5) * 2 + 1 + 0.5
     np.testing.assert_array_equal(engine.read(sketch, "a"), expected.astype(np.float32))
     np.testing.assert_array_equal(engine.read(sketch, "a", steps={"a": 0}), numbers().astype(np.float32))
@@ -177,7 +177,7 @@ def test_steps_of_visits_go_on_in_place(engine, folder):
 
 
 def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
-    kernel = COUNT.replace('"turns"', '"floor(time)"').replace("iterations", "1")
+    kernel = COUNT.replace('"count"', '"floor(time)"').replace("iterations", "1")
     sketch = folder.one(kernel)
     texels = []
     for time in (0.0, 3.0, 3.5, 7.0, 2.0):
@@ -193,13 +193,13 @@ def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
 @pytest.mark.parametrize("repeat", ["-1", "2 ** 40", "log2(3)", "1 / 0", "nobody"])
 def test_a_wrong_count_has_a_place(engine, folder, repeat):
     with pytest.raises(PlaygroundError) as caught:
-        engine.read(folder.one(COUNT.replace('"turns"', f'"{repeat}"')), "a")
+        engine.read(folder.one(COUNT.replace('"count"', f'"{repeat}"')), "a")
     assert caught.value.diagnostics[0].file
     assert caught.value.diagnostics[0].line
 
 
-TURNS_AT_ONCE = """#pragma kernel(output = "a:r32f", repeat = "turns", at_once = "most")
-uniform int turns = 11; //! slider(0, 50)
+AT_ONCE = """#pragma kernel(output = "a:r32f", repeat = "count", at_once = "most")
+uniform int count = 11; //! slider(0, 50)
 uniform int most = 4; //! slider(0, 50)
 float kernel(ivec2 texel) {
     float found = previous(texel);
@@ -212,7 +212,7 @@ float kernel(ivec2 texel) {
 @pytest.mark.parametrize("most", [0, 1, 2, 4, 11, 50])
 @pytest.mark.parametrize("stopped", [0, 1, 5, 11])
 def test_iterations_taken_at_once_give_what_they_give_one_by_one(engine, folder, most, stopped):
-    sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": most})
+    sketch = folder.one(AT_ONCE).with_values({"a.most": most})
     value = np.float32(0)
     for iteration in range(stopped):
         value = value * np.float32(1.5) + np.float32(iteration) + np.float32(0.25 * 11)
@@ -227,16 +227,16 @@ def test_iterations_at_once_take_so_many_runs(engine, folder, monkeypatch, most,
         usual = getattr(Program, name)
 
         def counted(self, *groups, usual=usual):
-            started.append("turns" in self.uniforms or "iteration" in self.uniforms)
+            started.append("count" in self.uniforms or "iteration" in self.uniforms)
             usual(self, *groups)
 
         monkeypatch.setattr(Program, name, counted)
-    engine.read(folder.one(TURNS_AT_ONCE).with_values({"a.most": most}), "a")
+    engine.read(folder.one(AT_ONCE).with_values({"a.most": most}), "a")
     assert sum(started) == runs
 
 
 def test_each_step_of_iterations_at_once_goes_on_from_the_one_before(engine, folder):
-    sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": 50})
+    sketch = folder.one(AT_ONCE).with_values({"a.most": 50})
     steps = [(iteration, values.copy()) for iteration, values in engine.steps(sketch, "a")]
     assert [iteration for iteration, _ in steps] == list(range(12))
     np.testing.assert_array_equal(steps[-1][1], engine.read(sketch, "a"))
@@ -261,7 +261,7 @@ def test_a_header_that_says_how_iterations_run_is_checked(folder, header, compla
     assert raised.value.diagnostics[0].line == 1
 
 
-# Every texel of an ever finer lattice is its south-western neighbour a stride away, plus the turn.
+# Every texel of an ever finer lattice is its south-western neighbour a stride away, plus the iteration.
 LATTICE = """#pragma kernel(output = "a:r32f", repeat = "log2(size.x - 1) + 1", STRIDE
     visits = "2**iteration + 1, (size.y - 1) // (size.x - 1) * 2**iteration + 1")
 int stride() { return (size.x - 1) >> iteration; }

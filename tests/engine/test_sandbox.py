@@ -29,7 +29,7 @@ CRASH = f"""#pragma kernel(output = "a:r32f")
 {DOUBLING}
 float kernel(ivec2 texel) {{ float x = float(texel.x); return M18; }}
 """
-# llvmpipe stops every loop after 65,535 turns, nested ones together: slowness takes many in a row,
+# llvmpipe stops every loop after 65,535 iterations, nested ones together: slowness takes many in a row,
 # and to be slower than any limit here, the whole again and again.
 LOOP = "for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"
 SLOW = f"""#pragma kernel(output = "a:r32f", repeat = "1000")
@@ -223,7 +223,7 @@ def test_what_takes_too_long_is_stopped(folder):
 
 
 def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
-    """A driver draws later than it is told to: the quick passes after a slow one are not to blame."""
+    """A driver draws later than it is called: the quick passes after a slow one are not to blame."""
     reads = "uniform sampler2D from; //! input\n"
     after = GOOD.replace("float kernel", f"{reads}float kernel").replace(
         "float(texel.x)", "texelFetch(from, texel, 0).r"
@@ -244,7 +244,7 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(folder):
 
 
 def test_submit_never_waits_and_the_newest_wins(folder):
-    # Large requests: a pipe that nobody reads would fill.
+    # Large requests: a pipe that is not read would fill.
     padding = "\n".join(f"// {i} {'x' * 100}" for i in range(3000))
     wrong = [
         TrySketch(folder.one(GOOD.replace("texel.x", f"wrong{number}") + padding)) for number in range(20)
@@ -383,7 +383,7 @@ def test_a_parent_that_is_stopped_leaves_no_worker(two, number, pipe):
 
 
 def test_no_module_of_the_user_s_folder_is_run(two):
-    """A sketch is data: what lies beside it is never imported, whatever its name."""
+    """A sketch is data: what lies in its folder is never imported, under any name."""
     for name in ("numpy", "struct", "playground"):
         (two / f"{name}.py").write_text('open("was_run", "w").close()\nraise SystemExit(3)\n')
     # As the command does: the folder where it is started is not where modules are looked for.

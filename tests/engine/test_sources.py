@@ -1,4 +1,4 @@
-"""Sources: what the processor makes of a file becomes a texture, and tells the sketch of its land."""
+"""Sources: what the processor makes of a file becomes a texture, and gives the sketch its size and metres."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ PASS = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
 
 
 def refused(any_engine, sketch) -> str:
-    """Draw what is wrong; see that the error stands at the sketch's pass, and return its sentence."""
+    """Draw what is wrong; check that the error is at the sketch's pass, and return its sentence."""
     with pytest.raises(DataError) as caught:
         any_engine.read(sketch, "height")
     (found,) = caught.value.diagnostics

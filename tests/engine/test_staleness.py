@@ -16,7 +16,7 @@ from ..sketch_texts import passes
 
 TERRAIN = """#pragma kernel(output = "height:r32f")
 uniform float bumps = 3.0;   //! slider(0, 10) How many
-uniform float unused = 1.0;  //! slider(0, 10) Read by nobody
+uniform float unused = 1.0;  //! slider(0, 10) Never read
 float kernel(ivec2 texel) { return fract(float(texel.x * texel.y) * bumps * 0.01); }
 """
 LIGHT = """#pragma kernel(output = "light:r32f")
@@ -76,7 +76,7 @@ def test_the_same_sketch_twice_runs_nothing(engine, four):
 def test_moving_the_light_runs_light_and_view_only(engine, four):
     ran_after(engine, four)
     assert ran_after(engine, four.with_values({"light.sun": (200.0, 10.0)})) == {"light", "view"}
-    assert ran_after(engine, four) == set(), "both are kept"
+    assert ran_after(engine, four) == set(), "both are cached"
 
 
 def test_a_changed_terrain_runs_what_reads_it(engine, four):

@@ -1,4 +1,4 @@
-"""Expensive textures kept on disk: the same bits come back, and nothing else ever does."""
+"""Expensive textures cached on disk: the same bits come back, and nothing else ever does."""
 
 from __future__ import annotations
 
@@ -399,7 +399,7 @@ def test_each_form_of_a_pass_has_its_own(ctx, folder, tmp_path):
         shelf.close()
 
 
-# ── what is never kept ───────────────────────────────────────────────────────
+# ── what is never cached ───────────────────────────────────────────────────────
 
 TIMES = """#pragma kernel(output = "v:r32f"REPEAT)
 uniform sampler2D before; //! input("black")
@@ -589,7 +589,7 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
-    # The view reads worn and light. Wearing is cheap: the terrain is kept, and worn anew.
+    # The view reads worn and light. Wearing is cheap: the terrain is cached, and worn anew.
     assert cached_with(20.0) == {"terrain", "light"}
     assert cached_with(20.0, worn=30.0) == {"worn.add", "light"}
     assert cached_with(20.0, worn=30.0, light=19.0) == {"worn.add"}, "what it reads is read anyway"
@@ -614,24 +614,24 @@ def test_it_waits_until_the_terrain_rests_and_reads_a_piece_a_call(any_shelf, wo
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
-    keeping = engine.disk_caching = DiskCaching(
+    caching = engine.disk_caching = DiskCaching(
         engine.disk_caching.store, floor=ALWAYS, rest=1.0, now=lambda: now
     )
-    assert keeping.look(engine, None) is None, "nothing has been made yet"
+    assert caching.look(engine, None) is None, "nothing has been made yet"
     picture(engine, worn)
-    assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
+    assert caching.look(engine, engine.plan) == pytest.approx(1.0)
     now += 0.75
     picture(engine, worn.with_values({"terrain.bumps": 4.0}))  # a slider that moves
-    assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
+    assert caching.look(engine, engine.plan) == pytest.approx(1.0)
     now += 1.5
     iterations = 0
-    while keeping.look(engine, engine.plan) is not None:
+    while caching.look(engine, engine.plan) is not None:
         iterations += 1
         picture(engine, worn.with_values({"terrain.bumps": 4.0}))
     assert iterations > 4 + 4, "both textures, each in four pieces"
-    keeping.close()
+    caching.close()
     assert len(listed(any_shelf.folder)) == 2
-    assert keeping.look(engine, engine.plan) is None
+    assert caching.look(engine, engine.plan) is None
     assert reopened(any_shelf, worn.with_values({"terrain.bumps": 4.0})) == set()
 
 
@@ -751,7 +751,7 @@ def test_where_nothing_can_be_written_one_is_reported_and_nothing_more_is_tried(
 
 
 def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypatch):
-    """On Windows nobody may rename over a file that is being read."""
+    """Windows does not rename over a file that is being read."""
     store = DiskCache(tmp_path)
     store.write("one", some(1))
     store.close()

@@ -115,7 +115,7 @@ def test_every_complaint_of_the_table_has_a_real_message():
 
 
 @each("platform", PLATFORMS)
-@each("message", sorted({message for _, message in MESSAGES} | {"", "nobody ever saw this"}))
+@each("message", sorted({message for _, message in MESSAGES} | {"", "an unknown message"}))
 def test_the_answer_is_one_line_of_whole_sentences(message, platform):
     answer = advice(message, platform, {})
     assert "\n" not in answer
@@ -178,7 +178,7 @@ def test_the_environment_tells_the_likelier_cause(message, environ, expected):
     assert len(advice(message, "linux", {})) < len(advice(message, "linux", environ))
 
 
-def test_a_container_without_an_nvidia_card_is_not_told_about_one():
+def test_a_container_without_an_nvidia_card_gets_no_advice_about_one():
     answer = advice("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
     assert "NVIDIA" not in answer
 

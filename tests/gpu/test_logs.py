@@ -611,7 +611,7 @@ def test_a_common_mistake_gets_its_hint(part: str, message: str) -> None:
         "Too many fragment shader default uniform block components",
     ],
 )
-def test_nothing_is_said_where_nothing_is_known(message: str) -> None:
+def test_there_is_no_hint_where_nothing_is_known(message: str) -> None:
     assert hint(message) == ""
 
 

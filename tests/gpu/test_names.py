@@ -32,7 +32,7 @@ def read(folder: Path, text: str) -> Kernel:
 
 
 def complaint(ctx: moderngl.Context, folder: Path, text: str) -> str:
-    """Return what is said first of a text that does not compile."""
+    """Return the first message for a text that does not compile."""
     with pytest.raises(PlaygroundError) as caught:
         compile_wrapped(ctx, wrap(read(folder, text), FRAGMENT))
     return caught.value.diagnostics[0].message
@@ -92,7 +92,7 @@ def test_a_function_of_the_library_is_reported_with_its_file(ctx: moderngl.Conte
     assert f'add `#include "{files[0]}"`' in text
     assert (GLSL / files[0]).is_file()
     (tmp_path / "k.glsl").write_text(HEAD + f'#include "{files[0]}"\n' + BODY.format("return 0.0;"))
-    assert read_kernel(tmp_path / "k.glsl", tmp_path) is not None, "the include works as it was told"
+    assert read_kernel(tmp_path / "k.glsl", tmp_path) is not None, "the include works as suggested"
 
 
 # The wording of each: tests/gpu/test_logs.py has whole logs of these drivers.
@@ -150,7 +150,7 @@ def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
         pytest.skip("each driver warns of other things")
     wrapped = wrap(read(tmp_path, BODY.format("float a; return a;")), FRAGMENT)
     compile_wrapped(ctx, wrapped).release()
-    for _ in range(2):  # a text that is in the driver's cache by now is told of all the same
+    for _ in range(2):  # a text that is in the driver's cache by now is reported all the same
         (found,) = warnings_of(ctx, wrapped)
         assert (found.severity, found.line, found.column) == ("warning", 5, 21)
         assert "`a' used uninitialized" in found.message and found.file.endswith("k.glsl")

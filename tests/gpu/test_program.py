@@ -1,4 +1,4 @@
-"""Programs: compiled once, told in the kernel's own lines when they are wrong, set only where they listen."""
+"""Programs: compiled once, with errors in the kernel's own lines; only active uniforms are set."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands around a kernel's lines: each driver's own words, and nothing that the kernel does not need."""
+"""The text around a kernel's lines: each driver's own, and nothing that the kernel does not need."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def handler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def is_alive(pid: int) -> bool:
-    """Say whether a process runs; one that nobody has waited for does not."""
+    """Say whether a process runs; a zombie does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:

@@ -1,4 +1,4 @@
-"""Time that a process waits for a processor is told from time that it works."""
+"""Time that a process waits for a processor is distinguished from time that it works."""
 
 from __future__ import annotations
 

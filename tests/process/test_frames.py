@@ -1,4 +1,4 @@
-"""A frame is read whole, and whatever is no frame is told from one."""
+"""A frame is read whole, and what is no frame is recognised."""
 
 from __future__ import annotations
 
