@@ -16,6 +16,7 @@ from playground.sketch.model import Sketch
 from playground.sketch.source import read_source
 
 from ..loading import load
+from .terrains import toml_value
 
 TYPES = [kind + n for kind in ("uint", "int", "float") for n in ("", "2", "3", "4")]
 LETTERS = {"uint": ("u", "u4", np.uint32), "int": ("i", "i4", np.int32), "float": ("", "f4", np.float32)}
@@ -145,6 +146,37 @@ def make_sketch(tmp_path: Path) -> Callable[..., Sketch]:
         path = tmp_path / f"sketch_{next(numbers)}.toml"
         path.write_text(head + passes)
         return load(path)
+
+    return make
+
+
+@pytest.fixture
+def lit(make_sketch: Callable[..., Sketch]) -> Callable[..., Sketch]:
+    """Give a sketch of a terrain and its light: sun in degrees, sizes in texels, metres.
+
+    ``given`` are parameters of the terrain, a kernel's text; ``values`` those of the light, None for none.
+    """
+
+    def make(
+        terrain: str,
+        method: str,
+        sun: tuple[float, float],
+        *,
+        size: object = 65,
+        extent: object = 1000.0,
+        relief: float = 100.0,
+        light_size: str = "",
+        given: dict[str, object] | None = None,
+        **values: object,
+    ) -> Sketch:
+        values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
+        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (given or {}, values)]
+        at = f"size = {light_size}\n" if light_size else ""
+        passes = (
+            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'
+            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{settings[1]}'
+        )
+        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
 
     return make
 

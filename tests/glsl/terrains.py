@@ -32,6 +32,19 @@ def lit_by(
     return load(path)
 
 
+def toml_value(value: object) -> str:
+    """Return a parameter's value as TOML writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
+
+
+def sun_vector(azimuth: float, elevation: float) -> np.ndarray:
+    """Return the unit vector towards a sun [degrees]: east, north, up."""
+    a, e = np.radians([azimuth, elevation])
+    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
+
+
 # Hills of four sizes, turned or mirrored when asked to.
 HILLS = """
 #include "noise/hash.glsl"

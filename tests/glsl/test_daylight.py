@@ -11,6 +11,7 @@ from playground.sketch.model import Camera, kernels_of
 from playground.sketch.wiring import input_names
 
 from ..loading import library
+from .terrains import sun_vector, toml_value
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 HEIGHTS = (90.0, 70.0, 45.0, 20.0, 10.0, 5.0, 2.0, 0.5, 0.0, -0.2, -0.5, -1.0, -3.0, -6.0, -9.0, -12.0)
@@ -23,16 +24,12 @@ def day(make_sketch):
 
     def make(passes="", **given):
         values = {"position": "free", "adaptation": 0.0, **given}
-        text = ", ".join(f"{k} = {_toml(v)}" for k, v in values.items())
+        text = ", ".join(f"{k} = {toml_value(v)}" for k, v in values.items())
         return make_sketch(
             f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n{passes}'
         )
 
     return make
-
-
-def _toml(value):
-    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
 
 
 def under(sketch, elevation, azimuth=135.0):
@@ -42,11 +39,6 @@ def under(sketch, elevation, azimuth=135.0):
 def row_of(engine, sketch):
     """Return what daylight comes to: a row of texels, red, green, blue, alpha."""
     return engine.read(sketch, "daylight")[0].astype(np.float64)
-
-
-def sun_vector(azimuth, elevation):
-    a, e = np.radians([azimuth, elevation])
-    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
 
 
 # ── the sun's place ──────────────────────────────────────────────────────────

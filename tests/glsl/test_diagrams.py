@@ -7,6 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from .terrains import toml_value
+
 INK = "lighting/diagram/ink.glsl"
 LETTERS = "lighting/diagram/letters.glsl"
 SIZE = (640, 360)
@@ -43,7 +45,7 @@ def diagram(make_sketch):
 
     def make(use, *, size=(COLUMNS, 9), paper=SIZE, rough=1.0, step_up=0.0, extra="", **values):
         values = {"text": False, **values}
-        setting = "".join(f"{k} = {_toml(v)}\n" for k, v in values.items())
+        setting = "".join(f"{k} = {toml_value(v)}\n" for k, v in values.items())
         passes = (
             '[[pass]]\nname = "height"\nuse = "./terrain"\n'
             f"set = {{ rough = {rough}, step_up = {step_up} }}\n{extra}"
@@ -55,12 +57,6 @@ def diagram(make_sketch):
         return make_sketch(passes, size=list(size), extent=extent, relief=RELIEF, terrain=TERRAIN)
 
     return make
-
-
-def _toml(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
 
 
 def heights_of(engine, sketch, row=4):

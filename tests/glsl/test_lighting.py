@@ -3,13 +3,14 @@
 ``light`` is rgba16f: comparisons allow a half float's rounding, 2^-11 of the value.
 """
 
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from .terrains import HILLS
+from .terrains import HILLS, sun_vector
 
 HALF = 2.0**-11
 BOTH = pytest.mark.parametrize("method", ["l_dot_n", "ray_cast"])
@@ -29,32 +30,9 @@ float kernel(ivec2 texel) { return texel.x == at.x || texel.y == at.y ? high : 0
 
 
 @pytest.fixture
-def lit(make_sketch):
-    """Give a sketch of a terrain and its light: sun in degrees, sizes in texels, metres."""
-
-    def make(
-        terrain, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values
-    ):
-        values = {"sun": list(sun), "gain": 1.0, **values}
-        setting = "".join(f"{k} = {_toml(v)}\n" for k, v in values.items())
-        terrain_setting = "".join(f"{k} = {_toml(v)}\n" for k, v in (given or {}).items())
-        at = f"size = {light_size}\n" if light_size else ""
-        passes = (
-            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{terrain_setting}'
-            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{setting}'
-        )
-        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
-
-    return make
-
-
-def _toml(value):
-    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
-
-
-def sun_vector(azimuth, elevation):
-    a, e = np.radians([azimuth, elevation])
-    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
+def lit(lit):
+    """Give the same with a gain of 1."""
+    return partial(lit, gain=1.0)
 
 
 def shade(heights, sun, spacing):

@@ -15,7 +15,7 @@ from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 from playground.engine.engine import Engine
 from playground.sketch.parameter import LARGEST_SIDE
 
-from .terrains import HILLS
+from .terrains import HILLS, toml_value
 
 DATA = Path(__file__).resolve().parents[2] / "glsl/sketches/data/jacksboro_fault_dem.npz"
 BOTH_FORMS = pytest.mark.parametrize("form", ["march", "sweep"])
@@ -49,35 +49,12 @@ float kernel(ivec2 texel) {
 
 
 @pytest.fixture
-def lit(make_sketch):
-    """Give a sketch of a terrain and its light: sun in degrees, sizes in texels, metres."""
-
-    def make(
-        terrain, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values
-    ):
-        values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
-        settings = ["".join(f"{k} = {_toml(v)}\n" for k, v in each.items()) for each in (given or {}, values)]
-        at = f"size = {light_size}\n" if light_size else ""
-        passes = (
-            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'
-            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{settings[1]}'
-        )
-        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
-
-    return make
-
-
-def _toml(value):
-    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
-
-
-@pytest.fixture
 def jacksboro(make_sketch, tmp_path):
     """Give a sketch of the Jacksboro fault, lit."""
     shutil.copy(DATA, tmp_path)
 
     def make(method, sun, **values):
-        settings = "".join(f"{k} = {_toml(v)}\n" for k, v in {"sun": sun, **values}.items())
+        settings = "".join(f"{k} = {toml_value(v)}\n" for k, v in {"sun": sun, **values}.items())
         passes = (
             '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
             f'set = {{ elevation = "{DATA.name}" }}\n'
@@ -96,11 +73,6 @@ def visible(engine, sketch):
 
 def _used(sketch):
     return next(p.use for p in sketch.graph.passes if p.name == "light")
-
-
-def sun_vector(azimuth, elevation):
-    a, e = np.radians([azimuth, elevation])
-    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
 
 
 class Views:
