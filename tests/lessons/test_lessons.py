@@ -8,6 +8,7 @@ import pytest
 
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_of, with_bug
+from playground.lessons.glossary import terms_of
 from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
 from playground.lessons.measuring import filled, numbers_of
 from playground.lessons.model import Break, Prose
@@ -61,6 +62,11 @@ def test_a_translation_says_as_much(shipped):
             assert isinstance(french, Prose)
             assert french.markdown != english.markdown
             assert 0.6 < len(french.markdown) / len(english.markdown) < 2.0, french.markdown[:80]
+
+
+def test_its_terms_are_linked_in_every_language(shipped):
+    linked = {language: {term.key for term in terms_of(lesson)} for language, lesson in shipped.items()}
+    assert len(linked["en"]) >= 3 and linked["fr"] == linked["en"]
 
 
 def test_the_names_of_its_pictures_are_its_own(shipped):
