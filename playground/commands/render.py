@@ -84,6 +84,7 @@ class Request:
     profile: bool = False
     steps: dict[str, int] | None = None
     plain: bool = False
+    dialect: str = ""
     series: Series = field(default_factory=Series)  # more than one picture
 
     def moment(self) -> Moment:
@@ -91,7 +92,7 @@ class Request:
         from playground.sketch.load import load
 
         return moment_of(
-            load(self.sketch).plainly(self.plain),
+            load(self.sketch, dialect=self.dialect).plainly(self.plain),
             shot=self.shot,
             preset=self.preset,
             values=self.values,
@@ -115,6 +116,7 @@ def render(
     settings: options.Set = None,
     driver: options.Driver = "auto",
     plain: options.Plain = False,
+    dialect: options.Dialect = "",
     shot: Annotated[str, value("--shot NAME", "Render a shot of the sketch.")] = "",
     preset: options.Preset = "",
     texture: Annotated[str, value("--texture PASS", "Write this pass's own values, not the picture.")] = "",
@@ -178,6 +180,7 @@ def render(
         profile=profile,
         steps=read_steps(steps),
         plain=plain,
+        dialect=dialect,
         series=series,
     )
     make_picture(request, ctx.obj.or_else(software, device))

@@ -86,6 +86,8 @@ def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
         if kernel.repeat != "1" or kernel.visits or _names(code, "previous", *_previous(kernel)):
             return "it goes by turns"
         found = _kernel_code(kernel, code, inputs)
+    elif kernel.vertex:
+        return "its vertex shader gives it values over one part alone"
     else:
         beside = [name for name in inputs if name != "initial" and _names(code, name)]
         if beside:
@@ -145,7 +147,7 @@ def _with_coordinates(kernel: Kernel, code: str) -> str:
     changed = _COORDINATES.sub(f"(gl_FragCoord + vec4({WINDOW}, 0.0, 0.0))", code)
     if kernel.kind == "draw":
         return f"{changed}uniform vec4 {ZOOM};\n"  # a line of its own
-    if changed == code:
+    if changed == code or kernel.dialect:  # whose wrapper declares it
         return changed
     # A plain shader declares for itself: before its first line that is neither blank nor of the preprocessor.
     lines, depth = changed.split("\n"), 0

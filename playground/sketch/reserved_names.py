@@ -57,6 +57,22 @@ PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
 }
 """What a plain shader is given, under the names that such shaders use."""
 
+_IDENTITY_3 = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+_IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+SIZES = "sizes: "
+"""What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
+
+NEUTRAL: dict[str, tuple[float, ...]] = {
+    "frame_rate": (60.0,),
+    "sample_rate": (44_100.0,),
+    "forward": (0.0, 0.0, 1.0),
+    "one": (1.0, 1.0, 1.0, 1.0),
+    "identity3": _IDENTITY_3,
+    "identity4": _IDENTITY_4,
+}
+"""What other tools' shaders are given that never changes here, by meaning."""
+
 GIVEN_INSTEAD: dict[str, str] = {
     name: given
     for meaning, given in {"time": "time", "frame": "time", "delta": "time", "resolution": "size"}.items()

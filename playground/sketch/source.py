@@ -129,10 +129,23 @@ def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceTex
     return _read(path, roots, {})
 
 
-def _read(path: Path, roots: Sequence[Path], instead: Mapping[str, str]) -> tuple[SourceText, Origin]:
+def read_foreign_source(
+    path: Path, root: Path, instead: Mapping[str, str] | None = None
+) -> tuple[SourceText, Origin]:
+    """Read a shader of another tool as ``read_source_and_origin`` does.
+
+    An include is also looked for in each folder from the includer's up to ``root``, and each file is
+    included once.
+    """
+    return _read(path, (root,), instead or {}, foreign=True)
+
+
+def _read(
+    path: Path, roots: Sequence[Path], instead: Mapping[str, str], *, foreign: bool = False
+) -> tuple[SourceText, Origin]:
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve(), instead)
+    reader = _Reader(own, GLSL.resolve(), instead, foreign)
     reader.flatten(path, reader.read(path), (), (str(path),))
     codes = with_calls_joined([line.code for line in reader.lines])
     lines = tuple(
@@ -177,8 +190,11 @@ def _place_in(data: bytes, position: int) -> tuple[int, int]:
 class _Reader:
     """Flattens one file."""
 
-    def __init__(self, own: tuple[Path, ...], library: Path, instead: Mapping[str, str]) -> None:
+    def __init__(
+        self, own: tuple[Path, ...], library: Path, instead: Mapping[str, str], foreign: bool
+    ) -> None:
         self.own = own
+        self.foreign = foreign  # of another tool: includes are found, and counted, otherwise
         self.library = library
         self.instead = instead  # texts that are taken in place of the files', by absolute path
         self.lines: list[Line] = []
@@ -222,6 +238,8 @@ class _Reader:
             raise line.error(f"more than {_MAX_INCLUDES} includes; is something included over and over?")
         target = self.find(name, path, line)
         key = str(target)
+        if self.foreign and key in self.texts:
+            return
         if key in stack:
             cycle = [*stack[stack.index(key) :], key]
             raise line.error("include cycle: " + " → ".join(shown(p) for p in cycle))
@@ -246,7 +264,8 @@ class _Reader:
         in_own = any(includer.is_relative_to(root) for root in self.own)
         from_library = includer.is_relative_to(self.library) and not in_own
         allowed = (self.library,) if from_library else tuple(dict.fromkeys([*self.own, self.library]))
-        for folder in (includer.parent, *allowed):
+        parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if self.foreign else ()
+        for folder in (includer.parent, *parents, *allowed):
             place = folder / name
             candidate = self.looked_at[place] = _file_at(place)
             if candidate is not None:

@@ -12,9 +12,11 @@ from typing import Any
 
 from playground.errors import DataError
 from playground.paths import GLSL, shown
+from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Sketch, Technique
 from playground.sketch.source import read_source
+from playground.sketch.techniques import Techniques
 
 
 def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
@@ -57,7 +59,13 @@ class _Reread:
     def kernel(self, kernel: Kernel) -> Kernel:
         path = Path(kernel.path)
         root = self.folder if not path.is_relative_to(GLSL) else GLSL
-        found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
+        found: Kernel | None
+        if kernel.dialect:
+            read = Techniques().read
+            graph = read_foreign(path, kernel.name, root, read, kernel.dialect, instead=self.texts)
+            found = graph.kernels[-1][1] if graph is not None else None
+        else:
+            found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
         if found is None:
             raise DataError("no kernel is left of this text", file=shown(path))
         if kernel.kind == "compute":  # a compute variant has these of its technique

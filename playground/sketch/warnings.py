@@ -15,7 +15,9 @@ def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
 
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return what a picture does not show though the text says it: unfed samplers, ``#line``."""
-    found = [*(unfed_samplers(kernel.source) if kernel.kind.startswith("plain") else ())]
+    found = [*kernel.notes]
+    if kernel.kind.startswith("plain") and not kernel.dialect:
+        found += unfed_samplers(kernel.source)
     found += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines

@@ -68,6 +68,7 @@ class Drafts:
         *,
         start: StoredEdits | None = None,
         plain: bool = False,
+        dialect: str = "",
     ) -> None:
         self.path = find(path or "").absolute()  # the current folder may be deleted meanwhile
         self.shown: Draft | None = None
@@ -88,6 +89,7 @@ class Drafts:
         self._drawn = drawn
         self._start = start or StoredEdits()
         self._techniques = KeptTechniques()
+        self._techniques.dialect = dialect
         self._subject = self.path.name  # what is read, or checked
         self._new_file = False  # what is coming names a data file that the user chose
         self._aside: Sketch | None = None  # what the sandbox got last, where that is not what is coming
@@ -182,6 +184,7 @@ class Drafts:
         other; ``texts`` replace some of its files.
         """
         self.path, self.texts = find(path).absolute(), texts or {}
+        self._techniques.dialect = ""
         if not keep:
             self._start, self.opening = start or StoredEdits(), True
         self.reload()
