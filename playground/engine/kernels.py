@@ -22,7 +22,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -147,7 +147,9 @@ class Kernels:
             sizes[declared.name] = texture.size
             if declared.name in program:
                 unit = self.binder.texture(program, declared.name, unit, texture, declared.sampling)
-        program.set(WINDOW, step.window.origin if step.window is not None else (0, 0))
+        origin = step.window.origin if step.window is not None else (0, 0)
+        program.set(WINDOW, origin)
+        program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
             if name in program:
                 _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
@@ -318,6 +320,11 @@ class Kernels:
 def usual_of(kernel: Kernel, known: Mapping[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
     """Return those of the usual uniforms that a plain shader's text names, by meaning."""
     return {meaning: known[meaning] for _, meaning in kernel.usual if meaning in known}
+
+
+def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...]:
+    """Return pairs of numbers as shares of a whole pair."""
+    return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
 
 
 def _size(meaning: str, sizes: Mapping[str, tuple[int, int]]) -> tuple[float, ...]:

@@ -86,8 +86,6 @@ def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
         if kernel.repeat != "1" or kernel.visits or _names(code, "previous", *_previous(kernel)):
             return "it goes by turns"
         found = _kernel_code(kernel, code, inputs)
-    elif kernel.vertex:
-        return "its vertex shader gives it values over one part alone"
     else:
         beside = [name for name in inputs if name != "initial" and _names(code, name)]
         if beside:

@@ -15,7 +15,17 @@ from playground.errors import ShaderError
 from playground.gpu.own_shaders import own_part
 from playground.gpu.triangle import TRIANGLE
 from playground.sketch.model import DRIVERS, Kernel, Output
-from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
+from playground.sketch.reserved_names import (
+    FETCHES,
+    GIVEN,
+    MATCHES,
+    PART,
+    TOWARDS,
+    UNWIRED,
+    WINDOW,
+    WIRED,
+    ZOOM,
+)
 from playground.sketch.source import Line, SourceText
 
 _, FRAGMENT, COMPUTE = DRIVERS
@@ -160,6 +170,7 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
     vertex = own_part(
         "triangle_with_outputs.vert",
         version="\n".join([version, *extensions]),
+        shares=PART,
         declarations="\n".join(declaration for declaration, _ in kernel.vertex),
         statements="\n    ".join(statements for _, statements in kernel.vertex),
     )

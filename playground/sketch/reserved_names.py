@@ -44,6 +44,9 @@ texel of its white or black answers for every place."""
 WINDOW = "k_window"
 """Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
 
+PART = "k_part"
+"""Which part of the whole picture is drawn, a vec4: the share where it begins, then its share of the size."""
+
 ZOOM = "k_zoom"
 """What stretches a draw's clip space to a window, a vec4: factors, then what is added."""
 

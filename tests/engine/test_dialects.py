@@ -7,11 +7,17 @@ import re
 import numpy as np
 import pytest
 
+from playground.capture.large import strips
+from playground.engine.check import check_file
 from playground.engine.engine import Engine
+from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.images.files import write_png
+from playground.reduce.inline import inline_sketch
 from playground.sketch.load import load
+from playground.sketch.text_overrides import with_texts
+from playground.workbench.traits import traits_of
 from tests.dialect_texts import TEXTS, with_mistake
 
 SIZE = (32, 18)
@@ -235,3 +241,44 @@ def test_what_is_not_read_yet_is_one_sentence(folder):
     for text, sentence in cases.items():
         with pytest.raises(PlaygroundError, match=sentence):
             load(folder.write("t.frag", text))
+
+
+@pytest.mark.parametrize("name", ["book", "varying", "toy", "toy_declares"])
+def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, folder, name):
+    sketch = load(folder.write("t.frag", TEXTS[name]))
+    whole = any_engine.render(sketch, size=SIZE, time=1.0).array
+    parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=1.0)))
+    np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+@pytest.mark.parametrize("name", ["toy", "varying", "viewer"])
+def test_it_is_reduced_in_its_author_s_words(folder, name):
+    text, _ = with_mistake(TEXTS[name])
+    case = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE)
+    (one,) = case.passes
+    assert one.name == "shader" and "not_declared" in one.text
+    assert set(one.text.splitlines()) <= set(text.splitlines())
+
+
+def test_a_text_that_replaces_the_file_is_read_as_its_dialect(any_engine, folder):
+    path = folder.write("t.frag", TOY.format("vec4(0.0)"))
+    changed = with_texts(load(path), {str(path): TOY.format("vec4(fract(iTime), 0.0, 0.0, 1.0)")})
+    np.testing.assert_array_equal(
+        any_engine.render(changed, size=(2, 2), time=1.0).array[0, 0], [0, 0, 0, 255]
+    )
+    assert traits_of(changed).moves and not traits_of(load(path)).moves
+
+
+def test_check_names_the_dialect_and_the_line(folder):
+    with Sandbox() as sandbox:
+        good = check_file(folder.write("good.frag", TEXTS["toy"]), sandbox)
+        text, line = with_mistake(TEXTS["varying"])
+        bad = check_file(folder.write("bad.frag", text), sandbox)
+    assert (good.ok, good.notes) == (True, ("read as shadertoy",))
+    assert ["nothing feeds iChannel0" in w.message for w in good.warnings] == [True]
+    assert [d.line for d in bad.errors] == [line]
+
+
+def test_the_title_names_the_dialect(folder):
+    assert load(folder.write("t.frag", TEXTS["toy"])).title == "All that Shadertoy declares (shadertoy)"
+    assert load(folder.write("u.frag", TEXTS["book"])).title == "u (main)"

@@ -97,6 +97,17 @@ def dialect_of(text: str) -> Dialect | None:
     return next((dialect for dialect in DIALECTS if dialect.sign(text, code)), None)
 
 
+def refuse_export(path: Path) -> None:
+    """Raise ``SketchError`` for a JSON file that Shadertoy wrote."""
+    found = dialect_of(read_text(path)) if path.suffix == ".json" else None
+    if found is not None and found.name == "export":
+        raise _unread(found, path)
+
+
+def _unread(dialect: Dialect, path: Path) -> SketchError:
+    return SketchError(f"{dialect.label}, which is not read yet", file=shown(path))
+
+
 def read_foreign(
     path: Path,
     name: str,
@@ -125,7 +136,7 @@ def read_foreign(
     if chosen is None or chosen.name == OWN or (is_plain and chosen.rules is None):
         return None
     if chosen.rules is None:
-        raise SketchError(f"{chosen.label}, which is not read yet", file=shown(path))
+        raise _unread(chosen, path)
     source, origin = read_foreign_source(path, root, instead)
     graph = None
     if chosen.rules is main.RULES:
