@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from playground.errors import Diagnostic, ShaderError, SketchError
+from playground.errors import ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
 from playground.sketch.reserved_names import GIVEN, PLAIN_UNIFORMS
@@ -88,7 +88,7 @@ class Kernel:
     epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
     vertex: tuple[tuple[str, str], ...] = ()  # what its vertex shader gives it: declaration, statements
     meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
-    notes: tuple[Diagnostic, ...] = ()  # what its picture lacks
+    unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 
     @property
     def path(self) -> str:

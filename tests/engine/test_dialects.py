@@ -10,11 +10,14 @@ import pytest
 from playground.capture.large import strips
 from playground.engine.check import check_file
 from playground.engine.engine import Engine
+from playground.engine.plan_warnings import source_warnings
+from playground.engine.planner import make_plan
 from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
+from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.load import load
 from playground.sketch.text_overrides import with_texts
 from playground.workbench.traits import traits_of
@@ -181,13 +184,14 @@ def test_a_comment_names_the_picture(any_engine, folder):
     pixels = np.random.default_rng(5).integers(0, 256, (6, 8, 4), dtype=np.uint8)
     pixels[..., 3] = 255
     path = folder.write("t.frag", PHOTO)
-    notes = load(path).graph.find("view").technique.notes
-    assert [(d.line, d.message.partition(":")[0]) for d in notes] == [
-        (2, "there is no file 'photo.png' for u_tex0")
-    ]
+    (note,) = unfed_warnings(load(path).graph.find("view").technique, ())
+    assert (note.line, note.message) == (
+        2,
+        "nothing feeds u_tex0: there is no file 'photo.png', so a stand-in is drawn",
+    )
     assert colours(drawn(any_engine, path)) > 1
     write_png(folder.path / "photo.png", pixels)
-    assert load(path).graph.find("view").technique.notes == ()
+    assert load(path).graph.find("view").technique.unfed == ()
     np.testing.assert_allclose(drawn(any_engine, path, size=(8, 6)), pixels, atol=1)
 
 
@@ -207,9 +211,23 @@ def test_a_sketch_wires_a_pass_to_a_channel_and_sets_a_parameter(any_engine, fol
 
 def test_what_nothing_feeds_is_named_once(folder):
     text = TEXTS["kodelife"]
-    (fed, black) = load(folder.write("t.frag", text)).graph.find("view").technique.notes
+    plan = make_plan(load(folder.write("t.frag", text)), frame_size=SIZE)
+    fed, black = source_warnings(plan)
     assert "texture0, texture1, texture2, texture3" in fed.message and fed.line == 6
     assert "prevFrame, prevPass" in black.message and "reads black" in black.message
+    toy = TOY.format("texture(iChannel0, p) + texture(iChannel1, p)")
+    folder.write("toy.frag", toy)
+    view = '[view]\nuse = "./toy"\ninputs = {{ {} }}\n'
+    passes = '[[pass]]\nname = "card"\nuse = "foreign/picture"\nsize = 8\n'
+    for inputs, left in {
+        "": ["iChannel0, iChannel1"],
+        'iChannel1 = "card"': ["iChannel0"],
+        'iChannel0 = "card", iChannel1 = "card"': [],
+    }.items():
+        plan = make_plan(folder.sketch(passes + view.format(inputs)), frame_size=SIZE)
+        assert [w.message.split(":")[0] for w in source_warnings(plan)] == [
+            f"nothing feeds {n}" for n in left
+        ]
 
 
 # ── which dialect ────────────────────────────────────────────────────────────

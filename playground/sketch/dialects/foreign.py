@@ -45,6 +45,7 @@ _UNIFORM = re.compile(r"\buniform\b")
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _MODEL = "MODEL_"
+_STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ class _Shader:
             epilogue=self.rules.epilogue,
             vertex=vertex_outputs(self.code),
             meanings=tuple(meanings),
-            notes=tuple(self._notes({p.name for p in parameters})),
+            unfed=tuple(self._unfed({p.name for p in parameters})),
         )
 
     def _lacks(self, name: str) -> bool:
@@ -197,33 +198,34 @@ class _Shader:
         there = any(is_file(place) for place in places_of(file, line, self.root))
         return there and not leads_outside(file, self.root, line.file)
 
-    # ── notes ────────────────────────────────────────────────────────────────
-
-    def _notes(self, fed: Collection[str]) -> Iterator[Diagnostic]:
-        """Yield what the picture lacks: every sampler that nothing feeds, once."""
-        for one in self.declared.values():
-            if (file := self._commented(one)) and one.name not in self.pictures:
-                yield self._note(one.name, f"there is no file '{file}' for {one.name}: a stand-in is drawn")
-        commented = {one.name for one in self.declared.values() if self._commented(one)}
-        if names := [name for name in self.stand_ins if name not in commented]:
-            message = f"nothing feeds {_listed(names)}: a stand-in is drawn; a sketch may wire an image to it"
-            yield self._note(names[0], message)
-        own = {one.name: one.type for one in self.declared.values() if "sampler" in one.type}
+    def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
+        """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
+        for name in self.stand_ins:
+            file = self._commented(self.declared[name]) if name in self.declared else ""
+            yield name, f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
+        own = {one.name: one.type for one in self.declared.values()}
         own |= {name: self.rules.names[name][0] for name in self.missing}
-        black = [
-            name
-            for name, kind in own.items()
-            if "sampler" in kind and name not in self.stand_ins and name not in fed and self._is_read(name)
-        ]
-        if black:
-            yield self._note(black[0], f"nothing feeds {_listed(black)}, which reads black")
-        if model := next((n for n in sorted(self.source.names) if n.startswith(_MODEL)), ""):
-            yield self._note(model, f"{model}: drawn flat, since there is no mesh here")
+        for name, kind in own.items():
+            if "sampler" in kind and name not in self.stand_ins and name not in fed and self._is_read(name):
+                yield name, "it reads black"
+        for name in sorted(self.source.names):
+            if name.startswith(_MODEL):
+                yield name, "there is no mesh here, so it is drawn flat"
 
-    def _note(self, name: str, message: str) -> Diagnostic:
-        pattern = re.compile(rf"\b{name}\b")
-        line = next((ln for ln in self.source.lines if pattern.search(ln.code)), self.source.lines[0])
-        return line.diagnostic(message, severity="warning")
+
+def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, ...]:
+    """Return a warning for each thing that another tool's shader lacks; ``wired`` are inputs that are fed."""
+    names: dict[str, list[str]] = {}
+    for name, instead in kernel.unfed:
+        if name not in wired:
+            names.setdefault(instead, []).append(name)
+    lines = kernel.source.lines
+    found = []
+    for instead, some in names.items():
+        first = re.compile(rf"\b(?:{'|'.join(some)})\b")
+        line = next((line for line in lines if first.search(line.code)), lines[0])
+        found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
+    return tuple(found)
 
 
 def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
@@ -242,7 +244,3 @@ def _declaration(kind: str, name: str) -> str:
     """Return "vec3 name[4]" for vec3[4]."""
     base, bracket, count = kind.partition("[")
     return f"{base} {name}{bracket}{count}"
-
-
-def _listed(names: Collection[str]) -> str:
-    return ", ".join(sorted(names))
