@@ -1,6 +1,6 @@
 // foreign/image.glsl -- an image file for a channel of another tool, encoded as in the file.
 //
-//   gives    colour and alpha, encoded for the display
+//   gives    channel_texels, colour and alpha, encoded for the display
 //   needs    colour/encode.glsl; an image file, PNG, JPEG or WebP
 //   units    none
 //   source   made here
@@ -9,7 +9,7 @@
 // Such shaders take colours as the file has them, where texturing/image gives linear light. The
 // engine decodes every file; this encodes what it read. The image is stretched over the pass.
 #include "colour/encode.glsl"
-#pragma kernel(output = "colour:rgba8")
+#pragma kernel(output = "channel_texels:rgba8")
 
 uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg", "linear", "clamp",
                           //! "mipmap")

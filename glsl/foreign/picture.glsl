@@ -1,6 +1,6 @@
 // foreign/picture.glsl -- a test card, where nothing feeds a picture of another tool's shader.
 //
-//   gives    colour, encoded for the display
+//   gives    channel_texels, colours encoded for the display
 //   needs    nothing
 //   units    none
 //   source   made here
@@ -9,7 +9,7 @@
 // Red grows eastwards and green northwards, so that a picture upside down shows as one; eight
 // squares a side show how a shader stretches it. The tint tells the numbers apart: steps of the
 // golden ratio around the colour circle never meet.
-#pragma kernel(output = "colour:rgba8")
+#pragma kernel(output = "channel_texels:rgba8")
 
 uniform int number = 0;  //! slider(0, 99) Which picture: each has a tint of its own
 

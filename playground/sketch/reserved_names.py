@@ -70,6 +70,7 @@ NEUTRAL: dict[str, tuple[float, ...]] = {
     "frame_rate": (60.0,),
     "sample_rate": (44_100.0,),
     "forward": (0.0, 0.0, 1.0),
+    "none": (0.0,),
     "one": (1.0, 1.0, 1.0, 1.0),
     "identity3": _IDENTITY_3,
     "identity4": _IDENTITY_4,

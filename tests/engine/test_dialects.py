@@ -170,6 +170,14 @@ def test_stand_ins_differ_by_number(any_engine, folder, text):
     assert all(not np.array_equal(a, b) for i, a in enumerate(made) for b in made[:i])
 
 
+def test_an_annotation_of_our_own_counts(any_engine, folder):
+    write_png(folder.path / "x.png", np.full((4, 4, 4), 255, np.uint8))
+    head = 'uniform sampler2D u_tex0;  //! file("x.png")\nuniform float time = 0.5;  //! slider(0, 1)'
+    path = folder.write("t.frag", MAIN.format(head, "texture2D(u_tex0, vec2(0.5)) * time"))
+    assert [p.name for p in load(path).graph.find("view").technique.parameters] == ["u_tex0", "time"]
+    np.testing.assert_allclose(drawn(any_engine, path, 3.0)[0, 0, :3], 128, atol=1)
+
+
 PHOTO = """uniform vec2 u_resolution;
 uniform sampler2D u_tex0; // photo.png
 uniform vec2 u_tex0Resolution;

@@ -112,8 +112,12 @@ class _Shader:
         parameters = self._parameters()
         prelude = [*self.text.prelude, *self.rules.defines(self.source)]
         prelude += [f"uniform {_declaration(self.rules.names[n][0], n)};" for n in self.missing]
-        given = [n for n in self.rules.names if n in self.declared or n in self.missing]
-        meanings = [(n, self.rules.names[n][1]) for n in given if "sampler" not in self.rules.names[n][0]]
+        own = {p.name for p in parameters}
+        meanings = [
+            (n, meaning)
+            for n, (kind, meaning) in self.rules.names.items()
+            if (n in self.declared or n in self.missing) and n not in own and "sampler" not in kind
+        ]
         return Kernel(
             name,
             "plain_fragment",
@@ -127,7 +131,7 @@ class _Shader:
             epilogue=self.rules.epilogue,
             vertex=vertex_outputs(self.code),
             meanings=tuple(meanings),
-            unfed=tuple(self._unfed({p.name for p in parameters})),
+            unfed=tuple(self._unfed(own)),
         )
 
     def _lacks(self, name: str) -> bool:
@@ -160,14 +164,15 @@ class _Shader:
     def _parameters(self) -> tuple[Parameter, ...]:
         """Return the text's own uniforms; one that no panel can show keeps what the text gives it."""
         found: dict[str, Parameter] = {}
-        given = self.rules.names.keys()
         for line in self.source.lines:
             if not _UNIFORM.search(line.code):
                 continue
+            annotated = line.comment.startswith("!")  # in our own way, so that a parameter is meant
+            skip = () if annotated else self.rules.names.keys()
             try:
-                some, _ = read_uniforms(replace(self.source, lines=(line,)), plain=True, skip=given)
+                some, _ = read_uniforms(replace(self.source, lines=(line,)), plain=True, skip=skip)
             except ShaderError:
-                if line.comment.startswith("!"):  # an annotation of our own is meant
+                if annotated:
                     raise
                 continue
             for one in some:
